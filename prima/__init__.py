@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from prima.version import __version__
+
 if TYPE_CHECKING:
     from typing import Any
 
@@ -35,8 +37,6 @@ if TYPE_CHECKING:
     )
     from prima.experiments.functions import explore, sweep
 
-__version__ = "1.0.0"
-
 __all__ = [
     "Difference",
     "Document",
@@ -46,6 +46,7 @@ __all__ = [
     "RunError",
     "Transcript",
     "UsageError",
+    "__version__",
     "diff",
     "documents_folder",
     "explain",

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 
-from prima import __version__
+from prima.version import __version__
 from release.licences import licence
 from release.locked import PROJECT, Locked, locked
 

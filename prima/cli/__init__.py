@@ -12,10 +12,10 @@ from importlib import import_module
 
 import click
 
-from prima import __version__
 from prima.cli.common import escape_for_people, tell
 from prima.cli.failures import INTERRUPTED, exit_code
 from prima.errors import did_you_mean
+from prima.version import __version__
 
 COMMANDS = {
     "demo": "Run two applications on one robot; see the report.",

@@ -168,9 +168,9 @@ def _show(every: list[Problem], form: str) -> None:
             data[-1]["more"] = len(every) - LIMITS.problems
         print_json(data)
     elif form == "sarif":
-        from prima import __version__
         from prima.checks.codes import diagnoses
         from prima.errors.rendering import sarif
+        from prima.version import __version__
 
         print_json(sarif(problems, __version__, diagnoses()))
     elif problems and form == "text":

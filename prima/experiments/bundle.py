@@ -15,12 +15,12 @@ import re
 import zipfile
 from pathlib import Path
 
-from prima import __version__
 from prima.errors import UsageError
 from prima.experiments.sweep import Output, Question
 from prima.experiments.variants import Kept
 from prima.loading.writing import whole
 from prima.messages import Json
+from prima.version import __version__
 
 STUDY, METADATA = "study.toml", "ro-crate-metadata.json"
 """Names in a bundle."""

@@ -11,12 +11,12 @@ from contextlib import AbstractContextManager, contextmanager
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from prima import __version__
 from prima.errors import RunError, UsageError
 from prima.errors.visible import escaped
 from prima.experiments.pools import Making, Pool, Result, Runs, local
 from prima.experiments.variants import Variant
 from prima.pool import Died
+from prima.version import __version__
 
 if TYPE_CHECKING:
     from distributed import Client, Future

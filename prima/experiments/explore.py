@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 from typing import Any, TypeVar
 
-from prima import __version__
 from prima.errors import UsageError
 from prima.experiments.examine import Examiner, Finding, Seen
 from prima.experiments.lines import Line, Piece, Point, Search, moved, pieces, shift, shrunk
@@ -16,6 +15,7 @@ from prima.language.distributions import written
 from prima.language.values import LONGEST_MS, read_value
 from prima.pool import Died
 from prima.sim.paths import find
+from prima.version import __version__
 
 MOST_DEPTH = 4
 MOST_MOVES = 32

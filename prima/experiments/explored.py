@@ -11,7 +11,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from prima import __version__
 from prima.errors import UsageError, counted
 from prima.errors.visible import visible
 from prima.experiments.examine import Finding, Seen
@@ -21,6 +20,7 @@ from prima.experiments.pools import Pool
 from prima.loading.writing import write_whole
 from prima.messages import Json
 from prima.transcript.row import Row
+from prima.version import __version__
 
 RUNS, RESULT, ORDERS, PROBLEMS = "runs.jsonl", "explored.json", "orders", "problems"
 """Names in an exploration's folder."""

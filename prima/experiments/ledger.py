@@ -9,8 +9,8 @@ import stat
 from pathlib import Path
 from typing import Any
 
-from prima import __version__
 from prima.experiments.plan import LEDGER, TRANSCRIPT, Job, Options, Row
+from prima.version import __version__
 
 MOST_LEDGER = 1_000_000
 """Maximum length of a ledger (characters)."""

@@ -13,7 +13,6 @@ from errno import ENOSPC
 from itertools import islice
 from pathlib import Path
 
-from prima import __version__
 from prima.errors import UsageError, counted
 from prima.experiments.design import Design
 from prima.experiments.levels import Factor, cell, read_factor
@@ -30,6 +29,7 @@ from prima.experiments.variants import Made, Settings, Stage, Variant
 from prima.loading.writing import write_whole
 from prima.messages import Json
 from prima.pool import Died
+from prima.version import __version__
 
 MOST_CHECKED = 2_000
 """Levels that are tried before the first run; of more factors only the first ones' are."""

@@ -11,11 +11,11 @@ from itertools import islice
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
-from prima import __version__
 from prima.errors import UsageError
 from prima.experiments.levels import Factor
 from prima.experiments.variants import CRITERIA
 from prima.messages import Json
+from prima.version import __version__
 
 if TYPE_CHECKING:
     import pyarrow

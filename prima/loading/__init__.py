@@ -100,7 +100,8 @@ def read_application(
 
             native = replace(native, kind=kind)  # others may run the same document as it is
         return native, problems
-    from prima.voicexml.document import VoiceDocument, read_page
+    from prima.voicexml.document import VoiceDocument
+    from prima.voicexml.reading import read_page
 
     file = path_of(path)
     page = read_page(site.name(site.uri) if site else file.name, path, data, site)
@@ -319,9 +320,10 @@ def _voicexml_problems(
     URIs that begin like one of ``answered`` are a service's.
     """
     from prima.voicexml.caught import check_caught
-    from prima.voicexml.document import FetchError, read_page
+    from prima.voicexml.document import FetchError
     from prima.voicexml.listening import check_listening
     from prima.voicexml.pages import Pages
+    from prima.voicexml.reading import read_page
     from prima.voicexml.sketched import check_sketched
     from prima.voicexml.variables import check_variables
 

@@ -14,7 +14,6 @@ from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 from pygls.lsp.server import LanguageServer
 from pygls.protocol import LanguageServerProtocol, default_converter
 
-from prima import __version__
 from prima.errors import Problem
 from prima.errors.visible import visible
 from prima.lsp import naming
@@ -22,6 +21,7 @@ from prima.lsp.names import dialect
 from prima.lsp.problems import Spot, check, spots
 from prima.lsp.text import Lines
 from prima.lsp.workspace import Text, Workspace
+from prima.version import __version__
 
 SEVERITIES = {
     "error": lsp.DiagnosticSeverity.Error,

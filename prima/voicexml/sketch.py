@@ -44,11 +44,9 @@ from prima.markup.tree import Node
 from prima.messages import Json
 from prima.script.choices import Choice, choices
 from prima.voicexml.arranging import ARRANGING, is_unit, longest_of
-from prima.voicexml.content import ITEMS
 from prima.voicexml.cues import break_ms
 from prima.voicexml.document import Page
-from prima.voicexml.events import HANDLERS, handler_names, handler_number
-from prima.voicexml.prompts import SILENT
+from prima.voicexml.elements import HANDLERS, ITEMS, SILENT, handler_names, handler_number
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 ASKING = ("field", "initial", "record", "menu")

@@ -21,9 +21,8 @@ from prima.script.globals import IDENTIFIER
 from prima.script.known import Known, Scope
 from prima.script.names import SCOPES, Names, Use, expression_names, script_names
 from prima.voicexml.checks import FORM_ITEMS, NAMING, is_code
-from prima.voicexml.content import INPUTS
 from prima.voicexml.document import Page
-from prima.voicexml.events import HANDLERS
+from prima.voicexml.elements import HANDLERS, INPUTS
 
 ALWAYS = frozenset(
     [

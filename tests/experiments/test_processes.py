@@ -34,7 +34,7 @@ from tests.helpers.batches import (
 def test_the_processes_are_of_the_version_that_starts_them(stage: Path) -> None:
     """A checkout that one works in counts, and not a version that is installed beside it."""
     shutil.copytree(ROOT / "prima", "prima", ignore=shutil.ignore_patterns("__pycache__"))
-    here = Path("prima/__init__.py")
+    here = Path("prima/version.py")
     here.write_text(re.sub('__version__ = ".*"', '__version__ = "9.9"', here.read_text()))
     assert prima("b", "-o", "runs").returncode == 0
     assert json.loads(Path("runs/b/one.run.json").read_text())["key"]["prima"] == "9.9"

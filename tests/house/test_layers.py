@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import networkx
 import pytest
 
 import prima
@@ -15,7 +16,7 @@ from tests import ROOT
 PACKAGE = ROOT / "prima"
 
 LAYERS = [
-    {"errors"},
+    {"errors", "version"},
     {"messages", "language"},
     {"markup", "transcript"},
     {"script"},
@@ -118,6 +119,23 @@ INSIDE = {
         {"application"},
         {"__init__"},
     ],
+    "voicexml": [
+        {"caught", "cues", "dom", "elements", "recordings", "site", "upgrade", "vocabulary"},
+        {"arranging", "speech"},
+        {"checks"},
+        {"document"},
+        {"listening", "matching", "sketch", "state", "variables"},
+        {"owner", "results", "sketched"},
+        {"events", "prompts", "reading", "recorder", "units"},
+        {"fetching", "pages"},
+        {"content", "inputs", "questions", "scopes"},
+        {"calls"},
+        {"items"},
+        {"machine"},
+        {"application"},
+        {"__init__"},
+    ],
+    "session": [{"applications"}, {"wiring"}, {"hearing"}, {"session"}, {"__init__"}],
     "exports": [{"timeline"}, {"tiers"}, {"csv", "eaf", "mcap", "textgrid", "vtt"}, {"__init__"}],
     "lsp": [
         {"descriptions", "text"},
@@ -294,6 +312,27 @@ def test_a_module_imports_only_what_stands_below(name: str) -> None:
                     assert rank(inside, parts[2]) < rank(inside, own), f"{name} imports {target}"
         elif parts[1] in MODULES or any(key.startswith(f"{parts[1]}.") for key in MODULES):
             assert rank(LAYERS, parts[1]) < rank(LAYERS, package), f"{name} imports {target}"
+
+
+def origins(tree: ast.Module) -> set[str]:
+    """The modules of the package that names are imported from, without ``prima.``."""
+    found = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("prima."):
+            home = (node.module or "").removeprefix("prima.")
+            for name in (f"{home}.{one.name}" for one in node.names):
+                ways = (name, f"{name}.__init__", home, f"{home}.__init__")
+                found |= set([one for one in ways if one in MODULES][:1])
+    return found
+
+
+def test_no_modules_import_each_other() -> None:
+    """Neither when they are loaded, nor inside functions, nor for types."""
+    graph: networkx.DiGraph[str] = networkx.DiGraph()
+    for name, tree in MODULES.items():
+        graph.add_edges_from((name, one) for one in origins(tree) if one != name)
+    knots = [one for one in networkx.strongly_connected_components(graph) if len(one) > 1]
+    assert not knots
 
 
 @pytest.mark.parametrize(("library", "homes"), sorted(ALONE.items()))

@@ -100,25 +100,26 @@ def test_an_interrupt_makes_the_robot_safe_and_says_how_to_go_on(
     assert prima("replay", str(journal)).returncode == 0
 
 
-def test_a_machine_that_stood_still_is_told_of_and_the_run_goes_on(
-    hello: str, tmp_path: Path
-) -> None:
-    journal = tmp_path / "visit.jsonl"
-    words = ["--robot", ROBOT, "--ea", hello, "-o", str(journal)]
+def test_a_machine_that_stood_still_is_reported_and_the_run_goes_on(tmp_path: Path) -> None:
+    journal, talk = tmp_path / "visit.jsonl", tmp_path / "talk.xml"
+    speak = "<speak>Hello there.</speak>"
+    talk.write_text(HELLO.replace(speak, speak * 20))  # an instant is due in any two seconds of it
+    words = ["--ea", str(talk), "--speed", "2", "-o", str(journal)]
     running = subprocess.Popen(
-        [sys.executable, "-m", "prima", "live", *words],
+        [sys.executable, "-m", "prima", "live", "--robot", ROBOT, *words],
         cwd=ROOT,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
     )
     limit = time.monotonic() + 30
-    while not (journal.exists() and journal.stat().st_size) and time.monotonic() < limit:
+    while "Hello" not in (journal.read_text() if journal.exists() else ""):  # the clock runs then
+        assert running.poll() is None and time.monotonic() < limit
         time.sleep(0.02)
     running.send_signal(signal.SIGSTOP)
-    time.sleep(4)
+    time.sleep(2)
     running.send_signal(signal.SIGCONT)
-    _, told = running.communicate(timeout=30)
+    _, told = running.communicate(timeout=60)
     assert running.returncode == 0, told
     assert re.search(r"An instant was carried out \d\S* s late", told)
     assert prima("replay", str(journal)).returncode == 0

@@ -16,7 +16,7 @@ from prima import api, loading
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.markup.rnc import make_rnc
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tools.reference import VOCABULARIES, voicexml
 
 SCHEMAS = ROOT / "schemas"

@@ -9,7 +9,7 @@ import pytest
 from prima import api, loading
 from prima.errors import DocumentError
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.validating import VXML, told
 
 PAGE = """<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en">
