@@ -473,7 +473,8 @@ def types() -> str:
 def interface() -> str:
     """What the package exports: signatures and docstrings."""
     parts = []
-    for name in sorted(prima.__all__, key=lambda name: (not _is_function(name), name.lower())):
+    public = [name for name in prima.__all__ if not name.startswith("_")]
+    for name in sorted(public, key=lambda name: (not _is_function(name), name.lower())):
         thing = getattr(prima, name)
         if _is_function(name):
             parts.append(f"## `{name}{_signature(thing)}`\n")

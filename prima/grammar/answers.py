@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from prima.grammar.text import fold
@@ -45,3 +45,8 @@ class Answers:
         from prima.grammar.types import read  # most questions have none
 
         return read(self.type, text)
+
+    def in_grammar(self, text: str) -> bool:
+        """Whether an utterance is an answer, and not taken only because any text is one."""
+        known = replace(self, type="") if self.type == "text" else self
+        return known.match(text) is not None

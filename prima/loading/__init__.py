@@ -575,7 +575,7 @@ def stage(
 
     demo = documents_folder()
     given = [(kind, path) for kind, paths in (("fa", fas), ("ea", eas)) for path in paths]
-    for _, path in given:
+    for path in (*(path for _, path in given), *filter(None, (robot, world))):
         read_file(path)  # what is not there is no fault of a document
     served = _served([path for _, path in given], maps)
     applications = [

@@ -185,9 +185,9 @@ INSIDE = {
         {"__init__"},
     ],
     "live": [
-        {"answers", "clock", "journal", "recordings", "told"},
+        {"answers", "clock", "journal", "recordings", "signals", "told"},
         {"driver"},
-        {"mapped"},
+        {"carried", "mapped"},
         {"ros"},
         {"devices", "drivers"},
         {"services"},
