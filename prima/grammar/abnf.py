@@ -28,7 +28,7 @@ from prima.grammar.values import (
     repeat,
     sequence,
 )
-from prima.markup.reader import ENCODINGS, byte_place, with_line_feeds
+from prima.markup.encodings import ENCODINGS, byte_place, with_line_feeds
 from prima.markup.tree import Source
 
 MAX_DEPTH = 100

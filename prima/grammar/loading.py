@@ -20,8 +20,8 @@ from prima.grammar.linking import Fetch, Library, Refusal, joined
 from prima.grammar.media import ABNF_TYPES, check_form, check_known, check_no_text, media_type
 from prima.grammar.model import Document, Mode, Rule
 from prima.grammar.xmlform import read_xml
-from prima.markup.limits import LIMITS
-from prima.markup.reader import parse, too_large
+from prima.markup.limits import LIMITS, too_large
+from prima.markup.reader import parse
 from prima.markup.tree import Inner, Node, Source
 
 _NAMED = re.compile(rf"(?:builtin:.*|(?:{'|'.join(TYPES)})(?:\?.*)?)", re.DOTALL)

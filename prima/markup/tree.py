@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -54,17 +55,19 @@ class Source:
     def closes(self) -> dict[int, int]:
         """Where the name in each element's end tag begins; elements without one are not there."""
         if self._closes is None:
-            self._closes = {}
-            opened: list[int] = []
-            count = 0
-            for match in MARKUP.finditer(self.text):
-                if match["start"]:
-                    if not match[0].endswith("/>"):
-                        opened.append(count)
-                    count += 1
-                elif match[0].startswith("</") and opened:
-                    self._closes[opened.pop()] = match.start() + 2
+            self._closes = dict(self._end_tags())
         return self._closes
+
+    def _end_tags(self) -> Iterator[tuple[int, int]]:
+        opened: list[int] = []
+        count = 0
+        for match in MARKUP.finditer(self.text):
+            if match["start"]:
+                if not match[0].endswith("/>"):
+                    opened.append(count)
+                count += 1
+            elif match[0].startswith("</") and opened:
+                yield opened.pop(), match.start() + 2
 
     def span(self, start: int, end: int) -> Span:
         """The places of two characters of the text, the second one behind what is meant."""
@@ -109,8 +112,6 @@ class Source:
         """The place of a character of the text."""
         if self.lines is None:
             self.lines = [0, *(match.end() for match in re.finditer("\n", self.text))]
-        from bisect import bisect_right  # most documents have nothing to be told of
-
         line = bisect_right(self.lines, offset)
         return Place(self.file, line, offset - self.lines[line - 1] + 1)
 
@@ -131,8 +132,6 @@ class _Written:
         """Where a character stands in the document's text, or what follows the last one."""
         while self._given[-1] <= characters and (piece := PIECE.match(self._text, self._end)):
             self._take(piece)
-        from bisect import bisect_right  # most documents have nothing to be told of
-
         at = bisect_right(self._given, characters) - 1
         if at == len(self._given) - 1:
             return self._end

@@ -95,7 +95,7 @@ class Vocabulary:
         self.root = root
         self.elements = {element.key: element for element in elements}
         self.hints = dict(hints or {})
-        """What to write instead of an element that authors expect but this language lacks."""
+        """What to write instead of elements that authors expect but this language lacks."""
         self.free = frozenset(free)
         """Keys of elements that may hold anything; where there are any, elements of foreign
         namespaces may stand among others'."""
@@ -107,6 +107,11 @@ class Vocabulary:
         self.tags = frozenset(element.tag for element in self.elements.values())
         self.attributes = {key: attributes_by_name(one) for key, one in self.elements.items()}
         """What :func:`attributes_by_name` gives, by key."""
+
+    @property
+    def root_tag(self) -> str:
+        """The name of the root element as written in documents."""
+        return self.elements[self.root].tag
 
     @property
     def open(self) -> bool:

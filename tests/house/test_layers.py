@@ -53,8 +53,8 @@ INSIDE = {
         {"__init__"},
     ],
     "markup": [
-        {"limits", "opening", "uris", "vocabulary", "tree"},
-        {"edits", "slips", "spans"},
+        {"limits", "sniff", "uris", "vocabulary", "tree"},
+        {"edits", "encodings", "hints", "spans", "wellformed"},
         {"build", "check", "rnc", "schema"},
         {"reader"},
         {"__init__"},
@@ -199,7 +199,7 @@ INSIDE = {
 }
 
 ALONE = {
-    "lxml": {"markup.reader"},
+    "lxml": {"markup.wellformed"},
     "pymunk": {"sim.world"},
     "networkx": {"sim.routes"},
     "lark": {"grammar.abnf"},

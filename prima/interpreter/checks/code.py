@@ -189,7 +189,7 @@ def _remedy(code: str) -> str:
     """What to write for a wrong expression, where that is a common slip."""
     if not SLIPS.search(code):
         return ""
-    from prima.markup.slips import half
+    from prima.markup.hints import half
 
     bare = STRINGS.sub("", code)
     wide = [

@@ -18,7 +18,7 @@ UNITS = {
     "MS": 1,
 }
 """Units of time that are not those of documents, in ms."""
-# Compiled when they are used: most documents have no slips.
+# Compiled when they are used: most documents have no mistakes.
 MEASURE = r"\s*([0-9]+(?:[.,][0-9]+)?|[.,][0-9]+)\s*([A-Za-z]*)\s*"
 NUMBER = r"\s*([+-]?(?:[0-9]+(?:[.,][0-9]+)?|[.,][0-9]+))\s*[A-Za-z/°%]*[²2]?\s*"
 TRUTHS = {"yes": "true", "1": "true", "on": "true", "no": "false", "0": "false", "off": "false"}
