@@ -68,7 +68,7 @@ from prima.scheduler.policy import Policy
 from prima.scheduler.recorder import Recorder
 from prima.script.evaluation import EngineLost
 from prima.script.isolated import Engines
-from prima.script.prelude import START
+from prima.script.sandbox import START
 
 if TYPE_CHECKING:
     from prima.voicexml.document import VoiceDocument

@@ -50,7 +50,7 @@ from prima.markup.schema import (
 )
 from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
 from prima.scheduler import failures, starvation
-from prima.script import budget, evaluation, host, parse, prelude, syntax
+from prima.script import budget, evaluation, host, parse, sandbox, syntax
 from prima.sim.vocabulary import SCENARIO, USER, WORLD
 from prima.transcript import lines
 from prima.transcript.record import PHASES, model
@@ -227,12 +227,12 @@ def limits() -> str:
         ),
         (
             "memory of an application's ECMAScript",
-            f"{prelude.MEMORY_LIMIT // mib} MiB",
+            f"{sandbox.MEMORY_LIMIT // mib} MiB",
             "`error.semantic`",
         ),
         (
             "stack of an application's ECMAScript",
-            f"{prelude.STACK_LIMIT // 1024} KiB",
+            f"{sandbox.STACK_LIMIT // 1024} KiB",
             "`error.semantic`",
         ),
         (

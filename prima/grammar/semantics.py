@@ -67,7 +67,7 @@ class Interpreter:
         """Whether a built-in type has given a value."""
         self.last: Tag | None = None
         """The last tag on the way, of whatever rule."""
-        self._sandboxes: dict[int, Any] = {}
+        self._engines: dict[int, Any] = {}
         self._results: dict[int, _Result] = {}
 
     def interpret(self, top: Frame) -> Json:
@@ -145,9 +145,9 @@ class Interpreter:
 
     def _given(self, result: _Result, way: Literal["json", "carry"]) -> Any:
         """What a value in an engine is outside of it."""
-        sandbox = self._sandbox(result.home)
+        engine = self._engine(result.home)
         try:
-            return sandbox.json(result.box) if way == "json" else sandbox.carry(result.box)
+            return engine.json(result.box) if way == "json" else engine.carry(result.box)
         except EngineLost as error:
             raise EngineLost(f"{result.home.where()}: {error}") from None
         except ScriptError as error:
@@ -156,52 +156,50 @@ class Interpreter:
 
     def _script(self, frame: Frame, result: _Result) -> None:
         """Run the tags of a rule with the values of the rules that it refers to."""
-        sandbox = self._sandbox(result.document)
+        engine = self._engine(result.document)
         legacy = result.document.dialect == "legacy"
         pieces: list[str] = []
         tags = [event for event in frame.events if isinstance(event, Tag)]
         codes = [translate(tag.code) if legacy else tag.code for tag in tags]
         numbered = enumerate(codes)
         told = list(zip(tags, codes, strict=True))
-        _check(told, result.document, sandbox)
+        _check(told, result.document, engine)
         environment: Any = None
         try:
-            environment = sandbox.environment(self.text(result), result.document.merges)
+            environment = engine.environment(self.text(result), result.document.merges)
             for event in frame.events:
                 if isinstance(event, Tag):
                     number, code = next(numbered)
                     pieces.append(f"$next.at = {number};\n{code}\n;")
                 elif isinstance(event, Frame):
                     inner = self._results[id(event)]
-                    sandbox.add(environment, event.name, self._box(inner, result), self.text(inner))
+                    engine.add(environment, event.name, self._box(inner, result), self.text(inner))
                     pieces.append("$next(out);")
                 elif isinstance(event, Value):
-                    sandbox.add(environment, "builtin", sandbox.box(event.value), event.text)
+                    engine.add(environment, "builtin", engine.box(event.value), event.text)
                     pieces.append("$next(out);")
-            result.box = sandbox.rule("\n".join(pieces), environment)
+            result.box = engine.rule("\n".join(pieces), environment)
         except EngineLost as error:
             raise EngineLost(f"{tags[0].where()}: {error}") from None
         except ScriptError as error:
-            reached = sandbox.reached(environment) if environment is not None else 0
+            reached = engine.reached(environment) if environment is not None else 0
             raise _failure(tags[min(reached, len(tags) - 1)], str(error)) from None
 
     def _box(self, inner: _Result, result: _Result) -> Any:
-        sandbox = self._sandbox(result.document)
+        engine = self._engine(result.document)
         if inner.box is None:
-            return sandbox.box(inner.value)
+            return engine.box(inner.value)
         if inner.home is result.document:
             return inner.box
-        return sandbox.take(self._given(inner, "carry"))
+        return engine.take(self._given(inner, "carry"))
 
-    def _sandbox(self, document: Document) -> Any:
+    def _engine(self, document: Document) -> Any:
         """The engine of a document, in which its global tags have run (SISR 1.0: once)."""
-        found = self._sandboxes.get(id(document))
+        found = self._engines.get(id(document))
         if found is None:
-            from prima.script.isolated import IsolatedSandbox
+            from prima.script.shared import IsolatedTagEngine
 
-            found = self._sandboxes[id(document)] = IsolatedSandbox(
-                self.budget, len(self._sandboxes)
-            )
+            found = self._engines[id(document)] = IsolatedTagEngine(self.budget, len(self._engines))
             _check([(tag, tag.code) for tag in document.globals], document, found)
             for tag in document.globals:
                 try:
@@ -218,7 +216,7 @@ def _result(frame: Frame, first: int) -> _Result:
     return _Result(document, document, first)
 
 
-def _check(tags: list[tuple[Tag, str]], document: Document, sandbox: Any) -> None:
+def _check(tags: list[tuple[Tag, str]], document: Document, engine: Any) -> None:
     """Each tag is a script by itself (SISR 1.0 section 3); whether it is one is asked once.
 
     Raises:
@@ -228,7 +226,7 @@ def _check(tags: list[tuple[Tag, str]], document: Document, sandbox: Any) -> Non
     for tag, code in tags:
         fault = known.get(code)
         if fault is None:
-            fault = sandbox.fault(code)
+            fault = engine.fault(code)
             if not fault or fault.startswith("SyntaxError"):  # all else is want of room
                 known[code] = fault
         if fault:

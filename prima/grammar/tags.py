@@ -25,15 +25,15 @@ def tag_warnings(document: Document) -> list[Problem]:
     """Tags that are no script, and names in them that nothing gives a value (SISR 1.0)."""
     if not (document.tags or document.globals) or document.dialect == "literals":
         return []
-    from prima.script.isolated import IsolatedSandbox
+    from prima.script.shared import IsolatedTagEngine
 
-    sandbox = IsolatedSandbox(Budget())
+    engine = IsolatedTagEngine(Budget())
     found: list[Problem] = []
     sound: dict[int, str] = {}
     """Tags that are scripts, by the identity of the tag."""
     for tag in (*document.globals, *document.tags):
         code = _script(document, tag)
-        if sandbox.fault(code):
+        if engine.fault(code):
             shown = " ".join(tag.code.split())[:60]
             message = f'"{shown}" is not ECMAScript: {LOST}.'
             found.append(Problem(tag.where(), "warning", "bad-expression", message))

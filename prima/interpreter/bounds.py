@@ -10,7 +10,7 @@ from prima.language.values import moment
 from prima.markup.tree import Node
 from prima.messages import Action, Json, Quit, Say
 from prima.script.evaluation import MAX_RUN_SECONDS, MAX_SCRIPT_SECONDS, MAX_SHARE, EngineLost
-from prima.script.prelude import START
+from prima.script.sandbox import START
 
 if TYPE_CHECKING:
     from prima.interpreter.plain import PlainEngine

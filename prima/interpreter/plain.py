@@ -19,7 +19,6 @@ from prima.script.ecmascript import (
     Scope,
     Scopes,
     escaped,
-    holder_of,
     inward,
     outward,
     stringify,
@@ -28,6 +27,7 @@ from prima.script.ecmascript import (
     well_formed,
 )
 from prima.script.evaluation import MAX_SCRIPT_SECONDS, ScriptError, bounded
+from prima.script.operations import holder_of
 
 if TYPE_CHECKING:
     from prima.messages import Json

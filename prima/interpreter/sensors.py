@@ -6,12 +6,11 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from prima.interpreter.elements import Document
-from prima.script.ecmascript import CONSTANTS
-from prima.script.globals import STRANGE
+from prima.script.globals import CONSTANTS, STRANGE
 from prima.script.names import Names, expression_names, script_names
 from prima.script.parse import Code, Node, parse_expression, parse_script
 
-TAKEN = CONSTANTS.keys() | {"sensor"}
+TAKEN = CONSTANTS | {"sensor"}
 """Names that conditions take for granted."""
 NOTHING_READ: frozenset[str] = frozenset()
 """What :func:`sensors_read` gives for a document that depends on no sensor."""

@@ -11,8 +11,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from prima.script.names import FUNCTIONS, bound_names
+from prima.script.names import bound_names
 from prima.script.parse import Code, Node, parse_script
+from prima.script.walk import FUNCTIONS
 
 HIDDEN = "$_"
 """What is added to the name of a function at the top."""

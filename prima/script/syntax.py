@@ -11,7 +11,7 @@ import _quickjs as quickjs
 from prima.script.evaluation import ScriptError
 from prima.script.names import script_names
 from prima.script.parse import MOST_CODE
-from prima.script.prelude import MEMORY_LIMIT, STACK_LIMIT, reason
+from prima.script.sandbox import MEMORY_LIMIT, STACK_LIMIT, reason
 
 MOST_NAMES = 5_000
 """Names that one script may declare: the engine compares each with all others."""

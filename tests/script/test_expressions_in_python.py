@@ -15,11 +15,11 @@ from prima.interpreter import application
 from prima.interpreter.plain import MOST_HELD, PlainEngine, is_plain
 from prima.interpreter.reader import read_document
 from prima.script import compile as compiling
-from prima.script.compile import BUILT_IN, INHERITED, METHODS, VARIABLES, compiled
+from prima.script.compile import compiled
 from prima.script.ecmascript import CONSTANTS
 from prima.script.engine import Engine
 from prima.script.evaluation import SCOPES, ScriptError
-from prima.script.globals import STRANGE
+from prima.script.globals import BUILT_IN, INHERITED, METHODS, STRANGE, VARIABLES
 from prima.script.isolated import Engines
 from tests import ROOT
 

@@ -163,14 +163,14 @@ def _of_item(item: Item) -> Iterator[Expression]:
 def _look_ahead(codes: list[tuple[str, bool]]) -> None:
     """Let the engine look at all code at once that needs it: each call takes time."""
     if len(codes) > 1:
-        from prima.script.isolated import syntax
+        from prima.script.shared import syntax
 
         with suppress(ScriptError):  # the check of each piece reports that there is no engine
             syntax().look_ahead(codes)
 
 
 def _compiled(expr: Expression, script: bool) -> Problem | None:
-    from prima.script.isolated import syntax
+    from prima.script.shared import syntax
 
     try:
         (syntax().script if script else syntax().expression)(expr.code)
