@@ -192,7 +192,7 @@ class Chart:
             if length > left:
                 self.open = self.open or (self._prefixes and index.goes_on(said[start:]))
                 break
-            found = index.by_lead.get(said[start : start + length])
+            found = index.by_prefix.get(said[start : start + length])
             if found is not None and self.utterance.edges[start + length]:
                 tried.update(found)
         for number in sorted(tried):

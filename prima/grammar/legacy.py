@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterable
 from functools import lru_cache
 
 from prima.grammar.model import Document
@@ -54,21 +55,17 @@ def settle(document: Document) -> None:
 
 def _drafted(codes: list[str], globals: list[str]) -> bool:
     """Whether tags are in the way of the drafts: with ``$`` and without any name of SISR 1.0."""
-    if not any("$" in code for code in codes):
+    everything = [*codes, *globals]
+    if not any("$" in code for code in codes) or _used(everything) & _OWN:
         return False
-    everything = [script_names(code) for code in (*codes, *globals)]
-    used = {name for names in everything for name in (*names.read, *names.written)}
-    if used & _OWN:
-        return False
-    declared = {name for names in everything for name in names.declared}
-    signs = {
-        name
-        for code in codes
-        for names in (script_names(code),)
-        for name in (*names.read, *names.written)
-        if name.startswith("$")
-    }
-    return not signs <= declared
+    declared = {name for code in everything for name in script_names(code).declared}
+    return not {name for name in _used(codes) if name.startswith("$")} <= declared
+
+
+def _used(codes: Iterable[str]) -> set[str]:
+    """Names that are read or given values."""
+    names = [script_names(code) for code in codes]
+    return {name for one in names for name in (*one.read, *one.written)}
 
 
 def _guess(document: Document, codes: list[str]) -> str:
@@ -136,7 +133,6 @@ def translate(code: str) -> str:
 
 def _from_dollars(code: str) -> str:
     """``$`` is the rule's variable, ``$$`` the last rule's value, ``$name`` that of a rule."""
-
     pieces, at = [], 0
     for start, end, name in _signs(code):
         value = {"$": "out", "$$": "rules.latest()"}.get(name, f"rules.{name[1:]}")

@@ -15,10 +15,10 @@ from prima.grammar.errors import (
     Where,
     refuse,
 )
-from prima.grammar.leads import index_choices
 from prima.grammar.legacy import FORMATS, settle
 from prima.grammar.media import check_form, media_type
 from prima.grammar.model import Document, Reference, Rule
+from prima.grammar.prefixes import index_choices
 from prima.markup.uris import join
 
 MOST_DOCUMENTS = 64
@@ -64,7 +64,7 @@ class Library:
                     return
                 rule = self._resolve(document, reference)
                 if rule is not None:
-                    reference.lead_to(rule)
+                    reference.resolve(rule)
         if not self.problems.found:
             index_choices(self._linked)
 

@@ -135,7 +135,7 @@ def _element(
         base = joined(base, node.get("xml:base"), partial(node.attribute_place, "xml:base"))
     if "src" in node.attributes:
         return _external(library, node, base, media, rule)
-    where = partial(_place, node)
+    where = partial(node.place_of, "")
     document = Document(base, where, mode or "voice", node.get("xml:lang", lang))
     check_known(media, where(), node.own_text)
     if not node.nodes and (media in ABNF_TYPES or node.own_text.lstrip().startswith("#ABNF")):
@@ -190,7 +190,7 @@ def _external(
 def _bytes(text: str) -> bytes:
     """A whole file's text as the bytes of one; whatever encoding it declares, it has none."""
     if text.startswith("#ABNF"):
-        from prima.grammar.abnf import as_unicode
+        from prima.grammar.abnfheader import as_unicode
 
         return as_unicode(text)
     if "encoding" in text[:200]:
@@ -210,7 +210,8 @@ def _document(
     check_known(media, Place(file), begin)
     document = Document(uri, partial(Place, file))
     if begin.startswith("#ABNF") or (media in ABNF_TYPES and not begin.startswith("<")):
-        from prima.grammar.abnf import decode_abnf, read_abnf
+        from prima.grammar.abnf import read_abnf
+        from prima.grammar.abnfheader import decode_abnf
 
         source = Source(file, decode_abnf(file, data))
         document.form = "ABNF"
@@ -221,7 +222,7 @@ def _document(
         node = parse(file, data)
     except DocumentError as error:
         raise GrammarError(error.problems) from None
-    document.where = partial(_place, node)
+    document.where = partial(node.place_of, "")
     document.lang = lang if lenient else document.lang
     read_xml(node, document, library.problems, inline=False, lenient=lenient)
     return document
@@ -233,7 +234,3 @@ def _beginning(data: bytes) -> str:
     if data[:2] in (b"#\0", b"\0#"):
         return data[:200].replace(b"\0", b"").decode("latin-1")
     return data[:200].decode("utf-8-sig", errors="replace").lstrip()
-
-
-def _place(node: Node) -> Place:
-    return node.place

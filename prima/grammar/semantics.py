@@ -127,18 +127,22 @@ class Interpreter:
         if not values:
             result.value = self.text(result)
             return
-        if result.document.merges:
-            rules = [self._results[id(event)] for event in values if isinstance(event, Frame)]
-            slots = [plain for one in rules if isinstance(plain := self._plain(one), dict)]
-            if slots:
-                result.value = {name: value for one in slots for name, value in one.items()}
-                return
+        slots = self._slots(values) if result.document.merges else None
+        if slots is not None:
+            result.value = slots
+            return
         last = values[-1]
         if isinstance(last, Value):
             result.value = last.value
         else:
             inner = self._results[id(last)]
             result.value, result.box, result.home = inner.value, inner.box, inner.home
+
+    def _slots(self, values: list[Frame | Value]) -> dict[str, Json] | None:
+        """The slots that rules have filled, later ones over earlier ones; None if there are none."""
+        rules = [self._results[id(one)] for one in values if isinstance(one, Frame)]
+        slots = [plain for one in rules if isinstance(plain := self._plain(one), dict)]
+        return {name: value for one in slots for name, value in one.items()} if slots else None
 
     def _plain(self, result: _Result) -> Json:
         return result.value if result.box is None else self._given(result, "json")

@@ -6,7 +6,7 @@ import math
 import re
 from typing import NamedTuple
 
-from prima.grammar.model import Choice, LeadIndex, Part, Sequence
+from prima.grammar.model import Choice, Part, PrefixIndex, Sequence
 
 LEAST = 1e-20
 """A weight of nought counts as this: it comes after everything else."""
@@ -86,7 +86,7 @@ def choice(parts: list[Part], weights: list[float | None]) -> Part:
     greatest = max(given, default=1.0)
     scale = greatest if greatest > 0 else 1.0
     costs = [0.0 if weight == greatest else cost(weight / scale) for weight in given]
-    return Choice(parts, costs, LeadIndex({}, [], list(range(len(parts)))))
+    return Choice(parts, costs, PrefixIndex({}, [], list(range(len(parts)))))
 
 
 def sequence(parts: list[Part]) -> Part:
