@@ -31,6 +31,7 @@ from prima.interpreter import (
     application,
     bounds,
     content,
+    expressions,
     handling,
     transfers,
     units,
@@ -241,7 +242,7 @@ def limits() -> str:
             "`error.semantic`",
         ),
         ("elements that a `foreach` goes through", f"{content.MAX_REPEATS:,}", "`error.semantic`"),
-        ("what a Command says", f"{content.MAX_TEXT:,} characters", "the rest is not said"),
+        ("what a Command says", f"{expressions.MAX_TEXT:,} characters", "the rest is not said"),
         (
             "what one utterance or question keeps the speaker, at 50 ms a letter",
             f"{LONGEST_TURN_MS // 1000} s",

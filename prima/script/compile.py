@@ -40,7 +40,7 @@ MOST_CODE = 1_000
 MOST_PIECES = 200
 """Pieces of code beyond which an expression is left to the engine."""
 DEEPEST = 100
-"""Operators, members and brackets that may stand inside each other."""
+"""Depth of operators, members and brackets."""
 AS_LONG = 200
 """Characters of kept code that is beyond all this which count for one piece more."""
 MOST_KEPT = 100_000
@@ -59,10 +59,10 @@ class Compiled:
 
     call: Function
     pieces: int
-    """Of about how many pieces of code it was made."""
+    """The number of pieces of code it was made of, about."""
 
 
-class _Kept:
+class _Cache:
     expressions: dict[str, Compiled | None] = {}  # noqa: RUF012
     """What has been compiled lately, by its code."""
     pieces = 0
@@ -73,15 +73,15 @@ def compiled(code: str) -> Compiled | None:
     """An expression as a function of the scopes it sees, or None if it needs an engine."""
     if len(code) > MOST_CODE:
         return None
-    if code not in _Kept.expressions:
+    if code not in _Cache.expressions:
         made = _compile(code)
-        _Kept.pieces += made.pieces if made else 1 + len(code) // AS_LONG
-        if _Kept.pieces > MOST_KEPT:
-            _Kept.pieces = 0
-            _Kept.expressions.clear()
-        _Kept.expressions[code] = made
+        _Cache.pieces += made.pieces if made else 1 + len(code) // AS_LONG
+        if _Cache.pieces > MOST_KEPT:
+            _Cache.pieces = 0
+            _Cache.expressions.clear()
+        _Cache.expressions[code] = made
         return made
-    return _Kept.expressions[code]
+    return _Cache.expressions[code]
 
 
 def _compile(code: str) -> Compiled | None:
@@ -104,10 +104,10 @@ class _Piece:
 
     call: Function
     place: tuple[int, int] | None = None
-    """Line and column of the last operator or name in it: an error of a member of it is told there,
-    as the engine tells it."""
+    """Line and column of the last operator or name in it: an error of a member of it is reported there,
+    as the engine does."""
     optional: bool = False
-    """Whether it is a chain in which ``?.`` stands: its value may be :data:`CUT`."""
+    """Whether it is a chain with ``?.``: its value may be :data:`CUT`."""
 
 
 CUT = object()
@@ -233,7 +233,7 @@ class _Builder:
         while operator == "typeof" and operand is not None and operand.type == BRACKETS:
             operand = operand.named_children[0]
         if operator == "typeof" and operand is not None and operand.type == "identifier":
-            name = self._name(operand)  # one that nothing declares is no error here
+            name = self._name(operand)  # an undeclared one is not an error here
             return _Piece(lambda scopes: kind_of(found(name, scopes)))
         piece = self.part(node, "argument", depth)
         call = piece.call

@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from prima.script.evaluation import LARGEST, ScriptError, bounded, plain_number, whole
+from prima.script.surrogates import SURROGATE, well_formed
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -25,7 +26,7 @@ class Undefined:
 
 
 UNDEFINED = Undefined()
-"""What a variable without a value has."""
+"""The value of a variable without one."""
 
 
 class Scope(dict[str, Any]):
@@ -48,7 +49,7 @@ Scopes = tuple[Scope, Scope, Scope, Scope]
 """The scopes that an expression sees: application, document, dialog and local."""
 
 DEEPEST = 100
-"""Lists and objects of a value from outside that may stand inside each other."""
+"""Lists and objects inside each other that a value from outside may have."""
 CONSTANTS = {"undefined": UNDEFINED, "NaN": math.nan, "Infinity": math.inf}
 SPACE = " \t\n\v\f\r\xa0\ufeff\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u2028\u2029\u202f\u205f\u3000"
 """What ECMAScript takes for white space."""
@@ -57,7 +58,6 @@ NUMERIC = re.compile(
 )
 INDEX = re.compile("0|[1-9][0-9]{0,9}")
 MOST_INDEX = 2**32 - 2
-SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 def truth(value: Any) -> bool:
@@ -101,7 +101,7 @@ def text(value: Any) -> str:
     if isinstance(value, list):
         return ",".join("" if one is None or one is UNDEFINED else text(one) for one in value)
     if isinstance(value, dict):
-        if "toString" in value:  # it is no function
+        if "toString" in value:  # it is not a function
             raise ScriptError("TypeError: toPrimitive")
         return "[object Object]"
     return "undefined"
@@ -177,13 +177,6 @@ def order(value: str) -> str | bytes:
     return value.encode("utf-16-be", "surrogatepass")
 
 
-def well_formed(value: str) -> str:
-    """Text in which halves of letters are whole again, or replaced."""
-    if SURROGATE.search(value) is None:
-        return value
-    return value.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
-
-
 def escaped(value: str) -> str:
     """Text in which halves of letters are whole again, or written as JSON escapes."""
     if SURROGATE.search(value) is None:
@@ -225,7 +218,7 @@ def _quoted(value: str) -> str:
 
 
 def _position(pair: tuple[str, Any]) -> tuple[bool, int]:
-    """Names that are numbers stand before others, in their order (10.1.11.1)."""
+    """Names that are numbers come before others, in their order (10.1.11.1)."""
     index = index_of(pair[0])
     return (index < 0, index)
 

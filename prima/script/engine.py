@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 
 import _quickjs as quickjs
 
-from prima.language.values import well_formed, well_formed_json
 from prima.script import sandbox
 from prima.script.ecmascript import UNDEFINED
 from prima.script.evaluation import (
@@ -33,6 +32,7 @@ from prima.script.evaluation import (
 )
 from prima.script.hoisting import Hoisted, hoisted
 from prima.script.names import script_names
+from prima.script.surrogates import well_formed, well_formed_json
 from prima.script.syntax import FAILURES, TIME_LIMIT, Syntax, script_error
 from prima.script.wrapping import Helpers, assignment, guarded, head, wrapped
 
@@ -50,7 +50,7 @@ class Engine:
     """The ECMAScript of one application."""
 
     lost = ""
-    """Why nothing can be evaluated any more: this one is in its caller's process."""
+    """Why nothing can be evaluated any more: never, in the caller's own process."""
 
     def __init__(self, scopes: tuple[str, ...] = SCOPES) -> None:
         context = quickjs.Context()
@@ -73,7 +73,7 @@ class Engine:
         context.eval(sandbox.GUARDS)
         self._help = Helpers(context)
         self.now = self._told = 0
-        """The time by the run's calendar (ms since 1970, UTC): what ``Date`` tells."""
+        """The time by the run's calendar (ms since 1970, UTC), as ``Date`` gives it."""
         self._clocked = False
         """Whether any code may ask for it."""
         self._tick = context.eval(sandbox.CLOCK)(sandbox.DATE)
@@ -135,7 +135,7 @@ class Engine:
         return self._function(names, f"{withs}{{{body}}}")
 
     def _function(self, parameters: str, body: str) -> Any:
-        """A function of the engine; what code in it throws comes out as an error of ours."""
+        """A function of the engine; exceptions of code in it become errors of ours."""
         return self._call(self._context.eval, (guarded(parameters, body),))
 
     def empty(self) -> Scope:
@@ -246,13 +246,13 @@ class Engine:
         """Evaluate an expression that gives an array; its elements, to be :meth:`put`.
 
         Raises:
-            ScriptError: it is no array.
+            ScriptError: it is not an array.
         """
         array = self.listed(code, scopes, most)
         return [Item(array, index) for index in range(self.length(array))]
 
     def listed(self, code: str, scopes: tuple[Scope, ...], most: int) -> Any:
-        """Evaluate an expression that gives an array; a copy of it, which nobody changes."""
+        """Evaluate an expression that gives an array; give a private copy of it."""
         array = self.raw(code, scopes)
         length = self.length(array)
         if length < 0:
@@ -262,7 +262,7 @@ class Engine:
         return self._call(self._help["listed"], (array,))
 
     def length(self, array: Any) -> int:
-        """How many elements an array has; -1 if it is none."""
+        """The number of an array's elements; -1 for anything else."""
         return int(self._call(self._help["items"], (array,)))
 
     def pick(self, scope: Scope, name: str, array: Any, index: int) -> None:
@@ -299,7 +299,7 @@ class Engine:
         self._call(function, scopes, MAX_SCRIPT_SECONDS)
 
     def detach(self, scope: Scope, name: str) -> None:
-        """Let a variable hold a copy of its data, so that nobody else changes it with theirs."""
+        """Let a variable hold a private copy of its data."""
         self._call(self._help["detach"], (scope, name))
 
     def hand(self, scope: Scope, name: str, source: Scope) -> None:

@@ -38,7 +38,7 @@ class IsolatedEngine(Remote):
         self.spent = 0.0
         """Seconds of the processor since the owner last set it to nought."""
         self.maker: Engines | None = None
-        """Who lends the process, for as long as anybody uses it."""
+        """The owner of the process, which has to live as long as the process is used."""
         super().__init__(host, "engine", [as_data(scopes)], self)
         self.nothing = self._call("empty")
         self._lenient: dict[str, str] = {}
@@ -165,7 +165,7 @@ class AbsentEngine:
         self.nothing: Scope = None
 
     def named(self, _name: str) -> Scope:
-        """A scope that nobody can look into."""
+        """A scope that cannot be read."""
 
     def __getattr__(self, name: str) -> Any:
         raise EngineLost(self.lost)

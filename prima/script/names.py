@@ -1,6 +1,6 @@
 """The names that ECMAScript code declares, reads and gives values to, by its scopes.
 
-Code is not run: what ``with`` and ``eval`` do cannot be told (:attr:`Names.opaque`).
+Code is not run: the effects of ``with`` and ``eval`` are unknown (:attr:`Names.opaque`).
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ class Names:
     now: dict[str, int] = field(default_factory=dict)
     """What of that is read outside of functions, unless the code asks for its type as well."""
     uses: list[Use] = field(default_factory=list)
-    """Where names of all these kinds stand, in the order of the text."""
+    """The occurrences of names of all these kinds, in the order of the text."""
     opaque: bool = False
-    """Whether there is more to it than can be told: ``eval``, or code too long to be parsed."""
+    """Whether there may be more names: it has ``eval``, or is too long to be parsed."""
 
     @property
     def free(self) -> Mapping[str, int]:

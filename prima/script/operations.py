@@ -40,7 +40,7 @@ MISSING = object()
 
 
 def sought(name: str, line: int, column: int, scopes: Scopes) -> Any:
-    """A variable that stands in none of the scopes in which most stand.
+    """A variable that is in none of the usual scopes.
 
     Raises:
         ScriptError: nothing declares it.
@@ -52,7 +52,7 @@ def sought(name: str, line: int, column: int, scopes: Scopes) -> Any:
 
 
 def found(name: str, scopes: Scopes, otherwise: Any = UNDEFINED) -> Any:
-    """A variable's value, or what stands for one that nothing declares."""
+    """A variable's value, or ``otherwise`` if nothing declares it."""
     for scope in reversed(scopes):
         if name in scope:
             return scope[name]
@@ -83,8 +83,7 @@ def member(value: Any, key: str, index: int, line: int, column: int, scopes: Sco
             return value
         return value.get(key, UNDEFINED)
     if value is None or value is UNDEFINED:
-        what = "null" if value is None else "undefined"
-        message = f"TypeError: cannot read property '{key}' of {what}"
+        message = f"TypeError: cannot read property '{key}' of {text(value)}"
         raise ScriptError(message, [(line, column)])
     if isinstance(value, str):
         work(scopes, value)

@@ -1,4 +1,4 @@
-"""Engines in another process: how they are called, and what they are given."""
+"""Calls to engines in another process, and their arguments."""
 
 from __future__ import annotations
 

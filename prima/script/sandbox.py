@@ -1,7 +1,7 @@
-"""What ECMAScript of strangers starts with: what makes a run repeatable.
+"""The sandbox for ECMAScript of strangers: its limits, and what makes a run repeatable.
 
 ``Math.random`` is seeded and no clock of the host can be read: ``Date`` is :data:`DATE`, whose clock
-is the run's. What waits, or tells when memory was collected, is not there.
+is the run's. What waits, or tells when memory was collected, is removed.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def reason(text: str, seconds: float) -> str:
 
 
 START = "2005-03-01T10:00:00"
-"""When a run begins by its own calendar, if nobody says (UTC)."""
+"""The date at which a run begins by default (UTC)."""
 
 DATE = source("date.js")
 """``Date`` as ECMAScript has it, in UTC: it reads neither the host's clock nor its time zone.

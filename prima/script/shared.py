@@ -117,7 +117,7 @@ class IsolatedSyntax(Remote):
 
     def _ask(self, codes: list[tuple[str, bool]]) -> None:
         if self._use != self.host.use or self.host.lost:
-            return  # who asks for one of them is told
+            return  # whoever asks for one of them gets the error
         with suppress(ScriptError):
             faults = super()._call("faults", as_data(codes))  # not twice, if it ends the process
             self._faults |= zip(codes, faults, strict=True)

@@ -1,4 +1,4 @@
-"""Whether code is ECMAScript, as the engine tells it, and where it is not."""
+"""Whether code is ECMAScript by the engine, and where it is not."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class Syntax:
         return found
 
     def has_statements(self, code: str) -> bool:
-        """Whether code that should be one expression is none, but could be a script."""
+        """Whether code that should be one expression is a script instead."""
         try:
             self.expression(code)
         except ScriptError:

@@ -1,4 +1,4 @@
-"""An ECMAScript engine for the tags of grammars, in a process of its own.
+"""The ECMAScript engine for the tags of grammars, in a process of its own.
 
 ``Date`` tells the time that is given and ``Math.random`` is seeded, so that a match can be repeated.
 """
@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import _quickjs as quickjs
 
-from prima.language.values import well_formed, well_formed_json
 from prima.script.budget import TIME_LIMIT
 from prima.script.evaluation import ScriptError
 from prima.script.sandbox import (
@@ -26,6 +25,7 @@ from prima.script.sandbox import (
     reason,
     source,
 )
+from prima.script.surrogates import well_formed, well_formed_json
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -75,7 +75,7 @@ class TagEngine:
     def __init__(self, others: int = 0) -> None:
         """``others`` is how many sandboxes the same utterance has already."""
         self.now, self._told = 0, -1
-        """The time that the tags are told (ms since 1970, UTC)."""
+        """The time that the tags see (ms since 1970, UTC)."""
         self.spent = 0.0
         """Seconds of the processor that the tags of this utterance have taken."""
         context = quickjs.Context()

@@ -1,4 +1,4 @@
-"""The names in a syntax tree of ECMAScript, and the scopes in which they stand."""
+"""The names in a syntax tree of ECMAScript, and their scopes."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Walk:
         return self
 
     def tell(self, node: Node, how: str, scope: Scope) -> None:
-        """A name stands there."""
+        """Note a name."""
         self.found.append((self.code.start(node), self.code.of(node), how, scope))
 
     def push(self, node: Node | None, scope: Scope) -> None:

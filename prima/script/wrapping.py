@@ -33,7 +33,7 @@ class Helpers(dict[str, Any]):
 
 
 def guarded(parameters: str, body: str) -> str:
-    """A function; what code in it throws comes out as an error of ours."""
+    """The code of a function; exceptions of code in it become errors of ours."""
     if EVALUATING.search(body):  # it might declare anything, also in our function
         return f"{GUARD}(function({parameters}){{{body}}})"
     caught = f"catch({STRANGE}){{throw {SAFE}({STRANGE})}}"

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 from urllib.parse import urldefrag
 
-from prima.interpreter.content import MAX_REPEATS, MAX_TEXT
+from prima.interpreter.content import MAX_REPEATS
+from prima.interpreter.expressions import MAX_TEXT
 from prima.interpreter.places import short, source
 from prima.interpreter.transfers import Thrown, failure
 from prima.language.commands import TABLE_4_2
