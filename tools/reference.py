@@ -41,14 +41,6 @@ from prima.language.commands import LONGEST_TURN_MS, TABLE_4_2, CommandType
 from prima.language.values import KINDS, LONGEST_MS
 from prima.lsp.descriptions import VOICEXML_ATTRIBUTES
 from prima.markup.limits import LIMITS
-from prima.markup.rnc import make_rnc
-from prima.markup.schema import (
-    XML_SCHEMA,
-    make_catalog,
-    make_guest_schema,
-    make_locating_rules,
-    make_schema,
-)
 from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
 from prima.scheduler import failures, starvation
 from prima.script import budget, evaluation, host, parse, sandbox, syntax
@@ -57,6 +49,14 @@ from prima.transcript import lines
 from prima.transcript.record import PHASES, model
 from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, VALUES, VOICEXML
+from tools.rnc import make_rnc
+from tools.xsd import (
+    XML_SCHEMA,
+    make_catalog,
+    make_guest_schema,
+    make_locating_rules,
+    make_schema,
+)
 
 ROOT = Path(__file__).resolve().parent.parent
 VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO, USER, SERVICES)

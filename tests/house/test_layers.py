@@ -55,7 +55,7 @@ INSIDE = {
     "markup": [
         {"limits", "sniff", "uris", "vocabulary", "tree"},
         {"edits", "encodings", "hints", "spans", "wellformed"},
-        {"build", "check", "rnc", "schema"},
+        {"build", "check"},
         {"reader"},
         {"__init__"},
     ],

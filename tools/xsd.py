@@ -74,7 +74,7 @@ def make_schema(vocabulary: Vocabulary) -> str:
 
 
 def make_guest_schema(guests: Guests) -> str:
-    """Give the XML Schema 1.0 of elements that stand in documents of another namespace."""
+    """Give the XML Schema 1.0 of elements in documents of another namespace."""
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
         '<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema"',

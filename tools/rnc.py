@@ -38,7 +38,7 @@ def make_rnc(vocabulary: Vocabulary) -> str:
 
 
 def _foreign(vocabulary: Vocabulary) -> list[str]:
-    """The elements of other namespaces, where any may stand."""
+    """The elements of other namespaces, where any are allowed."""
     if not vocabulary.open:
         return []
     if vocabulary.guests is None:
