@@ -56,7 +56,7 @@ class _Reader:
     """Makes parts of what the parser finds, as it finds it; notes what is wrong and goes on.
 
     A method in capitals gets a token (abnf.lark says which) as soon as it is taken, any other
-    one what stands in a whole rule of that grammar.
+    one the parts of a whole rule of that grammar.
     """
 
     def __init__(self, source: Source, document: Document, problems: Problems) -> None:
@@ -189,7 +189,7 @@ class _Reader:
         """Those before, if any, and one more, which may have a language and a repeat."""
         before: list[Part | str] = found.pop(0) if isinstance(found[0], list) else []
         part, *more = found
-        for times in more:  # a language stands here as None
+        for times in more:  # a language is None
             if times is not None:
                 part = Repeat(self._words([part]) if isinstance(part, str) else part, *times)
         before.append(part)
@@ -265,7 +265,7 @@ class _Reader:
         return self._token(text, token)
 
     def _no_question_mark(self, token: Token) -> bool:
-        """Refuse the sign that is kept back wherever a repeat may stand (2.5)."""
+        """Refuse the sign that is reserved after an expansion (2.5)."""
         if "?" not in token:
             return False
         message = f'"{token[:40]}" has a question mark, which is reserved after an expansion.'

@@ -1,4 +1,4 @@
-"""What is wrong where a text in the ABNF form of SRGS goes on as none does."""
+"""Syntax errors of the ABNF form of SRGS, with remedies."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ _EXPECTED = {
     "TEXT": "a text in quotes",
     "IS": "the word is",
 }
-"""What is named of all that may stand in a place: the first that may."""
+"""Descriptions of what may come next, likeliest first: the first that is possible is named."""
 _CLOSING = {"RPAR": '")"', "RSQB": '"]"', "SEMICOLON": '";"'}
-"""What ends alternatives: named where they may go on, too."""
+"""What ends alternatives: named where they may also continue."""
 _RESERVED = {
     "}": "A tag that holds a } itself is written {!{ ... }!}.",
     "!": "A language stands only after a token, a rule or a bracket, before its repeat: oui!fr<2>.",
@@ -47,7 +47,7 @@ _UNCLOSED = {
 
 
 def unexpected(source: Source, error: UnexpectedInput) -> Problem:
-    """Something stands where it cannot stand."""
+    """The problem of something in the wrong place."""
     text = source.text
     token = error.token if isinstance(error, UnexpectedToken) else None
     if token is not None and token.type == "$END":

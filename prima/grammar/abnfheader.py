@@ -65,10 +65,10 @@ def _encoding(data: bytes) -> str:
 
 
 def header_end(source: Source) -> int:
-    """Where the header ends, which has the first line for itself (4.1).
+    """The offset at which the header ends, which has the first line for itself (4.1).
 
     Raises:
-        GrammarError: there is none, or not of a version that is known, or its line goes on.
+        GrammarError: it is missing, its version is unknown, or its line goes on.
     """
     header = HEADER.match(source.text)
     if header is None or header[1] != "1.0":

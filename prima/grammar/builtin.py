@@ -19,7 +19,7 @@ from prima.grammar.text import fold, wide
 if TYPE_CHECKING:
     from prima.messages import Json
 
-YES = {  # by language; a type that is told none takes all of them
+YES = {  # by language; without a language all count
     "en": "yes|yeah|yep|yup|yes please|yes i do|yes you may|yes it is|yes sir|yes maam|yes thats right|sure"
     "|of course|ok|okay|correct|right|thats right|thats correct|that is right|that is correct"
     "|true|affirmative|absolutely|definitely|certainly|uh huh|i do|it is",
@@ -58,10 +58,10 @@ CURRENCIES |= {
 }
 CURRENCIES |= {code.lower(): code for code in CURRENCIES.values()}
 MOST_WORDS = 20
-"""A longer amount of money without its currency is none."""
+"""Words of an amount of money without a currency, at most."""
 PARTS = {"cent": "", "cents": "", "penny": "", "pennies": "", "pence": "GBP", "p": "GBP",
          "セント": ""}  # fmt: skip
-"""Hundredths, with the currency if they tell it."""
+"""Hundredths, with the currency if they imply one."""
 
 
 class Conflict(ValueError):
@@ -93,7 +93,7 @@ def built_in(uri: str, mode: str, lang: str) -> BuiltIn:
     """The built-in type that a URI names.
 
     Raises:
-        ValueError: there is none of that name, or not with such parameters.
+        ValueError: there is no type of that name, or it does not have such parameters.
     """
     match = _URI.fullmatch(uri)
     name = match[1] if match else ""

@@ -41,7 +41,7 @@ _PASSED_OVER = {"the", "of", "on", "in", "year"} | {
 }
 DAYS = range(1, 32)
 YEARS = range(1500, 3000)
-"""Years that are understood alone, without a month."""
+"""Years that are understood without a month."""
 
 
 def date(text: str, folded: str) -> str | None:
@@ -87,7 +87,7 @@ def _without_month(words: list[str]) -> str | None:
     if year in YEARS:
         return _written(year, None, None)
     said = " ".join(words)
-    counted = cardinal(said) is not None  # "five" is no day, "fifth" is
+    counted = cardinal(said) is not None  # "fifth" is a day, "five" is not
     day = None if counted or not words else ordinal(said)
     return None if day is None else _written(None, None, day)
 

@@ -58,7 +58,7 @@ class _Reader:
         self.document = Document("", partial(node.place_of, ""), dialect="last")
 
     def grammar(self) -> Grammar:
-        """The grammar; what is wrong is noted, and leads to a rule that takes nothing."""
+        """The grammar; wherever a problem is noted, a rule takes nothing."""
         node, rules = self.node, self.node.all("rule")
         for rule in rules:
             self._rule(rule)
@@ -85,7 +85,7 @@ class _Reader:
         return found
 
     def _rule_named(self, node: Node, name: str, attribute: str, told: bool = False) -> Rule:
-        """A rule, or one that takes nothing where there is none."""
+        """A rule by its name, or one that takes nothing."""
         found = self.document.rules.get(name)
         if found is not None:
             return found
@@ -95,7 +95,7 @@ class _Reader:
         return self._define(name, choice([], []))
 
     def _resolve(self, node: Node) -> None:
-        """Every ruleref names a rule; one without # has been told by the schema's check."""
+        """Resolve all references; those without # have been reported by the schema's check."""
         names = {}
         for one in node.walk():
             if one.tag == "ruleref":

@@ -84,7 +84,7 @@ class Grammar:
 
     @property
     def uri(self) -> str:
-        """Where the grammar is from, as far as that was told."""
+        """The URI of the grammar, if it is known."""
         return self._document.uri
 
     @property

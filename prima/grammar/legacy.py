@@ -1,8 +1,8 @@
-"""Tags of the time before SISR 1.0, and tags whose format is not told.
+"""Tags of the time before SISR 1.0, and tags without a declared format.
 
 SRGS leaves open what a tag holds where no tag format is declared. Documents of the VoiceXML 2.0
 era write slots (``city='Boston'``), the rule variable as ``$`` (``$.city = $$``), or a value by
-itself; each is told by its looks and put as a script of SISR 1.0.
+itself; each is recognised by its form and rewritten as a script of SISR 1.0.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ FORMATS = {
     "swi-semantics/1.0": "legacy",
     "lumenvox/1.0": "legacy",
 }
-"""Tag formats and how their tags are read; where none is told, the tags decide."""
+"""Tag formats and how their tags are read; without a format the tags decide."""
 
 _STRING = r"""(?P<text>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*')"""
 _OWN = frozenset(["out", "rules", "meta"])
@@ -93,7 +93,7 @@ def _is_sisr(code: Code, node: Node) -> bool:
 
 
 def _signs(code: str) -> list[tuple[int, int, str]]:
-    """Where the drafts' variables stand in code: offsets and names."""
+    """The drafts' variables in code: offsets and names."""
     parsed = parse_script(code) if "$" in code else None
     found = []
     for node in parsed.walk() if parsed is not None else ():
@@ -146,7 +146,7 @@ def _from_dollars(code: str) -> str:
 
 
 def _slots(code: str) -> list[tuple[str, str]]:
-    """The slots that a tag fills, with what; none if it is no list of assignments."""
+    """The slots that a tag fills, with what; none if it is not a list of assignments."""
     if _ALL_GSL.fullmatch(code):
         return [(match[1], match[2]) for match in _GSL.finditer(code)]
     if "=" not in code:

@@ -27,7 +27,7 @@ MOST_BYTES = 20_000_000
 
 Fetch = Callable[[str], bytes]
 Refusal = Callable[[str, str], str]
-"""Tells why one grammar may not refer to another, by their URIs; nothing if it may."""
+"""Gives the reason why one grammar may not refer to another, by their URIs; empty if it may."""
 Read = Callable[["Library", str, bytes, str], Document]
 """Reads the bytes of a URI, of a media type if it is told, into a document."""
 FAILURES = (OSError, LookupError, ValueError, PrimaError)
@@ -202,7 +202,7 @@ def joined(base: str, uri: str, where: Where) -> str:
     """A URI as it is meant at a base.
 
     Raises:
-        GrammarError: one of them is no URI.
+        GrammarError: one of them is not a URI.
     """
     try:
         urlsplit(uri)

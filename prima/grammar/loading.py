@@ -9,12 +9,7 @@ from urllib.parse import urldefrag
 
 from prima.errors import DocumentError, Place, did_you_mean
 from prima.grammar.builtin import TYPES, Conflict, built_in
-from prima.grammar.errors import (
-    GrammarError,
-    UnsupportedBuiltIn,
-    UnsupportedLanguage,
-    refuse,
-)
+from prima.grammar.errors import GrammarError, UnsupportedBuiltIn, UnsupportedLanguage, refuse
 from prima.grammar.grammar import Grammar
 from prima.grammar.linking import Fetch, Library, Refusal, joined
 from prima.grammar.media import ABNF_TYPES, check_form, check_known, check_no_text, media_type
@@ -49,10 +44,10 @@ def load(
         source: a ``<grammar>`` element inside a document, the text or bytes of a whole file in
             either form of SRGS 1.0, a ``builtin:`` URI, or the name of a built-in type.
         base: where the file is from, or the document that holds the element.
-        lang: the language of an element or a built-in type that does not tell its own.
-        mode: the mode of an element or a built-in type that does not tell its own.
+        lang: the language of an element or a built-in type that does not declare its own.
+        mode: the mode of an element or a built-in type that does not declare its own.
         fetch: gives the bytes of a grammar that is referred to; without it there are none.
-        refusal: tells why one grammar may not refer to another, by their URIs; nothing if it may.
+        refusal: gives the reason why one grammar may not refer to another, by their URIs; empty if it may.
         type: the media type, where it is known.
         rule: the rule to match in place of the root.
         languages: whether a language is taken; without it every one is.
@@ -64,7 +59,7 @@ def load(
         UnsupportedFormat: the media type, or the format of the tags, is not known.
         UnsupportedLanguage: ``languages`` does not take the grammar's language.
         UnsupportedBuiltIn: there is no such built-in type.
-        GrammarError: the grammar is no legal one.
+        GrammarError: the grammar is not legal.
     """
     library = Library(fetch, partial(_document, lang, lenient), refusal)
     if isinstance(source, str) and _NAMED.fullmatch(source.strip()):

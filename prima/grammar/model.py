@@ -157,7 +157,7 @@ class Document:
     dialect: str = ""
     """How tags are read: ``script``, ``literals``, ``legacy``, or ``last`` (PRIMA's own language)."""
     faults: dict[str, str] = field(default_factory=dict)
-    """Scripts of tags that were needed, and why each is none by itself; empty if it is one."""
+    """Scripts of tags that were needed, and why each is not well-formed by itself; empty if it is."""
     form: Form = "XML"
     merges: bool = False
     """Whether slots that referenced rules fill are those of the rule that refers."""

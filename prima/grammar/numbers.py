@@ -55,7 +55,7 @@ _ONE_DIGIT = re.compile(
     )
 )
 MOST_FIGURES = 100
-"""A longer number is none."""
+"""Figures that a number may have."""
 _FIGURES = re.compile(r"[0-9]{1,3}(?:,[0-9]{3})+|[0-9]+")
 _DECIMAL = re.compile(r"([0-9]{1,3}(?:,[0-9]{3})+|[0-9]*)\.([0-9]+)|([0-9]+),(?![0-9]{3}$)([0-9]+)")
 """A decimal point, or a decimal comma where it divides no thousands."""
@@ -187,7 +187,7 @@ def _sign(text: str) -> tuple[str, str]:
 
 
 def _fraction(text: str) -> tuple[str, str | None]:
-    """What stands before and after the decimal point; None after it if that is no digits."""
+    """What is before and after the decimal point; None for anything but digits after it."""
     if match := _DECIMAL.fullmatch(text):
         return (match[1], match[2]) if match[2] else (match[3], match[4])
     match = _POINT.fullmatch(text)

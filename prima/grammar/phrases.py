@@ -1,4 +1,4 @@
-"""Some of what a question takes, to be offered to somebody who types, or looked for in what is heard."""
+"""Some answers that a question takes, to offer to users who type, or to look for in what is heard."""
 
 from __future__ import annotations
 

@@ -23,11 +23,11 @@ from prima.grammar.model import (
 from prima.grammar.text import join
 
 MOST_PREFIXES = 16
-"""How many beginnings of one part are told apart."""
+"""Beginnings of one part that are distinguished."""
 MOST_LETTERS = 200
 """Characters of a beginning up to which what follows is added to it."""
 MAX_DEPTH = 40
-"""How deep in parts and rules beginnings are looked for."""
+"""Depth of parts and rules to which beginnings are looked for."""
 
 
 class Prefix(NamedTuple):

@@ -221,17 +221,17 @@ def _result(frame: Frame, first: int) -> _Result:
 
 
 def _check(tags: list[tuple[Tag, str]], document: Document, engine: Any) -> None:
-    """Each tag is a script by itself (SISR 1.0 section 3); whether it is one is asked once.
+    """Check that each tag is a script by itself (SISR 1.0 section 3); each is checked once.
 
     Raises:
-        Failure: one is none.
+        Failure: one is not.
     """
     known = document.faults
     for tag, code in tags:
         fault = known.get(code)
         if fault is None:
             fault = engine.fault(code)
-            if not fault or fault.startswith("SyntaxError"):  # all else is want of room
+            if not fault or fault.startswith("SyntaxError"):  # anything else is lack of memory
                 known[code] = fault
         if fault:
             raise _failure(tag, fault)

@@ -1,4 +1,4 @@
-"""What is wrong with the tags of a grammar, as far as their text tells."""
+"""Problems of a grammar's tags that their text shows."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ def decimal(text: str, kind: str) -> float:
     """Read a weight: a number of nought or more, without exponent (SRGS 2.4.1).
 
     Raises:
-        ValueError: it is no such number.
+        ValueError: it is not such a number.
     """
     if _DECIMAL.fullmatch(text.strip()) is None or len(text) > 40:
         raise ValueError(f'{kind} "{text[:40]}" is not a number such as 0.5 or 3.')
@@ -65,7 +65,7 @@ def probability(text: str) -> float:
     """Read a repeat probability (SRGS 2.5.1).
 
     Raises:
-        ValueError: it is no number from 0 to 1.
+        ValueError: it is not a number from 0 to 1.
     """
     value = decimal(text, "repeat-prob")
     if value > 1:

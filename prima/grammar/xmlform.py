@@ -29,7 +29,7 @@ MAX_DEPTH = 100
 def read_xml(
     node: Node, document: Document, problems: Problems, inline: bool, lenient: bool = False
 ) -> None:
-    """Read a <grammar> element into a document; ``inline`` where it stands in another one.
+    """Read a <grammar> element into a document; ``inline`` if it is part of another one.
 
     ``lenient`` takes a file without a namespace for SRGS.
     """
@@ -51,7 +51,7 @@ class _Reader(Checker):
         spaces = (SRGS, "") if self.lenient else (SRGS,)
         if node.tag != "grammar" or (not self.inline and node.namespace not in spaces):
             remedy = f'Begin with <grammar xmlns="{SRGS}" version="1.0" ...>.'
-            self.note(node, "wrong-root", f"<{node.tag}> is no grammar of SRGS.", remedy)
+            self.note(node, "wrong-root", f"<{node.tag}> is not a grammar of SRGS.", remedy)
             return
         self.space = node.namespace
         self.attributes(node, VOICEXML if self.inline else {"scope"})

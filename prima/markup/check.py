@@ -64,7 +64,7 @@ def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
     """Find the vocabulary of a document by its root element's namespace.
 
     Raises:
-        DocumentError: it is none of them.
+        DocumentError: it belongs to no vocabulary of these.
     """
     for vocabulary in vocabularies:
         if root.namespace == vocabulary.namespace:
@@ -98,7 +98,7 @@ def _no_document(root: Node, vocabularies: Sequence[Vocabulary]) -> Problem:
 
 
 def kind_of(root: Node) -> str:
-    """What document an element is the root of, such as ``a world``; nothing where it is none."""
+    """The kind of document that an element is the root of, such as ``a world``; or nothing."""
     if root.tag == "vxml" and root.namespace in ("", "http://www.w3.org/2001/vxml"):
         return VOICEXML
     return DOCUMENTS.get(root.namespace, "")
@@ -115,7 +115,7 @@ def _as_application(root: Node) -> str:
 
 
 def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem]) -> None:
-    """Give every node its table key, and add what is wrong by the table of elements."""
+    """Give every node its table key, and add the problems that the table of elements shows."""
     namespace = vocabulary.namespace
     known: dict[str, _Rules] = {}
     read: dict[str, set[str]] = {}
@@ -144,7 +144,7 @@ def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem]) -> N
 
 
 class _Rules:
-    """What the table says of elements of one key, at hand for all of them in a document."""
+    """The table's rules for elements of one key, kept for all of them in a document."""
 
     def __init__(self, vocabulary: Vocabulary, key: str, read: dict[str, set[str]]) -> None:
         self.element = vocabulary.elements[key]
@@ -152,8 +152,9 @@ class _Rules:
         self.children = vocabulary.children(key)
         self.required = [item for item in self.element.attributes if item.required]
         self.values: dict[str, tuple[set[str], Callable[[str], object] | None]] = {}
-        """Values that are right, by attributes, and what reads others if there may be others;
-        those that have been read are kept by kinds in ``read``: most are written again and again."""
+        """Correct values by attributes, and what reads others, if others are allowed.
+
+        Values that have been read are kept by kinds in ``read``: most occur many times."""
         for name, (item, is_expression) in self.known.items():
             kind = "expression" if is_expression else item.kind
             if item.choices and not is_expression:

@@ -22,9 +22,9 @@ def parse(file: str, data: bytes, vocabularies: Sequence[Vocabulary] = ()) -> No
     """Parse bytes into nodes.
 
     Args:
-        file: the name by which places are told.
+        file: its name in places.
         data: the bytes.
-        vocabularies: whose elements may be meant, to tell a slip in an opening tag.
+        vocabularies: languages to which a misspelt opening tag may belong.
 
     Raises:
         DocumentError: not well-formed, or beyond a limit.
@@ -64,10 +64,10 @@ def _beyond(much: TooMuch) -> DocumentError:
 
 
 def read_tree(file: str, data: bytes, *vocabularies: Vocabulary) -> tuple[Node, list[Problem]]:
-    """Read a document of one of the vocabularies; the problems are those of its schema.
+    """Read a document of one of the vocabularies; give it with the problems that its schema shows.
 
     Raises:
-        DocumentError: no tree can be given: not XML, or not such a document at all.
+        DocumentError: it is not XML, or not such a document at all.
     """
     root = parse(file, data, vocabularies)
     problems: list[Problem] = []

@@ -45,41 +45,41 @@ REMEDIES = (
     (r"EntityRef|xmlParseEntityRef", "Write &amp; for &."),
     (r"attributes construct error", "Put a space between attributes, and quote their values."),
     (r"AttValue", 'Write the value in quotes: name="value".'),
-    (r"Extra content at the end", "A document has one root element; nothing may stand after it."),
+    (r"Extra content at the end", "A document has one root element, and nothing after it."),
     (r"StartTag: invalid element name", "Write &lt; for a < that begins no tag."),
     (r"XML declaration allowed only", "Move it to the very beginning of the file."),
     (r"Specification mandates value", 'Write the value in quotes: name="value".'),
-    (r"error parsing attribute name", "Close the tag with >, or remove what is no attribute."),
+    (r"error parsing attribute name", "Close the tag with >, or remove what is not an attribute."),
     (r"Sequence '\]\]>'", "Write ]]&gt;."),
     (r"[Cc]omment", "A comment ends with --> and holds no --."),
     (r"CData", "It ends with ]]>."),
 )  # fmt: skip
 """The parser's words, and what the author may do."""
 PLAINER = (
-    (r"xmlParseEntityRef: no name", "an & stands alone"),
+    (r"xmlParseEntityRef: no name", "an & is not escaped"),
     (r"EntityRef: expecting ';'", "an & begins no character's name, or lacks its ;"),
     (r"AttValue: \" or ' expected", "an attribute's value has no quotes"),
     (r"Specification mandates value for attribute (\S+)", 'the attribute "{0}" has no value'),
     (r"attributes construct error", "an attribute is written wrongly"),
-    (r"error parsing attribute name", "what stands here is no attribute"),
+    (r"error parsing attribute name", "the name of an attribute is expected here"),
     (MISMATCH, "</{2}> does not end <{0}>"),
     (r"Premature end of data in tag (\S+) line (\d+)", "the file ends inside <{0}>"),
     (r"StartTag: invalid element name", "a < begins no tag"),
-    (r"Unescaped '<' not allowed in attributes values", "a < stands in an attribute's value"),
+    (r"Unescaped '<' not allowed in attributes values", "a < is in an attribute's value"),
     (r"Namespace prefix (\S+) on (\S+) is not defined", 'the prefix "{0}" is not declared'),
 )
 """The parser's words, and plainer ones."""
 BEGINNINGS = ((MISMATCH, "</"), (r"Namespace prefix (\S+) on", "<{0}:"), ("Entity", "&"))
 """The parser's words for mistakes whose ends it names, and how they begin on the same line."""
 WIDE = {
-    **dict.fromkeys("“”„″＂「」『』", 'A typographic quote stands here: write ".'),
-    **dict.fromkeys("‘’‚＇", "A typographic quote stands here: write '."),
+    **dict.fromkeys("“”„″＂「」『』", 'This is a typographic quote: write ".'),
+    **dict.fromkeys("‘’‚＇", "This is a typographic quote: write '."),
     **dict.fromkeys(
-        "\u3000\u00a0\u2003\u202f", "A space of another kind stands here: type an ordinary one."
+        "\u3000\u00a0\u2003\u202f", "This is a space of another kind: type an ordinary one."
     ),
-    "＝": "An equals sign of full width stands here: write =.",
-    "／": "A slash of full width stands here: write /.",
-    "＞": "A bracket of full width stands here: write >.",
+    "＝": "This equals sign has full width: write =.",
+    "／": "This slash has full width: write /.",
+    "＞": "This bracket has full width: write >.",
 }
 """Characters that editors put in place of those of XML, and what to write."""
 OPEN_QUOTE = re.compile(r"""=\s*(["'])[^"'<]*\Z""")
@@ -142,7 +142,7 @@ def _check_prolog(source: Source) -> None:
     try:
         parser.Parse(source.text.encode(), True)
     except (_Seen, expat.ExpatError):
-        return  # lxml says better what is not well-formed
+        return  # lxml has better messages
 
 
 def _misspelt(
