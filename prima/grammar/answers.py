@@ -27,9 +27,9 @@ class Answers:
     type: str = ""
 
     def match(self, text: str, budget: Budget | None = None, tell: Tell | None = None) -> Json:
-        """The value of an utterance, or None where it is no answer.
+        """The value of an utterance, or None if it is not an answer.
 
-        A grammar of which a tag fails does not take the utterance; ``tell`` is told why.
+        A grammar of which a tag fails does not take the utterance; ``tell`` gets the reason.
         """
         said = fold(text)
         if said in self.options:

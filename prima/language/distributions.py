@@ -33,9 +33,9 @@ Quantile = Callable[[float], float]
 
 
 def share(seed: int, path: str) -> float:
-    """A number from 0 to 1 of a seed and the path of what is drawn.
+    """A number from 0 to 1, determined by a seed and the path of the value to draw.
 
-    Each path has a stream of its own: what else is drawn does not change it.
+    Each path has its own stream: other draws do not change it.
     """
     return Random(f"{seed}/{path}").random()
 
@@ -173,6 +173,20 @@ class Distributions:
 
         Bare numbers are seconds where times are wanted.
         """
+        lines = self._lines(name)
+        head = lines[0] if lines else []
+        if column and column not in head:
+            raise ValueError(f'{name} has no column "{column}".')
+        place = head.index(column) if column else 0
+        titled = column or (head and not re.match(r"[-+.\d]", head[0]))
+        texts = [row[place].strip() for row in lines[bool(titled) :] if place < len(row)]
+        return [self._with_unit(one) for one in texts if one]
+
+    def _with_unit(self, text: str) -> str:
+        return f"{text}s" if self.kind == "duration" and re.fullmatch(r"[\d.]+", text) else text
+
+    def _lines(self, name: str) -> list[list[str]]:
+        """The lines of a CSV file that are not empty."""
         try:
             with (Path(self.folder or "") / name).open(encoding="utf-8-sig", newline="") as stream:
                 lines = [row for row in islice(csv.reader(stream), MOST_VALUES + 2) if row]
@@ -181,13 +195,4 @@ class Distributions:
             raise ValueError(f"{name} cannot be read: {why}.") from None
         if len(lines) > MOST_VALUES:
             raise ValueError(f"{name} has more than {counted(MOST_VALUES, 'value')}.")
-        place = 0
-        if column:
-            if not lines or column not in lines[0]:
-                raise ValueError(f'{name} has no column "{column}".')
-            place = lines[0].index(column)
-        if column or (lines and not re.match(r"[-+.\d]", lines[0][0])):
-            lines = lines[1:]
-        unit = "s" if self.kind == "duration" else ""
-        texts = [row[place].strip() for row in lines if place < len(row)]
-        return [f"{one}{unit}" if re.fullmatch(r"[\d.]+", one) else one for one in texts if one]
+        return lines

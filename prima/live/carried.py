@@ -8,8 +8,9 @@ from prima.devices.goals import RECORD, Begin
 from prima.devices.profile import Profile
 from prima.errors import Problem, few
 from prima.errors.diagnoses.names import UNSUPPORTED_COMMAND
+from prima.interpreter.acts import CommandTemplate
 from prima.interpreter.checks.facts import document_commands
-from prima.interpreter.elements import CommandTemplate, Document
+from prima.interpreter.elements import Document
 from prima.live.driver import Driver
 from prima.messages import Command, Json
 from prima.session import AnyDocument

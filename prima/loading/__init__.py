@@ -51,8 +51,8 @@ from prima.loading.diagnoses import (
 from prima.loading.files import Folder, path_of, read_file
 from prima.markup.check import check_root, kind_of
 from prima.markup.limits import LIMITS
-from prima.markup.opening import root_of
 from prima.markup.reader import parse
+from prima.markup.sniff import root_of
 from prima.markup.spans import value_span
 
 if TYPE_CHECKING:

@@ -38,7 +38,7 @@ from prima.messages import (
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.policy import Policy
 from prima.scheduler.recorder import Recorder
-from prima.script.prelude import START
+from prima.script.sandbox import START
 from prima.session.applications import AnyApp, AnyDocument, Applications
 from prima.session.hearing import Hearing
 from prima.session.wiring import Wiring

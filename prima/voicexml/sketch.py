@@ -11,31 +11,33 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property
 from urllib.parse import urldefrag, urlsplit
 
-from prima.interpreter.elements import (
+from prima.interpreter.acts import (
     Act,
     Assign,
-    Block,
     Clear,
     CommandTemplate,
-    Document,
     Exit,
     Expression,
-    Field,
-    Filled,
     Foreach,
-    Form,
     Goto,
     Handler,
     If,
-    Item,
     Pause,
-    Prompt,
     Return,
     Run,
     StepTemplate,
-    Subdialog,
     Text,
     Throw,
+)
+from prima.interpreter.elements import (
+    Block,
+    Document,
+    Field,
+    Filled,
+    Form,
+    Item,
+    Prompt,
+    Subdialog,
     Unit,
 )
 from prima.interpreter.entering import Target

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from prima.interpreter.content import MAX_TEXT
+from prima.interpreter.expressions import MAX_TEXT
 from prima.messages import Cue
 from prima.voicexml.cues import clipped, fold
 
