@@ -134,6 +134,8 @@ INSIDE = {
         {"layout", "model"},
         {"labels", "run", "svg"},
         {"throws"},
+        {"transitions"},
+        {"voicenodes"},
         {"cards", "dialogue", "gantt", "text", "treepicture", "voicexml"},
         {"worldmap"},
         {"__init__"},
