@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from pathlib import PurePath
 
 from prima.graph.labels import (
@@ -222,22 +223,18 @@ _Scope = Sequence[Taker[Act]]
 
 def _hints(document: Document, form: Form | None) -> dict[str, list[str]]:
     """The known sources of events in a state: links, watches, its own delays."""
-    links = [*document.links, *(form.links if form else [])]
-    watches = [*document.watches, *(form.watches if form else [])]
+    parts: list[Document | Form] = [document, form] if form else [document]
     contents: list[Sequence[Act]] = [handler.content for handler in document.handlers]
     contents += _contents(form) if form else []
-    sent = [act for content in contents for act in all_acts(content) if isinstance(act, SendOut)]
-    return known(
-        [
-            *(
-                (one.event, f"said {sayings(one.node.all('grammar'))}")
-                for one in links
-                if one.event
-            ),
-            *((watch.name, clean(watch.when.code)) for watch in watches),
-            *((act.event, _when(act)) for act in sent if act.event),
-        ]
-    )
+    sources: list[tuple[str, str]] = []
+    for link in chain.from_iterable(part.links for part in parts):
+        sources.append((link.event, f"said {sayings(link.node.all('grammar'))}"))
+    for watch in chain.from_iterable(part.watches for part in parts):
+        sources.append((watch.name, clean(watch.when.code)))
+    for act in chain.from_iterable(map(all_acts, contents)):
+        if isinstance(act, SendOut):
+            sources.append((act.event, _when(act)))
+    return known(source for source in sources if source[0])
 
 
 def _when(act: SendOut) -> str:

@@ -25,7 +25,6 @@ LEGEND = (
 
 def draw(history: History) -> str:
     """The streams' history as SVG."""
-    title = history.title
     names = [stream.name for stream in history.streams]
     left = MARGIN + min(max([measure(name, 11.5) for name in names], default=0) + 12, 240)
     end = max(history.end, 0.001)
@@ -33,15 +32,7 @@ def draw(history: History) -> str:
     width = left + PLOT + MARGIN + 30
     top = MARGIN + 30
     bottom = top + ROW * len(names)
-    parts = [text(MARGIN, MARGIN + 8, title, "name")]
-    step = next((one for one in STEPS if end / one <= 12), STEPS[-1])
-    for tick in range(int(end // step) + 1):
-        x = left + tick * step * scale
-        parts += [
-            line(x, top - 2, x, bottom + 4, "grid"),
-            text(x - 3, bottom + 16, f"{tick * step}", "small"),
-        ]
-    parts.append(text(MARGIN, bottom + 16, "seconds", "small"))
+    parts = [text(MARGIN, MARGIN + 8, history.title, "name"), *_axis(left, end, top, bottom)]
     for number, stream in enumerate(history.streams):
         shade = history.shades.get(stream.app, NOBODY)
         parts += _row(stream, shade, left, top + ROW * number, scale)
@@ -50,7 +41,20 @@ def draw(history: History) -> str:
         mark = line(x, y - 4, x + 22, y - 4) if kind == "line" else box(x, y - 10, 22, 12, kind, 2)
         parts += [mark, text(x + 28, y, words, "small")]
         x += 46 + measure(words, 10)
-    return picture(title, told(history), width, y + MARGIN, parts)
+    return picture(history.title, told(history), width, y + MARGIN, parts)
+
+
+def _axis(left: float, end: float, top: float, bottom: float) -> list[str]:
+    """The grid, and its times in seconds."""
+    parts = []
+    step = next((one for one in STEPS if end / one <= 12), STEPS[-1])
+    for tick in range(int(end // step) + 1):
+        x = left + tick * step * PLOT / end
+        parts += [
+            line(x, top - 2, x, bottom + 4, "grid"),
+            text(x - 3, bottom + 16, f"{tick * step}", "small"),
+        ]
+    return [*parts, text(MARGIN, bottom + 16, "seconds", "small")]
 
 
 def _applications(history: History) -> list[tuple[str, str]]:

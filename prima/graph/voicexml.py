@@ -132,14 +132,8 @@ class _Reader(Transitions[Node]):
         if dialog.tag == "menu":
             self._choices(dialog)
         own = takers(dialog)
-        parts = parts_of(dialog)
-        units = [one for one in dialog.nodes if is_unit(one)]
-        many = sum(one.tag in ASKING for one in parts) > 1
-        for item in (one for one in parts if one.tag in ITEMS):
-            around = [takers(one) for one in units if item in one.nodes]
-            self.scopes = [takers(item), *around, own, *self.outer]
-            self._item(item, many)
-        for unit in units:
+        self._items(dialog, own)
+        for unit in filter(is_unit, dialog.nodes):
             self.scopes = [takers(unit), own, *self.outer]
             self.handlers(takers(unit))
         self.scopes = [own, *self.outer]
@@ -149,6 +143,16 @@ class _Reader(Transitions[Node]):
         self.handlers(own)
         if dialog.tag == "form" and not leaves_at_its_end(dialog):
             self.graph.edge(self.here, "", "exit", "at its end")
+
+    def _items(self, dialog: Node, own: Sequence[Taker[Node]]) -> None:
+        """Add the transitions of a dialog's items."""
+        parts = parts_of(dialog)
+        many = sum(one.tag in ASKING for one in parts) > 1
+        units = {id(item): one for one in dialog.nodes if is_unit(one) for item in one.nodes}
+        for item in (one for one in parts if one.tag in ITEMS):
+            unit = units.get(id(item))
+            self.scopes = [takers(item), *([takers(unit)] if unit else []), own, *self.outer]
+            self._item(item, many)
 
     def _item(self, item: Node, many: bool) -> None:
         """Add the transitions of an item; with ``many`` questions, those of one have its name."""
@@ -278,14 +282,12 @@ def _describe(box: Box, dialog: Node) -> None:
     """Describe a dialog: its marks, and what it asks or says."""
     parts = parts_of(dialog)
     asking = [one for one in (dialog, *parts) if one.tag in ASKING]
-    leaving = [one for one in dialog.walk() if leaves_user(one)]
+    leaving = list(filter(leaves_user, dialog.walk()))
     box.marks = _marks(dialog, parts, bool(asking), bool(leaving))
-    blocks = [text for one in parts if one.tag == "block" and (text := said(one))]
-    box.notes = notes(
-        [text for one in asking if (text := asked(one))],
-        blocks[0] if blocks and not asking else "",
-        [TABLE_4_2[one.tag].title for one in leaving[:1]],
-    )
+    questions = list(filter(None, map(asked, asking)))
+    blocks = filter(None, (said(one) for one in parts if one.tag == "block"))
+    told = "" if asking else next(blocks, "")
+    box.notes = notes(questions, told, [TABLE_4_2[one.tag].title for one in leaving[:1]])
 
 
 def _marks(dialog: Node, parts: list[Node], asks: bool, leaves: bool) -> list[str]:
