@@ -214,10 +214,8 @@ class _Completion:
             name = found.mark.name
             where = _where(self, found)
             yield Proposal(sign + name, "name", *start, escape(sign + name), "", where)
-        if use.kinds == ("device",):
-            known = {found.mark.name for found in self._known(path, use.kinds, tag)}
-            if not known:
-                yield from self._plain(attr, DEVICES)
+        if use.kinds == ("device",) and not self._known(path, use.kinds, tag):
+            yield from self._plain(attr, DEVICES)
 
     def _known(self, path: Path, kinds: tuple[str, ...], tag: Tag) -> list[Found]:
         found = self.workspace.known(path, kinds)
@@ -326,10 +324,8 @@ class _Completion:
         elif of in ("dialog", "document"):
             known = self._visible(tag)
         elif of == "sensor":
-            known = {
-                one.mark.name: _where(self, one)
-                for one in self.workspace.known(self.path, ("reading",))
-            }
+            readings = self.workspace.known(self.path, ("reading",))
+            known = {one.mark.name: _where(self, one) for one in readings}
         elif of in MEMBERS:
             known = dict.fromkeys(MEMBERS[of], of)
         elif of.endswith("$"):
