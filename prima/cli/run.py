@@ -25,7 +25,6 @@ from prima.cli.common import (
     map_option,
     put,
     raise_limits,
-    run_into,
     suggesting,
     tell,
     tell_problems,
@@ -33,6 +32,7 @@ from prima.cli.common import (
     workers_option,
     write_for_programs,
 )
+from prima.cli.progress import run_into
 from prima.errors import TOO_MUCH, RunError, UsageError, counted
 from prima.scheduler.policy import POLICIES, USAGE
 

@@ -101,19 +101,16 @@ def talk(
     prima talk --ea museum.xml --world documents/worlds/museum.xml --robot papero.xml
     printf '/back 5s\\n/touch head\\n' | prima talk documents/scenarios/touched-on-the-way.xml
     """
-    from prima import api
+    from prima.api import fetcher
     from prima.talk import Conversation, Game
 
     raise_limits(limits)
     _check_options(scenario, bool(fas or eas), bool(world or robot), bool(maps), step and real_time)
-    if scenario is not None:
-        loaded = api.load_scenario(scenario)
-    else:
-        loaded = api.stage(fas, eas, (), world, robot, maps)
+    loaded = _loaded(scenario, fas, eas, world, robot, maps)
     tell_problems(loaded.problems)
     folder = os.path.dirname(scenario or "")
     json = form == "json"
-    web = api.fetcher(list(hosts), len(loaded.cast.documents))
+    web = fetcher(list(hosts), len(loaded.cast.documents))
     game = Game(loaded, folder, policy, scripted, web, _write if json else None)
     terminal = sys.stdin is not None and sys.stdin.isatty() and sys.stdout.isatty()
     screen = Screen(game, why, json, terminal)
@@ -134,6 +131,22 @@ def talk(
     _finish(conversation, terminal)
 
 
+def _loaded(
+    scenario: str | None,
+    fas: tuple[str, ...],
+    eas: tuple[str, ...],
+    world: str | None,
+    robot: str | None,
+    maps: tuple[str, ...],
+) -> Loaded:
+    """The scenario, or the applications on a stage."""
+    from prima import api
+
+    if scenario is not None:
+        return api.load_scenario(scenario)
+    return api.stage(fas, eas, (), world, robot, maps)
+
+
 def _check_options(
     scenario: str | None, applications: bool, staged: bool, maps: bool, both_times: bool
 ) -> None:
@@ -145,9 +158,8 @@ def _check_options(
     if (scenario is None) == (not applications):
         raise UsageError("Name a scenario, or applications with --fa and --ea.")
     if scenario is not None and staged:
-        raise UsageError(
-            "--world and --robot work only with --fa and --ea: a scenario names its own."
-        )
+        message = "--world and --robot work only with --fa and --ea: a scenario names its own."
+        raise UsageError(message)
     if scenario is not None and maps:
         raise UsageError(MAPS)
     if both_times:

@@ -41,12 +41,7 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
     """
     languages = {**({} if "" in languages else timeline.languages), **languages}
     parts = timeline.parts()
-    children = [
-        (part, column)
-        for part in parts
-        for column in CHILDREN.get(part.tier.kind, ())
-        if any(column in mark.about for mark in part.marks)
-    ]
+    children = [(part, column) for part in parts for column in _details(part)]
     rules = sorted({m.about["rule"] for p, _ in children for m in p.marks if "rule" in m.about})
     details = sum(_count(part, column) for part, column in children)
     yield from _head(timeline, timeline.marks + details)
@@ -64,6 +59,12 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
         yield from _child(part, firsts[part.name], child, column, number, rules)
         number += _count(part, column)
     yield from _types(rules, {tag for tag in languages.values() if tag})
+
+
+def _details(part: Part) -> list[str]:
+    """The details of a tier's annotations that have tiers of their own."""
+    columns = CHILDREN.get(part.tier.kind, ())
+    return [one for one in columns if any(one in mark.about for mark in part.marks)]
 
 
 def _count(part: Part, column: str) -> int:

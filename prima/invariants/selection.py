@@ -170,7 +170,9 @@ class Selection(Patience):
         self._losers_told_rightly(ab, shown, told, needed)
         named = {*told["losers"], *needed}
         rivals = [other for other in rivals if other.shown in named]
-        self._rule_told_rightly(ab, shown, told["rule"], rivals or self._perhaps(ab, told["losers"]))
+        self._rule_told_rightly(
+            ab, shown, told["rule"], rivals or self._perhaps(ab, told["losers"])
+        )
 
     def _perhaps(self, ab: AB, losers: Sequence[str]) -> list[AB]:
         """The losers of a decision to which F2 is open."""

@@ -77,7 +77,7 @@ INSIDE = {
         {"functions"},
         {"__init__"},
     ],
-    "handbook": [{"examples", "rulebook"}, {"__init__"}],
+    "handbook": [{"examples", "situations"}, {"rulebook"}, {"__init__"}],
     "script": [
         {"prelude"},
         {"budget", "evaluation", "globals", "parse", "wire"},
@@ -142,7 +142,7 @@ INSIDE = {
         {"__init__"},
     ],
     "certificate": [{"model"}, {"finding", "summary"}, {"__init__"}],
-    "report": [{"lanes", "parts", "walk"}, {"strip", "view"}, {"page"}, {"__init__"}],
+    "report": [{"lanes", "parts", "walk"}, {"strip", "view"}, {"data"}, {"page"}, {"__init__"}],
     "results": [
         {"reading", "statistics"},
         {"data"},
