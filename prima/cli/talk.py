@@ -112,7 +112,7 @@ def talk(
     json = form == "json"
     web = fetcher(list(hosts), len(loaded.cast.documents))
     game = Game(loaded, folder, policy, scripted, web, _write if json else None)
-    terminal = sys.stdin is not None and sys.stdin.isatty() and sys.stdout.isatty()
+    terminal = _is_terminal()
     screen = Screen(game, why, json, terminal)
     names = loaded.files if scenario is not None else [*loaded.files][1:]
     sources = [os.path.join(folder, name) for name in names]
@@ -129,6 +129,10 @@ def talk(
         finally:
             _keep(conversation, target)
     _finish(conversation, terminal)
+
+
+def _is_terminal() -> bool:
+    return sys.stdin is not None and sys.stdin.isatty() and sys.stdout.isatty()
 
 
 def _loaded(

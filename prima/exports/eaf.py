@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from datetime import datetime
+from itertools import chain
 from xml.sax.saxutils import escape, quoteattr
 
 from prima.exports.timeline import KINDS, Part, Timeline, clean, unused
@@ -42,7 +43,8 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
     languages = {**({} if "" in languages else timeline.languages), **languages}
     parts = timeline.parts()
     children = [(part, column) for part in parts for column in _details(part)]
-    rules = sorted({m.about["rule"] for p, _ in children for m in p.marks if "rule" in m.about})
+    marks = chain.from_iterable(part.marks for part, _ in children)
+    rules = sorted({mark.about["rule"] for mark in marks if "rule" in mark.about})
     details = sum(_count(part, column) for part, column in children)
     yield from _head(timeline, timeline.marks + details)
     slots = _Slots(parts)

@@ -216,9 +216,7 @@ def _whys(run: Run, rows: Sequence[Row]) -> tuple[list[dict[str, Json]], dict[st
     return whys, names
 
 
-def _why(
-    run: Run, row: Row, events: Mapping[int | None, int], told: Sequence[Json]
-) -> dict[str, Json]:
+def _why(run: Run, row: Row, events: Mapping[int, int], told: Sequence[Json]) -> dict[str, Json]:
     """The reasons of a row: its place in a document, the event behind it, and decisions."""
     asked = run.asked(row.behavior)
     why: dict[str, Json] = {}
@@ -226,7 +224,7 @@ def _why(
         why["source"] = _short(row.source)
     if row.actor != "R":
         why["outside"] = True
-    if asked is not None and asked.cause in events:
+    if asked is not None and asked.cause and asked.cause in events:
         why["cause"] = events[asked.cause]
     if told:
         why["told"] = told
