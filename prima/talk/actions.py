@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from prima.errors import DocumentError, Problem, UsageError
 from prima.interpreter.elements import Document
@@ -19,6 +19,16 @@ FILE = "typed"
 """The file name under which typed lines are read as a scenario."""
 MOVES = ("walk", "follow", "stay", "leave")
 """Actions for which the user must be present."""
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """An action of the user: its time (ms), elements, and the row before it."""
+
+    at: int
+    xml: str
+    doings: list[Doing]
+    after: str
 
 
 def doings_of(line: Line, scene: Scene, cast: Cast) -> list[Doing]:

@@ -13,10 +13,9 @@ from prima.messages import Record
 from prima.scheduler.behavior import Behavior
 from prima.scheduler.policy import policy_named
 from prima.sim.devices import Cast
-from prima.sim.happenings import Doing
 from prima.sim.rehearsal import Rehearsal
 from prima.sim.services import Web
-from prima.talk.actions import check_there, doings_of, names_of, scenario_of
+from prima.talk.actions import Played, check_there, doings_of, names_of, scenario_of
 from prima.talk.scene import Scene, comment, seconds, when
 from prima.talk.typed import Line
 from prima.transcript.lines import finished
@@ -29,20 +28,14 @@ PATIENCE_MS = 60_000
 """How long time passes without a row before the author is asked again."""
 AT_ONCE_MS = 600_000
 """How long time passes at most before the author is asked again."""
+SAVED = (
+    "Played with prima talk. It ends where the session ended:"
+    ' write a later until="..." to let it go on.'
+)
 MOST_LINES = 10_000
 """Maximum number of lines of a session."""
 
 Sink = Callable[[list[Record]], object]
-
-
-@dataclass(frozen=True, slots=True)
-class Played:
-    """An action of the user: its time (ms), elements, and the row before it."""
-
-    at: int
-    xml: str
-    doings: list[Doing]
-    after: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -253,14 +246,13 @@ class Game:
             UsageError: it names something unknown, or nobody is there to do it.
         """
         if len(self.lines) >= MOST_LINES:
-            raise UsageError(
-                f"A session may have {MOST_LINES} lines: save it, and start a new one."
-            )
+            message = f"A session may have {MOST_LINES} lines: save it, and start a new one."
+            raise UsageError(message)
         doings = doings_of(line, self.scene, self.cast)
         if self.over and not line.loads:
+            again = f"/load {one_of(self.names.applications)}"
             raise UsageError(
-                "Every application has ended. Load one again"
-                f" (/load {one_of(self.names.applications)}), or type /quit."
+                f"Every application has ended. Load one again ({again}), or type /quit."
             )
         check_there(self.rehearsal, doings)
         thinking = self._thinking() if think and doings[0].name == "say" else 0
@@ -323,9 +315,8 @@ class Game:
         """
         self._check_back()
         if clock > self.clock:
-            raise UsageError(
-                f"It is only {seconds(self.clock)}: type /wait {seconds(clock - self.clock)}."
-            )
+            left = seconds(clock - self.clock)
+            raise UsageError(f"It is only {seconds(self.clock)}: type /wait {left}.")
         self.lines = [line for line in self.lines if line.at <= clock]
         self.points = [point for point in self.points if point.clock < clock]
         self._return(clock)
@@ -345,13 +336,10 @@ class Game:
 
     def saved(self, target: str) -> str:
         """The session so far as a scenario that repeats it, for a file."""
-        whens = [
-            f"<!-- {comment(line.after)} -->\n  {when(line.at, line.xml)}" for line in self.lines
-        ]
+        whens = [f"<!-- {comment(one.after)} -->\n  {when(one.at, one.xml)}" for one in self.lines]
         return self.scene.text(
             whens,
             seconds(self.clock),
             target,
-            "Played with prima talk. It ends where the session ended: write a later"
-            ' until="..." to let it go on.',
+            SAVED,
         )
