@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from datetime import datetime
 from itertools import chain
 from xml.sax.saxutils import escape, quoteattr
@@ -43,8 +43,7 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
     languages = {**({} if "" in languages else timeline.languages), **languages}
     parts = timeline.parts()
     children = [(part, column) for part in parts for column in _details(part)]
-    marks = chain.from_iterable(part.marks for part, _ in children)
-    rules = sorted({mark.about["rule"] for mark in marks if "rule" in mark.about})
+    rules = sorted(_rules(part for part, _ in children))
     details = sum(_count(part, column) for part, column in children)
     yield from _head(timeline, timeline.marks + details)
     slots = _Slots(parts)
@@ -61,6 +60,11 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
         yield from _child(part, firsts[part.name], child, column, number, rules)
         number += _count(part, column)
     yield from _types(rules, {tag for tag in languages.values() if tag})
+
+
+def _rules(parts: Iterable[Part]) -> set[str]:
+    marks = chain.from_iterable(part.marks for part in parts)
+    return {mark.about["rule"] for mark in marks if "rule" in mark.about}
 
 
 def _details(part: Part) -> list[str]:
