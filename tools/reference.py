@@ -46,7 +46,8 @@ from prima.scheduler import failures, starvation
 from prima.script import budget, evaluation, host, parse, sandbox, syntax
 from prima.sim.vocabulary import SCENARIO, USER, WORLD
 from prima.transcript import lines
-from prima.transcript.record import PHASES, model
+from prima.transcript.phases import PHASES
+from prima.transcript.record import model
 from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, VALUES, VOICEXML
 from tools.rnc import make_rnc

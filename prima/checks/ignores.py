@@ -222,10 +222,7 @@ class Ignores:
                 ignores, problems = in_document(file, self._read(file))
                 self._documents[path] = Inside(ignores), problems
             except (DocumentError, UsageError):
-                self._documents[path] = (
-                    Inside(()),
-                    [],
-                )  # reading it reports the error
+                self._documents[path] = Inside(()), []  # reading it reports the error
         return self._documents[path]
 
     def _of_folder(self, folder: str) -> Settings | None:
@@ -284,8 +281,7 @@ def in_document(file: str, data: bytes) -> tuple[list[Ignore], list[Problem]]:
         if problem is not None:
             problems.append(problem)
             continue
-        span = source.at(offset)[1:], source.at(end)[1:]
-        ignores.append(Ignore(match[2], place, span))
+        ignores.append(Ignore(match[2], place, (place[1:], source.at(end)[1:])))
     return ignores, problems
 
 
@@ -318,8 +314,7 @@ def read_settings(file: str) -> Settings:
     settings = Settings(file)
     try:
         with open(file, encoding="utf-8") as stream:
-            text = stream.read()
-        tree = parse_toml(text)
+            tree = parse_toml(text := stream.read())
     except (OSError, ValueError) as error:
         settings.problems.append(NOT_TOML.at(Place(file), error=error))
         return settings

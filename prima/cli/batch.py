@@ -12,7 +12,8 @@ import click
 from click.exceptions import Exit
 
 from prima.cli import common
-from prima.cli.common import Progress, clean, coloured, put, tell
+from prima.cli.common import clean, coloured, put, tell
+from prima.cli.progress import Progress
 from prima.errors import UsageError, counted
 from prima.errors.visible import escaped
 from prima.experiments.batch import run_batch

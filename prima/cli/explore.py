@@ -8,7 +8,6 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import (
-    Progress,
     duration_option,
     format_option,
     isolate_option,
@@ -21,6 +20,7 @@ from prima.cli.common import (
     workers_option,
     write_for_programs,
 )
+from prima.cli.progress import Progress
 from prima.errors import UsageError, counted
 from prima.scheduler.policy import POLICIES
 

@@ -50,11 +50,7 @@ def export(transcript: str, to: str | None, output: str | None, langs: tuple[str
     """
     from prima import api
 
-    form = to.lower() if to else Path(output or "").suffix.lower()[1:]
-    if not form:
-        raise UsageError(f"Name a format: --to {one_of(FORMATS)}.")
-    if output is None and form == "mcap" and sys.stdout.isatty():
-        raise UsageError("mcap is a binary format: name a file with -o.")
+    form = _format(to, output)
     if output is not None:
         check_output(output, "export")
     made = api.export(transcript, form, output or sys.stdout.buffer, _languages(langs))
@@ -68,6 +64,20 @@ def export(transcript: str, to: str | None, output: str | None, langs: tuple[str
     if made.cut:
         tell(f"prima: {made.cut}")
         raise Exit(2)
+
+
+def _format(to: str | None, output: str | None) -> str:
+    """The format that is named, or that of the file's suffix.
+
+    Raises:
+        UsageError: there is neither, or it is none for a terminal.
+    """
+    form = to.lower() if to else Path(output or "").suffix.lower()[1:]
+    if not form:
+        raise UsageError(f"Name a format: --to {one_of(FORMATS)}.")
+    if output is None and form == "mcap" and sys.stdout.isatty():
+        raise UsageError("mcap is a binary format: name a file with -o.")
+    return form
 
 
 def _languages(langs: Iterable[str]) -> dict[str, str]:

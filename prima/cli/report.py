@@ -85,13 +85,27 @@ def report(
     prima report sweep.csv -o sweep.html
     prima report sweep.csv --to svg -o figures/
     """
-    if any(_is_table(one) for one in runs):
+    if any(map(_is_table, runs)):
         if len(runs) > 1 or policies or scenarios:
             raise UsageError("Of a sweep, name its table alone, without --policy and --scenario.")
         _report_table(runs[0], output, factors, form, figure)
         return
     if factors or figure or form != "html":
         raise UsageError("--by, --to svg and --figure are for the table of a sweep.")
+    _report_runs(runs, output, policies, scenarios)
+
+
+def _report_runs(
+    runs: tuple[str, ...],
+    output: str | None,
+    policies: tuple[str, ...],
+    scenarios: tuple[str, ...],
+) -> None:
+    """Write the page of one run, or of two.
+
+    Raises:
+        UsageError: there are none or too many, or nothing can be written.
+    """
     from prima.report import make
 
     if not runs:
@@ -147,6 +161,28 @@ def _report_table(
         raise Exit(2)
 
 
+def _write_figure(figures: list[Figure], output: str | None, name: str) -> None:
+    """Write the figure of a name.
+
+    Raises:
+        UsageError: there is none, or it cannot be written.
+    """
+    from prima.loading.writing import write_whole
+
+    found = next((one for one in figures if one.name == name), None)
+    if found is None:
+        names = [one.name for one in figures]
+        listed = one_of(names) if names else "none, as no measure differs between runs"
+        message = f'--figure: no figure "{name}"; there is {listed}. {did_you_mean(name, names)}'
+        raise UsageError(message.strip())
+    if output is None:
+        write_for_programs()
+        click.echo(found.whole(), nl=False)
+        return
+    write_whole(output, found.whole())
+    tell(f"{output}: written")
+
+
 def _write_figures(figures: list[Figure], output: str | None, name: str | None) -> None:
     """Write all figures into a folder, or the one that is named.
 
@@ -156,20 +192,7 @@ def _write_figures(figures: list[Figure], output: str | None, name: str | None) 
     from prima.loading.writing import write_whole
 
     if name is not None:
-        found = next((one for one in figures if one.name == name), None)
-        if found is None:
-            names = [one.name for one in figures]
-            listed = one_of(names) if names else "none, as no measure differs between runs"
-            message = (
-                f'--figure: no figure "{name}"; there is {listed}. {did_you_mean(name, names)}'
-            )
-            raise UsageError(message.strip())
-        if output is None:
-            write_for_programs()
-            click.echo(found.whole(), nl=False)
-            return
-        write_whole(output, found.whole())
-        tell(f"{output}: written")
+        _write_figure(figures, output, name)
         return
     if output is None:
         raise UsageError("Name the folder for the figures: -o figures, or one: --figure NAME.")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import click
@@ -25,7 +26,6 @@ from prima.cli.common import (
     map_option,
     put,
     raise_limits,
-    run_into,
     suggesting,
     tell,
     tell_problems,
@@ -33,6 +33,7 @@ from prima.cli.common import (
     workers_option,
     write_for_programs,
 )
+from prima.cli.progress import run_into
 from prima.errors import TOO_MUCH, RunError, UsageError, counted
 from prima.scheduler.policy import POLICIES, USAGE
 
@@ -136,17 +137,17 @@ def run(
         _check_batch(applications, why, resume, output)
         from prima.cli.batch import listed, run_all
 
-        paths = [*scenarios, *(path for name in lists for path in listed(name))]
+        paths = [*scenarios, *chain.from_iterable(map(listed, lists))]
         run_all(paths, policies, output or "", options, workers or 0, form)
         return
-    if output == "-":
-        output, form = None, "json"
     scenario = next(iter(scenarios), None)
     loaded = _load(scenario, fas, eas, says, maps)
-    if output is not None:
+    if output == "-":
+        output, form = None, "json"
+    elif output is not None:
         _check_file(output, os.path.dirname(scenario or ""), loaded)
     tell_problems(loaded.problems)
-    policy = policies[0] if policies else None
+    policy = next(iter(policies), None)
     _report_end(_run_one(loaded, output, policy, options, why, form))
 
 

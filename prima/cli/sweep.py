@@ -10,7 +10,6 @@ from click.exceptions import Exit
 from prima.cli.common import (
     PATIENCE,
     Choice,
-    Progress,
     bound_option,
     check_output,
     duration_option,
@@ -24,6 +23,7 @@ from prima.cli.common import (
     workers_option,
     write_for_programs,
 )
+from prima.cli.progress import Progress
 from prima.errors import UsageError, counted
 from prima.scheduler.policy import POLICIES, USAGE
 
@@ -121,10 +121,7 @@ def sweep(
         patience=patience,
         isolate=None if isolate == "ea" else isolate,
     )
-    if resume and output is None:
-        raise UsageError("--resume needs the table: -o sweep.csv.")
-    if bundle is not None and output in (None, "-"):
-        raise UsageError("--bundle needs the table: -o sweep.csv.")
+    _check_table(output, resume, bundle)
     made = Sweep(question)
     _tell_cost(made, workers, plan)
     if plan:
@@ -148,6 +145,18 @@ def sweep(
     tell(f"{bundle}: {counted(write_bundle(bundle, out), 'file')}")
     if ended is not None:
         raise ended
+
+
+def _check_table(output: str | None, resume: bool, bundle: str | None) -> None:
+    """Refuse options that need the table's file.
+
+    Raises:
+        UsageError: it is not named.
+    """
+    if resume and output is None:
+        raise UsageError("--resume needs the table: -o sweep.csv.")
+    if bundle is not None and output in (None, "-"):
+        raise UsageError("--bundle needs the table: -o sweep.csv.")
 
 
 def _vary(varied: tuple[str, ...]) -> dict[str, str]:

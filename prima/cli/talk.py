@@ -11,16 +11,12 @@ from click.exceptions import Exit
 
 from prima.cli.common import (
     MAPS,
-    clean,
-    coloured,
-    columns,
     ea_option,
     fa_option,
     format_option,
     hosts_option,
     limit_option,
     map_option,
-    put,
     raise_limits,
     suggesting,
     tell,
@@ -28,6 +24,7 @@ from prima.cli.common import (
     why_option,
     write_for_programs,
 )
+from prima.cli.screen import Screen
 from prima.cli.terminal import Clock, Keyboard, Piped, Typist, edit_lines, ending_well
 from prima.errors import TOO_MUCH, RunError, UsageError
 from prima.language.commands import PATIENCE_MS
@@ -37,10 +34,6 @@ if TYPE_CHECKING:
     from prima.loading import Loaded
     from prima.messages import Record
     from prima.talk import Conversation, Game
-    from prima.transcript.row import Row
-
-COLOURS = {"U": "cyan", "E": "yellow"}
-"""Colours of rows, by who does it."""
 
 
 @click.command()
@@ -101,21 +94,18 @@ def talk(
     prima talk --ea museum.xml --world documents/worlds/museum.xml --robot papero.xml
     printf '/back 5s\\n/touch head\\n' | prima talk documents/scenarios/touched-on-the-way.xml
     """
-    from prima import api
+    from prima.api import fetcher
     from prima.talk import Conversation, Game
 
     raise_limits(limits)
     _check_options(scenario, bool(fas or eas), bool(world or robot), bool(maps), step and real_time)
-    if scenario is not None:
-        loaded = api.load_scenario(scenario)
-    else:
-        loaded = api.stage(fas, eas, (), world, robot, maps)
+    loaded = _loaded(scenario, fas, eas, world, robot, maps)
     tell_problems(loaded.problems)
     folder = os.path.dirname(scenario or "")
     json = form == "json"
-    web = api.fetcher(list(hosts), len(loaded.cast.documents))
+    web = fetcher(list(hosts), len(loaded.cast.documents))
     game = Game(loaded, folder, policy, scripted, web, _write if json else None)
-    terminal = sys.stdin is not None and sys.stdin.isatty() and sys.stdout.isatty()
+    terminal = _is_terminal()
     screen = Screen(game, why, json, terminal)
     names = loaded.files if scenario is not None else [*loaded.files][1:]
     sources = [os.path.join(folder, name) for name in names]
@@ -134,6 +124,26 @@ def talk(
     _finish(conversation, terminal)
 
 
+def _is_terminal() -> bool:
+    return sys.stdin is not None and sys.stdin.isatty() and sys.stdout.isatty()
+
+
+def _loaded(
+    scenario: str | None,
+    fas: tuple[str, ...],
+    eas: tuple[str, ...],
+    world: str | None,
+    robot: str | None,
+    maps: tuple[str, ...],
+) -> Loaded:
+    """The scenario, or the applications on a stage."""
+    from prima import api
+
+    if scenario is not None:
+        return api.load_scenario(scenario)
+    return api.stage(fas, eas, (), world, robot, maps)
+
+
 def _check_options(
     scenario: str | None, applications: bool, staged: bool, maps: bool, both_times: bool
 ) -> None:
@@ -145,9 +155,8 @@ def _check_options(
     if (scenario is None) == (not applications):
         raise UsageError("Name a scenario, or applications with --fa and --ea.")
     if scenario is not None and staged:
-        raise UsageError(
-            "--world and --robot work only with --fa and --ea: a scenario names its own."
-        )
+        message = "--world and --robot work only with --fa and --ea: a scenario names its own."
+        raise UsageError(message)
     if scenario is not None and maps:
         raise UsageError(MAPS)
     if both_times:
@@ -216,59 +225,6 @@ def _greet(game: Game, screen: Screen) -> None:
         )
     if screen.interactive:
         tell("Type what you say, /help for commands, /quit to end.")
-
-
-class Screen:
-    """Prints rows, answers and messages above the line being typed, if any."""
-
-    def __init__(self, game: Game, why: bool, json: bool, interactive: bool) -> None:
-        self.interactive = interactive
-        self.typist: Typist | None = None
-        self._why = why
-        self._json = json
-        self._apps = game.names.applications
-        self._headed = False
-
-    def rows(self, rows: list[Row]) -> None:
-        """Show rows as they happen."""
-        from prima.transcript.table import format_head, format_row, layout
-
-        if self._json:
-            return
-        shape = layout(self._apps, columns(), self._why)
-        lines = [] if self._headed else [format_head(shape)]
-        self._headed = True
-        for row in rows:
-            text = "\n".join(format_row(row, shape))
-            colour = COLOURS.get(row.actor) if coloured() else None
-            lines.append(click.style(clean(text), fg=colour) if colour else clean(text))
-        self._print("\n".join(lines), styled=True)
-
-    def show(self, text: str) -> None:
-        """Show the result of a command; with JSON records on stdout, as a message."""
-        if self._json:
-            self.tell(text)
-        else:
-            self._print(text)
-
-    def tell(self, text: str) -> None:
-        """Print a message."""
-        if self.typist is not None:
-            self.typist.clear()
-        tell(text)
-        if self.typist is not None:
-            self.typist.restore()
-
-    def _print(self, text: str, styled: bool = False) -> None:
-        if self.typist is not None:
-            self.typist.clear()
-        if styled:
-            click.echo(text)
-        else:
-            put(text)
-        sys.stdout.flush()
-        if self.typist is not None:
-            self.typist.restore()
 
 
 def _converse(conversation: Conversation, screen: Screen) -> None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from datetime import datetime
+from itertools import chain
 from xml.sax.saxutils import escape, quoteattr
 
 from prima.exports.timeline import KINDS, Part, Timeline, clean, unused
@@ -41,13 +42,8 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
     """
     languages = {**({} if "" in languages else timeline.languages), **languages}
     parts = timeline.parts()
-    children = [
-        (part, column)
-        for part in parts
-        for column in CHILDREN.get(part.tier.kind, ())
-        if any(column in mark.about for mark in part.marks)
-    ]
-    rules = sorted({m.about["rule"] for p, _ in children for m in p.marks if "rule" in m.about})
+    children = [(part, column) for part in parts for column in _details(part)]
+    rules = sorted(_rules(part for part, _ in children))
     details = sum(_count(part, column) for part, column in children)
     yield from _head(timeline, timeline.marks + details)
     slots = _Slots(parts)
@@ -64,6 +60,17 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
         yield from _child(part, firsts[part.name], child, column, number, rules)
         number += _count(part, column)
     yield from _types(rules, {tag for tag in languages.values() if tag})
+
+
+def _rules(parts: Iterable[Part]) -> set[str]:
+    marks = chain.from_iterable(part.marks for part in parts)
+    return {mark.about["rule"] for mark in marks if "rule" in mark.about}
+
+
+def _details(part: Part) -> list[str]:
+    """The details of a tier's annotations that have tiers of their own."""
+    columns = CHILDREN.get(part.tier.kind, ())
+    return [one for one in columns if any(one in mark.about for mark in part.marks)]
 
 
 def _count(part: Part, column: str) -> int:

@@ -28,14 +28,18 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
             f"        {what}: size = {len(shown)}\n"
         )
         for place, mark in enumerate(shown, 1):
+            fields = _point(mark) if points else _interval(mark)
             yield f"        {what} [{place}]:\n"
-            if points:
-                yield f"            number = {_seconds(mark.start)}\n"
-                yield f"            mark = {_quoted(mark.text)}\n"
-            else:
-                yield f"            xmin = {_seconds(mark.start)}\n"
-                yield f"            xmax = {_seconds(_end(mark))}\n"
-                yield f"            text = {_quoted(mark.text)}\n"
+            yield from (f"            {name} = {value}\n" for name, value in fields.items())
+
+
+def _point(mark: Interval) -> dict[str, str]:
+    return {"number": _seconds(mark.start), "mark": _quoted(mark.text)}
+
+
+def _interval(mark: Interval) -> dict[str, str]:
+    times = {"xmin": _seconds(mark.start), "xmax": _seconds(_end(mark))}
+    return times | {"text": _quoted(mark.text)}
 
 
 def _end(mark: Interval) -> int:

@@ -214,10 +214,9 @@ class _Builder:
                 verb = "starts" if entry.phase == "load" else "ends"
                 self._point(entry, f"{entry.app} {verb}{outcome}")
             case "fetched" | "transferred" | "emergency" | "error":
-                data = entry.data
-                told = (entry.app, entry.phase, data.get("uri"), entry.outcome)
-                why = (data.get("problem"), entry.message)
-                self._point(entry, " ".join(str(part) for part in (*told, *why) if part))
+                told = (entry.app, entry.phase, entry.data.get("uri"), entry.outcome)
+                why = (entry.data.get("problem"), entry.message)
+                self._point(entry, " ".join(map(str, filter(None, (*told, *why)))))
 
     def _decision(self, entry: Entry) -> None:
         winner, more = entry.winner, entry.losers_count - len(entry.losers)

@@ -1,18 +1,19 @@
-"""The picture of an application's states: each a card that says where it leads, and why.
+"""The picture of an application's states: each is a card that says where it leads, and why.
 
-All words stand in the cards, so that no label lies on a line or on another one. The
-cards stand in columns by their distance from the start. More columns than a page has
-room for are put into rows, like words into lines; from one row to another no line is
-drawn, as the card names its target.
+All words are in the cards, so that no label lies on a line or on another label. The cards
+are in columns by their distance from the start. If there are more columns than a page has
+room for, they wrap into rows, like words into lines; no line is drawn from one row to
+another, as the card names its target.
 """
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from html import escape
 
-from prima.graph.layout import Layout, Link, arrange, distances
+from prima.graph.layout import Link, arrange, distances
 from prima.graph.model import Edge, Graph, Node
 from prima.graph.svg import SIZE, box, fit, head, line, measure, picture, text, wrap
 
@@ -62,28 +63,30 @@ class Card:
 def draw(graph: Graph) -> str:
     """The states of an application as SVG."""
     cards = {key: _card(graph, node) for key, node in graph.nodes.items()}
-    keys = list(cards)
-    number = {key: index for index, key in enumerate(keys)}
-    follows = [[number[edge.target] for edge in graph.out(key) if edge.target] for key in keys]
-    starts = [number[key] for key in keys if cards[key].node.start]
-    starts += [number[key] for key in keys if cards[key].node.kind == "any"]
-    column = distances(len(keys), starts, follows)
-    deepest = max(column, default=0) + 1
+    columns = _columns(graph)
+    deepest = max(columns.values(), default=0) + 1
     rows = 1 if deepest <= COLUMNS + 2 else -(-deepest // COLUMNS)
     each = -(-deepest // rows)
     parts: list[str] = []
     y, width = MARGIN + 26, 0.0
     for row in range(rows):
-        held = [key for key, one in zip(keys, column, strict=True) if one // each == row]
-        band = _Band(
-            graph, {key: cards[key] for key in held}, [column[number[k]] % each for k in held]
-        )
+        held = {key: column % each for key, column in columns.items() if column // each == row}
+        band = _Band(graph, {key: cards[key] for key in held}, held)
         drawn, right, bottom = band.draw(y)
         parts += drawn
         width, y = max(width, right), bottom + 34
     width = max(width + MARGIN, 560.0)
     top = [text(MARGIN, MARGIN + 8, fit(graph.title, width - 2 * MARGIN, 13, True), "name")]
     return picture(graph.title, graph.told, width, y + 6, top + parts + _legend(graph, y - 4))
+
+
+def _columns(graph: Graph) -> dict[str, int]:
+    """Each state's distance from the start, or from what holds in any state."""
+    number = {key: index for index, key in enumerate(graph.nodes)}
+    follows = [[number[edge.target] for edge in graph.out(key) if edge.target] for key in number]
+    starts = [number[key] for key, node in graph.nodes.items() if node.start]
+    starts += [number[key] for key, node in graph.nodes.items() if node.kind == "any"]
+    return dict(zip(number, distances(len(number), starts, follows), strict=True))
 
 
 def _legend(graph: Graph, y: float) -> list[str]:
@@ -142,16 +145,8 @@ def _name(graph: Graph, edge: Edge) -> str:
 
 def _drawn(graph: Graph, card: Card) -> list[str]:
     """A card's box and text."""
-    node, x, y = card.node, card.x, card.y
-    kind = "box any" if node.kind == "any" else "box first" if node.start else "box"
-    told = "start: " if node.start else ""
-    parts = [box(x, y, WIDTH, card.height, kind, 7)]
-    start = measure("start", 10) + 4 if node.start else 0
-    parts.append(text(x + PAD, y + 17, fit(node.title, WIDTH - 2 * PAD - start, 13, True), "name"))
-    if node.start:
-        parts.append(text(x + WIDTH - PAD - start + 4, y + 16, "start", "small"))
-    if node.source:
-        parts.append(f"<title>{escape(f'{told}{node.title}, {node.source}')}</title>")
+    x, y = card.x, card.y
+    parts = _titled(card)
     top = y + TITLE
     for row in card.marks:
         left = x + PAD
@@ -177,62 +172,80 @@ def _drawn(graph: Graph, card: Card) -> list[str]:
     return parts
 
 
+def _titled(card: Card) -> list[str]:
+    """A card's box with its name."""
+    node, x, y = card.node, card.x, card.y
+    kind = "box any" if node.kind == "any" else "box first" if node.start else "box"
+    start = measure("start", 10) + 4 if node.start else 0
+    name = fit(node.title, WIDTH - 2 * PAD - start, 13, True)
+    parts = [box(x, y, WIDTH, card.height, kind, 7), text(x + PAD, y + 17, name, "name")]
+    if node.start:
+        parts.append(text(x + WIDTH - PAD - start + 4, y + 16, "start", "small"))
+    if node.source:
+        told = "start: " if node.start else ""
+        parts.append(f"<title>{escape(f'{told}{node.title}, {node.source}')}</title>")
+    return parts
+
+
 # Rows of the page -------------------------------------------------------------------------------
 
 
 class _Band:
     """One row of the page: the cards of some columns."""
 
-    def __init__(self, graph: Graph, cards: dict[str, Card], columns: list[int]) -> None:
-        self.graph, self.cards = graph, cards
-        number = {key: index for index, key in enumerate(cards)}
-        self.column = dict(zip(cards, columns, strict=True))
+    def __init__(self, graph: Graph, cards: dict[str, Card], column: dict[str, int]) -> None:
+        self.graph, self.cards, self.column = graph, cards, column
         back = Counter(
-            way.edge.target
-            for key, card in cards.items()
-            for way in card.ways
-            if way.edge.target in cards.keys() - {key}
-            and self.column[way.edge.target] <= self.column[key]
+            edge.target
+            for key, edge in self._inside()
+            if key != edge.target and self._is_back(key, edge)
         )
         self.crowded = {key for key, count in back.items() if count > MANY_BACK}
-        links: list[Link] = []
-        self.links: dict[tuple[str, str, str], Link] = {}
-        for key, card in cards.items():
+        self.links = self._links()
+        heights = [card.height for card in cards.values()]
+        columns = list(column.values())
+        self.layout = arrange(heights, columns, list(self.links.values()), GAP)
+        self.left = self._lefts(columns)
+
+    def _links(self) -> dict[tuple[str, str, str], Link]:
+        """The lines from column to column, by both cards and the kind of the edge."""
+        number = {key: index for index, key in enumerate(self.cards)}
+        links: dict[tuple[str, str, str], Link] = {}
+        for key, card in self.cards.items():
             for way in card.ways:
                 to = way.edge.target
                 if not self._near(key, way.edge) or self.column[to] == self.column[key]:
                     continue
-                forward = self.column[to] > self.column[key]
-                link = (
-                    Link(number[key], number[to], way.at, 14)
-                    if forward
-                    else Link(number[to], number[key], 14, way.at)
-                )
-                links.append(link)
-                self.links[key, to, way.edge.kind] = link
-        heights = [card.height for card in cards.values()]
-        self.layout: Layout = arrange(heights, columns, links, GAP)
-        self.left = self._lefts(columns)
+                ends = (number[key], number[to]), (way.at, 14.0)
+                if self._is_back(key, way.edge):
+                    ends = ends[0][::-1], ends[1][::-1]
+                links[key, to, way.edge.kind] = Link(*ends[0], *ends[1])
+        return links
+
+    def _inside(self) -> Iterator[tuple[str, Edge]]:
+        """The edges between cards of this row, with the keys of their cards."""
+        for key, card in self.cards.items():
+            for way in card.ways:
+                if way.edge.target in self.cards:
+                    yield key, way.edge
+
+    def _is_back(self, key: str, edge: Edge) -> bool:
+        """Whether an edge leads to an earlier column or stays in its own."""
+        return self.column[edge.target] <= self.column[key]
 
     def _near(self, key: str, edge: Edge) -> bool:
         """Whether a line is drawn: not to another row of the page, nor back to a crowded card."""
         target = edge.target
         if target not in self.cards or edge.kind == "stay":
             return False
-        back = self.column[target] <= self.column[key]
-        return key == target or not (back and target in self.crowded)
+        return key == target or not (target in self.crowded and self._is_back(key, edge))
 
     def _lefts(self, columns: list[int]) -> list[float]:
         """The left edge of each column; more lines between two columns get more room."""
         count = max(columns, default=0) + 1
         lines = [0] * (count + 1)
-        near = [
-            (self.column[key], self.column[way.edge.target])
-            for key, card in self.cards.items()
-            for way in card.ways
-            if self._near(key, way.edge)
-        ]
-        for one, two in near:
+        near = [(key, edge.target) for key, edge in self._inside() if self._near(key, edge)]
+        for one, two in ((self.column[a], self.column[b]) for a, b in near):
             for gutter in range(min(one, two), max(one, two)):
                 lines[gutter] += 1
             lines[one] += one == two
@@ -255,10 +268,7 @@ class _Band:
             parts += [f'<g class="state{lost}">', *_drawn(self.graph, card), *lines, "</g>"]
         last = max(self.column.values(), default=0)
         loops = any(
-            way.edge.target in self.cards
-            and self.column[way.edge.target] == last == self.column[key]
-            for key, card in self.cards.items()
-            for way in card.ways
+            self.column[edge.target] == last == self.column[key] for key, edge in self._inside()
         )
         right = self.left[last] + WIDTH + (self.left[last + 1] - self.left[last] - WIDTH) * loops
         bottom = top + self.layout.extent
@@ -273,32 +283,34 @@ class _Band:
         shape = "head" if edge.kind == "go" else f"{edge.kind}-head"
         right = card.x + WIDTH
         target = self.cards.get(edge.target)
+        level = target is not None and self.column[edge.target] == self.column[key]
         to = target.y + 14 if target else 0.0
-        far = target and self.column[edge.target] == self.column[key] and abs(to - y) > LONGEST_BOW
+        far = level and abs(to - y) > LONGEST_BOW
         if target is None or far or not self._near(key, edge):
             return [line(right, y, right + 9, y, kind), head(right + 17, y, shape, "right")]
-        if self.column[edge.target] == self.column[key]:
+        if level:
             return self._bow(right, y, to, key == edge.target, kind, shape)
-        link = self.links[key, edge.target, edge.kind]
-        forward = self.column[edge.target] > self.column[key]
-        middle = [top + self.layout.aside[place] + 4.5 for place in link.chain[1:-1]]
-        columns = range(self.column[key] + 1, self.column[edge.target])
-        end = target.x
-        if not forward:
-            right, end = card.x, target.x + WIDTH
-            columns = range(self.column[edge.target] + 1, self.column[key])
-            middle, columns = middle[::-1], columns[::-1]
-        path, at = f"M{right:.1f} {y:.1f}", right
-        tip = end - 7 if forward else end + 7
-        for place, through in zip(middle, columns, strict=True):
-            near, off = self.left[through], self.left[through] + WIDTH
-            if not forward:
-                near, off = off, near
+        if self._is_back(key, edge):
+            path = self._path((card.x, y), (target.x + WIDTH + 7, to), key, edge, top)
+            return [f'<path class="{kind}" d="{path}"/>', head(target.x + WIDTH, to, shape, "left")]
+        path = self._path((right, y), (target.x - 7, to), key, edge, top)
+        return [f'<path class="{kind}" d="{path}"/>', head(target.x, to, shape, "right")]
+
+    def _path(
+        self, begin: tuple[float, float], end: tuple[float, float], key: str, edge: Edge, top: float
+    ) -> str:
+        """The path of a line through the columns between two cards."""
+        chain = self.links[key, edge.target, edge.kind].chain[1:-1]
+        middle = [top + self.layout.aside[place] + 4.5 for place in chain]
+        low, high = sorted((self.column[key], self.column[edge.target]))
+        through = [(self.left[one], self.left[one] + WIDTH) for one in range(low + 1, high)]
+        if self._is_back(key, edge):
+            middle, through = middle[::-1], [(off, near) for near, off in through[::-1]]
+        (at, y), path = begin, f"M{begin[0]:.1f} {begin[1]:.1f}"
+        for place, (near, off) in zip(middle, through, strict=True):
             path += _curve(at, y, near, place) + f"H{off:.1f}"
             at, y = off, place
-        path += _curve(at, y, tip, to)
-        turn = "right" if forward else "left"
-        return [f'<path class="{kind}" d="{path}"/>', head(end, to, shape, turn)]
+        return path + _curve(at, y, *end)
 
     def _bow(
         self, right: float, y: float, to: float, own: bool, kind: str, shape: str

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from pathlib import PurePath
 
 from prima.graph.labels import (
     ASKED,
+    NO_REPLY,
+    Reply,
     condition,
-    handled,
     joined,
+    known,
     literals,
-    otherwise,
-    quoted,
+    notes,
     sayings,
 )
 from prima.graph.model import Graph, Node, clean, settle
-from prima.graph.throws import Taker, Throws, chosen
+from prima.graph.throws import Taker
+from prima.graph.transitions import ANY, Branches, Transitions
 from prima.interpreter.acts import (
     Act,
     CommandTemplate,
@@ -48,13 +51,7 @@ from prima.interpreter.elements import (
     all_items,
 )
 from prima.interpreter.events import DEFAULTS
-from prima.interpreter.selection import takes
 from prima.language.commands import TABLE_4_2
-
-ANY = ":any"
-"""The key for all states; no form can have it as its id."""
-QUESTIONS = 3
-"""Number of questions of a state that are shown."""
 
 
 def states(document: Document) -> Graph:
@@ -62,21 +59,20 @@ def states(document: Document) -> Graph:
     return _Reader(document).graph
 
 
-class _Reader:
+class _Reader(Transitions[Act]):
+    goes_on = DEFAULTS
+
     def __init__(self, document: Document) -> None:
+        super().__init__(f"The states of {clean(document.id)}")
         self.document = document
-        self.graph = Graph(f"The states of {clean(document.id)}")
-        self.here = ANY
-        self.hints: dict[str, list[str]] = {}
-        self.scopes: list[Sequence[Handler]] = []
-        """The handlers that may take a thrown event, innermost first."""
-        self.throws = Throws()
+        self.own = _takers(document.handlers)
         for form in document.forms.values():
             self._form(form)
         self._everywhere()
         settle(self.graph, {ANY: list(document.forms)})
 
     def _form(self, form: Form) -> None:
+        """Add a state and all transitions of it."""
         node = self.graph.node(form.id, form.id, start=not self.graph.nodes)
         place = form.node.place
         node.source = f"{PurePath(place.file).name}:{place.line}"
@@ -84,123 +80,86 @@ class _Reader:
         self.hints = _hints(self.document, form)
         self._links(form.links)
         items = all_items(form.items)
-        asked = [item for item in items if isinstance(item, Field)]
+        many = sum(isinstance(item, Field) for item in items) > 1
+        handlers = _takers(form.handlers)
         around = _around(form.items)
         for item in items:
-            self.scopes = [*around[id(item)], form.handlers, self.document.handlers]
-            conditions = [condition(item.cond.code, "", False)] if item.cond else []
-            if isinstance(item, Block):
-                self._content(item.content, "then", conditions)
-            elif isinstance(item, Subdialog):
-                base = clean(item.node.get("name") or item.form)
-                self._to(item.form, "call", joined(f"subdialog {base}", conditions))
-                self._filleds(item.filled, f"{base} has returned", "", False)
-            elif isinstance(item, Field):
-                base = "answered" if len(asked) == 1 else f"{item.name} answered"
-                self._filleds(item.filled, base, item.name, item.answers.type == "boolean")
-            where = "" if len(asked) < 2 or not isinstance(item, Field) else f"{item.name}: "
-            self._handlers(item.handlers, where)
-        self.scopes = [form.handlers, self.document.handlers]
+            self.scopes = [*around[id(item)], handlers, self.own]
+            self._item(item, many)
+        self.scopes = [handlers, self.own]
         for filled in form.filled:
             names = ", ".join(filled.names) or "all"
-            self._content(filled.content, f"{names} answered", [])
-        self._handlers(form.handlers)
-        self._describe(node, form, items)
+            self.content(filled.content, f"{names} answered")
+        self.handlers(handlers)
+        _describe(node, form, items)
 
-    def _describe(self, node: Node, form: Form, items: Sequence[Item]) -> None:
-        """Describe a state: its marks, and what it asks or says."""
-        commands = _commands(_contents(form))
-        leaving = [one for one in commands if _leaves(one)]
-        node.marks = _marks(form, items, bool(leaving))
-        questions = [text for item in items if isinstance(item, Field) for text in _asked(item)]
-        node.notes = [f"asks {quoted(text)}" for text in questions[:QUESTIONS]]
-        if len(questions) > QUESTIONS:
-            node.notes.append(f"and {len(questions) - QUESTIONS} more")
-        said = [one for one in _commands(_blocks(form)) if one.text]
-        if not questions and said:
-            node.notes.append(f"says {quoted(_text(said[0].text or ()))}")
-        goals = dict.fromkeys(_goal(one) for one in leaving)
-        node.notes += [clean(goal) for goal in list(goals)[:2]]
+    def _item(self, item: Item, many: bool) -> None:
+        """Add the transitions of an item; with ``many`` questions, those of one have its name."""
+        conditions = [condition(item.cond.code)] if item.cond else []
+        where = ""
+        if isinstance(item, Block):
+            self.content(item.content, "then", conditions)
+        elif isinstance(item, Subdialog):
+            name = clean(item.node.get("name") or item.form)
+            self._to(item.form, "call", joined(f"subdialog {name}", conditions))
+            self._filleds(item.filled, f"{name} has returned", NO_REPLY)
+        elif isinstance(item, Field):
+            where = f"{item.name}: " if many else ""
+            reply = Reply(item.name, item.answers.type == "boolean")
+            self._filleds(item.filled, f"{item.name} answered" if many else "answered", reply)
+        self.handlers(_takers(item.handlers), where)
 
     def _everywhere(self) -> None:
         """Add the document's own handlers and links, which are active in all states."""
         self.here = ANY
         self.hints = _hints(self.document, None)
-        self.scopes = [self.document.handlers]
-        self._handlers(self.document.handlers)
+        self.scopes = [self.own]
+        self.handlers(self.own)
         self._links(self.document.links)
         if self.graph.out(ANY):
             self.graph.node(ANY, "in any state", kind="any")
 
-    # What leads away ------------------------------------------------------------------------
+    def _states(self) -> Iterable[tuple[str, Sequence[Taker[Act]]]]:
+        return ((form.id, _takers(form.handlers)) for form in self.document.forms.values())
+
+    # Transitions ------------------------------------------------------------------------------
 
     def _links(self, links: Iterable[Link]) -> None:
         for link in links:
             if link.form:
                 self._to(link.form, "go", f"said {sayings(link.node.all('grammar'))}")
 
-    def _filleds(self, filleds: Sequence[Filled], base: str, name: str, truth: bool) -> None:
+    def _filleds(self, filleds: Sequence[Filled], base: str, reply: Reply) -> None:
         for filled in filleds:
-            self._content(filled.content, base, [], name, truth)
+            self.content(filled.content, base, (), reply)
 
-    def _handlers(self, handlers: Sequence[Handler], where: str = "", of: str = "") -> None:
-        for handler in handlers:
-            cond = handler.cond.code if handler.cond else ""
-            told = handled(handler.events, handler.count, cond, self.hints)
-            self._content(handler.content, f"{where}{told}{of}", [])
-            if not of and self.here != ANY and _stays(handler):
-                self.graph.edge(self.here, self.here, "stay", told)
+    def _leaves(self, act: Act, told: str) -> bool:
+        match act:
+            case Goto():
+                self._goto(act, told)
+            case Exit():
+                self.graph.edge(self.here, "", "exit", told)
+            case Return():
+                thrown = f", throws {act.event}" if act.event else ""
+                self.graph.edge(self.here, "", "return", told + thrown)
+            case Throw():
+                if not isinstance(act.event, Expression):
+                    self.throw(act.event, told)
+            case _:
+                return False
+        return True
 
-    def _content(
-        self,
-        content: Sequence[Act],
-        base: str,
-        conditions: list[str],
-        name: str = "",
-        truth: bool = False,
-    ) -> bool:
-        """Add all transitions of content; return whether it never reaches its end."""
-        conditions = list(conditions)
-        for act in content:
-            told = joined(base, conditions)
-            match act:
-                case Goto():
-                    self._goto(act, told)
-                    return True
-                case Exit():
-                    self.graph.edge(self.here, "", "exit", told)
-                    return True
-                case Return():
-                    thrown = f", throws {act.event}" if act.event else ""
-                    self.graph.edge(self.here, "", "return", told + thrown)
-                    return True
-                case Throw():
-                    self._throw(act.event, told)
-                    return True
-                case If():
-                    over, left = self._branches(act, base, conditions, name, truth)
-                    if over:
-                        return True
-                    conditions += left
-                case Foreach():
-                    self._content(act.content, base, conditions, name, truth)
-                case Run():
-                    for command in run_commands(act.steps):
-                        self._handlers(command.handlers, of=f" of {_title(command)}")
-        return False
+    def _passes(self, act: Act, base: str, conditions: list[str], reply: Reply) -> None:
+        if isinstance(act, Foreach):
+            self.content(act.content, base, conditions, reply)
+        elif isinstance(act, Run):
+            for command in run_commands(act.steps):
+                self.handlers(_takers(command.handlers), of=f" of {_title(command)}")
 
-    def _branches(
-        self, act: If, base: str, conditions: list[str], name: str, truth: bool
-    ) -> tuple[bool, list[str]]:
-        """Add the transitions of an ``if``; return whether it never ends, and what holds after it."""
-        ends: list[bool] = []
-        told: list[str] = []
-        for cond, branch in act.branches:
-            one = condition(cond.code, name, truth) if cond else otherwise(told)
-            ends.append(self._content(branch, base, [*conditions, one], name, truth))
-            told.append(one)
-        complete = act.branches[-1][0] is None
-        return all(ends) and complete, [otherwise(told)] if any(ends) and not complete else []
+    def _branches(self, act: Act) -> Branches[Act]:
+        if not isinstance(act, If):
+            return ()
+        return [(cond.code if cond else None, acts) for cond, acts in act.branches]
 
     def _goto(self, act: Goto, told: str) -> None:
         if isinstance(act.form, Expression):
@@ -210,40 +169,6 @@ class _Reader:
         elif act.form:
             self._to(act.form, "go", told)
 
-    def _throw(self, event: str | Expression, told: str) -> None:
-        """Add the transitions of handlers that take a thrown event, unless it is computed."""
-        if isinstance(event, Expression):
-            return
-        with self.throws.following(event) as followed:
-            if not followed:
-                return
-            if self.here == ANY:
-                self._throw_in_states(event, told)
-            self._taken(event, told)
-
-    def _throw_in_states(self, event: str, told: str) -> None:
-        """Events that the document's handlers throw go to a state's own handlers first."""
-        for form in self.document.forms.values():
-            if any(takes(name, event) for handler in form.handlers for name in handler.events):
-                self.here, self.scopes = form.id, [form.handlers]
-                self._taken(event, told, ends=False)
-        self.here, self.scopes = ANY, [self.document.handlers]
-
-    def _taken(self, event: str, told: str, ends: bool = True) -> None:
-        found, always = chosen(
-            Taker(handler, handler.count, handler.cond.code if handler.cond else "")
-            for scope in self.scopes
-            for handler in scope
-            if any(takes(name, event) for name in handler.events)
-        )
-        told = f"{told}, throws {event}"
-        for one in found:
-            self._content(one.handler.content, one.told(told), [])
-            if self.here != ANY and _stays(one.handler):
-                self.graph.edge(self.here, self.here, "stay", one.told(told))
-        if ends and not always and not any(takes(name, event) for name in DEFAULTS):
-            self.graph.edge(self.here, "", "exit", told)
-
     def _to(self, form: str, kind: str, told: str) -> None:
         if form in self.document.forms:
             self.graph.edge(self.here, form, kind, told)
@@ -251,51 +176,71 @@ class _Reader:
             self.graph.edge(self.here, "", "missing", told, form)
 
 
+def _describe(node: Node, form: Form, items: Sequence[Item]) -> None:
+    """Describe a state: its marks, and what it asks or says."""
+    leaving = [one for one in _commands(_contents(form)) if _leads_away(one)]
+    questions = [text for item in items if isinstance(item, Field) for text in _asked(item)]
+    said = [one.text for one in _commands(_blocks(form)) if one.text]
+    goals = dict.fromkeys(_goal(one) for one in leaving)
+    node.marks = _marks(form, items, bool(leaving))
+    node.notes = notes(questions, _text(said[0]) if said and not questions else "", [*goals][:2])
+
+
 def _marks(form: Form, items: Sequence[Item], leaving: bool) -> list[str]:
     """The special properties of a state, each in one or two words."""
-    runs = _runs(_contents(form))
     fields = [item for item in items if isinstance(item, Field)]
-    grouped = any(isinstance(step.what, GroupTemplate) for run in runs for step in run.steps)
-    holds = [form.hold, *(item.hold for item in items)]
+    steps = [step.what for run in _runs(_contents(form)) for step in run.steps]
     marks = {
         "asks": bool(fields),
         "sleeps": not _leaves_at_its_end(form.items),
         "leaves the user": leaving,
-        "unit": grouped or any(isinstance(item, Unit) for item in items),
-        "holds its stream": any(hold is not None for hold in holds),
+        "unit": any(isinstance(one, Unit | GroupTemplate) for one in [*items, *steps]),
+        "holds its stream": any(
+            hold is not None for hold in [form.hold, *(item.hold for item in items)]
+        ),
         "faces the user": form.connect or any(field.connect for field in fields),
     }
     return [mark for mark, applies in marks.items() if applies]
 
 
-def _around(items: Sequence[Item], outer: Sequence[Sequence[Handler]] = ()) -> _Scopes:
+def _takers(handlers: Iterable[Handler]) -> list[Taker[Act]]:
+    return [
+        Taker(one.content, one.events, one.count, one.cond.code if one.cond else "", _stays(one))
+        for one in handlers
+    ]
+
+
+def _around(items: Sequence[Item], outer: Sequence[_Scope] = ()) -> dict[int, list[_Scope]]:
     """The handlers of each item and of the units around it, innermost first, by its identity."""
-    found: _Scopes = {}
+    found: dict[int, list[_Scope]] = {}
     for item in items:
-        found[id(item)] = [item.handlers, *outer]
+        found[id(item)] = [_takers(item.handlers), *outer]
         if isinstance(item, Unit):
             found |= _around(item.items, found[id(item)])
     return found
 
 
-_Scopes = dict[int, list[Sequence[Handler]]]
+_Scope = Sequence[Taker[Act]]
 
 
 def _hints(document: Document, form: Form | None) -> dict[str, list[str]]:
     """The known sources of events in a state: links, watches, its own delays."""
-    found: dict[str, list[str]] = {}
-    for link in [*document.links, *(form.links if form else [])]:
-        if link.event:
-            found.setdefault(link.event, []).append(f"said {sayings(link.node.all('grammar'))}")
-    for watch in [*document.watches, *(form.watches if form else [])]:
-        found.setdefault(watch.name, []).append(clean(watch.when.code))
+    parts: list[Document | Form] = [document, form] if form else [document]
     contents: list[Sequence[Act]] = [handler.content for handler in document.handlers]
     contents += _contents(form) if form else []
-    for act in [act for content in contents for act in all_acts(content)]:
-        if isinstance(act, SendOut) and act.event:
-            told = f"after {act.delay / 1000:g} s" if isinstance(act.delay, int) else "later"
-            found.setdefault(act.event, []).append(told)
-    return {event: list(dict.fromkeys(hints)) for event, hints in found.items()}
+    sources: list[tuple[str, str]] = []
+    for link in chain.from_iterable(part.links for part in parts):
+        sources.append((link.event, f"said {sayings(link.node.all('grammar'))}"))
+    for watch in chain.from_iterable(part.watches for part in parts):
+        sources.append((watch.name, clean(watch.when.code)))
+    for act in chain.from_iterable(map(all_acts, contents)):
+        if isinstance(act, SendOut):
+            sources.append((act.event, _when(act)))
+    return known(source for source in sources if source[0])
+
+
+def _when(act: SendOut) -> str:
+    return f"after {act.delay / 1000:g} s" if isinstance(act.delay, int) else "later"
 
 
 def _blocks(form: Form) -> list[Sequence[Act]]:
@@ -327,19 +272,17 @@ def _commands(contents: list[Sequence[Act]]) -> list[CommandTemplate]:
 
 def _leaves_at_its_end(items: Sequence[Item]) -> bool:
     """Whether a state is left before its items end, so that it never waits for events."""
-    for item in items:
-        if item.cond is not None or item.expr is not None:
-            continue
-        if isinstance(item, Block):
-            left = _never_ends(item.content)
-        elif isinstance(item, Unit):
-            left = _leaves_at_its_end(item.items)
-        elif isinstance(item, Field | Subdialog):
-            left = any(_never_ends(filled.content) for filled in item.filled)
-        else:
-            left = False
-        if left:
-            return True
+    return any(_leaves_state(item) for item in items if item.cond is None and item.expr is None)
+
+
+def _leaves_state(item: Item) -> bool:
+    match item:
+        case Block():
+            return _never_ends(item.content)
+        case Unit():
+            return _leaves_at_its_end(item.items)
+        case Field() | Subdialog():
+            return any(_never_ends(filled.content) for filled in item.filled)
     return False
 
 
@@ -361,7 +304,7 @@ def _stays(handler: Handler) -> bool:
     return bool(acts) and not ways and not ASKED.issuperset(handler.events)
 
 
-def _leaves(command: CommandTemplate) -> bool:
+def _leads_away(command: CommandTemplate) -> bool:
     row = TABLE_4_2.get(command.type)
     return row is not None and row.leaves
 

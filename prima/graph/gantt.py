@@ -7,7 +7,7 @@ from html import escape
 from prima.graph.run import History, in_words
 from prima.graph.svg import box, fit, line, measure, picture, text
 from prima.transcript.colours import NOBODY
-from prima.transcript.spans import Stream
+from prima.transcript.spans import Piece, Stream
 
 ROW, BAR = 26.0, 14.0
 MARGIN = 18.0
@@ -25,7 +25,6 @@ LEGEND = (
 
 def draw(history: History) -> str:
     """The streams' history as SVG."""
-    title = history.title
     names = [stream.name for stream in history.streams]
     left = MARGIN + min(max([measure(name, 11.5) for name in names], default=0) + 12, 240)
     end = max(history.end, 0.001)
@@ -33,15 +32,7 @@ def draw(history: History) -> str:
     width = left + PLOT + MARGIN + 30
     top = MARGIN + 30
     bottom = top + ROW * len(names)
-    parts = [text(MARGIN, MARGIN + 8, title, "name")]
-    step = next((one for one in STEPS if end / one <= 12), STEPS[-1])
-    for tick in range(int(end // step) + 1):
-        x = left + tick * step * scale
-        parts += [
-            line(x, top - 2, x, bottom + 4, "grid"),
-            text(x - 3, bottom + 16, f"{tick * step}", "small"),
-        ]
-    parts.append(text(MARGIN, bottom + 16, "seconds", "small"))
+    parts = [text(MARGIN, MARGIN + 8, history.title, "name"), *_axis(left, end, top, bottom)]
     for number, stream in enumerate(history.streams):
         shade = history.shades.get(stream.app, NOBODY)
         parts += _row(stream, shade, left, top + ROW * number, scale)
@@ -50,7 +41,20 @@ def draw(history: History) -> str:
         mark = line(x, y - 4, x + 22, y - 4) if kind == "line" else box(x, y - 10, 22, 12, kind, 2)
         parts += [mark, text(x + 28, y, words, "small")]
         x += 46 + measure(words, 10)
-    return picture(title, told(history), width, y + MARGIN, parts)
+    return picture(history.title, told(history), width, y + MARGIN, parts)
+
+
+def _axis(left: float, end: float, top: float, bottom: float) -> list[str]:
+    """The grid, and its times in seconds."""
+    parts = []
+    step = next((one for one in STEPS if end / one <= 12), STEPS[-1])
+    for tick in range(int(end // step) + 1):
+        x = left + tick * step * PLOT / end
+        parts += [
+            line(x, top - 2, x, bottom + 4, "grid"),
+            text(x - 3, bottom + 16, f"{tick * step}", "small"),
+        ]
+    return [*parts, text(MARGIN, bottom + 16, "seconds", "small")]
 
 
 def _applications(history: History) -> list[tuple[str, str]]:
@@ -62,37 +66,53 @@ def _applications(history: History) -> list[tuple[str, str]]:
 def _row(stream: Stream, shade: int, left: float, y: float, scale: float) -> list[str]:
     """A stream's name, its line and its pieces."""
     middle = y + BAR / 2
-    begin, end = left + stream.begin * scale, left + stream.end * scale
     parts = [text(MARGIN, middle + 4, fit(stream.name, left - MARGIN - 8))]
-    at = begin
-    for span in sorted(stream.pieces, key=lambda span: span.begin):
-        if left + span.begin * scale > at:
-            parts.append(line(at, middle, left + span.begin * scale, middle))
-        at = max(at, left + span.end * scale)
-    if end > at:
-        parts.append(line(at, middle, end, middle))
+    parts += [
+        line(left + begin * scale, middle, left + end * scale, middle)
+        for begin, end in _open(stream)
+    ]
     if stream.ended:
+        end = left + stream.end * scale
         parts.append(line(end, y, end, y + BAR))
-    kinds = {"away": "away", "broken": "broken"}
     for span in sorted(stream.pieces, key=lambda span: span.kind != "away"):
         x, wide = left + span.begin * scale, max((span.end - span.begin) * scale, 1.5)
         hint = f"{stream.name} {in_words(span)}, {span.begin:.2f} to {span.end:.2f} s"
-        parts.append(f"<g><title>{escape(hint)}</title>")
         thin = 0 if span.kind == "runs" else 3
-        parts.append(box(x, y - thin, wide, BAR + 2 * thin, kinds.get(span.kind, f"s{shade}"), 2))
-        # A behavior that still runs after the suspension covers its beginning.
-        covered = [
-            one.end
-            for one in stream.pieces
-            if one.kind == "runs" and one.begin <= span.begin < one.end
+        kind = f"s{shade}" if span.kind == "runs" else span.kind
+        parts += [
+            f"<g><title>{escape(hint)}</title>",
+            box(x, y - thin, wide, BAR + 2 * thin, kind, 2),
+            *_words(stream, span, left, middle, scale),
+            "</g>",
         ]
-        start = max([span.begin, *covered]) if span.kind == "away" else span.begin
-        room = (span.end - start) * scale - 8
-        words = in_words(span) if span.kind != "runs" else ""
-        if words and measure(words, 10) <= room:
-            parts.append(text(left + start * scale + 5, middle + 3.5, words, "small"))
-        parts.append("</g>")
     return parts
+
+
+def _open(stream: Stream) -> list[tuple[float, float]]:
+    """When a stream is open and nothing of it runs."""
+    gaps = []
+    at = stream.begin
+    for span in sorted(stream.pieces, key=lambda span: span.begin):
+        gaps.append((at, span.begin))
+        at = max(at, span.end)
+    return [(begin, end) for begin, end in [*gaps, (at, stream.end)] if begin < end]
+
+
+def _words(stream: Stream, span: Piece, left: float, middle: float, scale: float) -> list[str]:
+    """The words on a suspension or break, if there is room."""
+    if span.kind == "runs":
+        return []
+    start = _uncovered(stream, span) if span.kind == "away" else span.begin
+    words = in_words(span)
+    if measure(words, 10) > (span.end - start) * scale - 8:
+        return []
+    return [text(left + start * scale + 5, middle + 3.5, words, "small")]
+
+
+def _uncovered(stream: Stream, away: Piece) -> float:
+    """Where a suspension can be seen: a behavior that still runs covers its beginning."""
+    runs = [one for one in stream.pieces if one.kind == "runs"]
+    return max([away.begin, *(one.end for one in runs if one.begin <= away.begin < one.end)])
 
 
 def told(history: History) -> str:

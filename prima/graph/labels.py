@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 from prima.graph.model import clean, short
 from prima.markup.tree import Node
@@ -16,6 +17,10 @@ LITERAL = re.compile(r"""'([^'\\\n]*)'|"([^"\\\n]*)\"""")
 ASKED = frozenset({"noinput", "nomatch", "help"})
 """Events after which a question is asked again by default."""
 YES = {"yes": "no", "no": "yes"}
+QUESTIONS = 3
+"""Maximum number of questions of a state that are shown."""
+MOST_DEEP = 40
+"""Maximum depth of a grammar that is read."""
 
 
 def quoted(text: str, letters: int = SAID) -> str:
@@ -29,19 +34,25 @@ def ordinal(number: int) -> str:
     return f"{number}{'th' if teen else {1: 'st', 2: 'nd', 3: 'rd'}.get(number % 10, 'th')}"
 
 
-def condition(code: str, name: str, truth: bool) -> str:
-    """A condition; if it is about the answer just given, that answer.
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """The answer just given: the variable of its question, and whether it is yes or no."""
 
-    Args:
-        code: the expression.
-        name: the variable of the question that has been answered, if any.
-        truth: whether the answer is yes or no.
-    """
+    name: str
+    is_yes_or_no: bool
+
+
+NO_REPLY = Reply("", False)
+
+
+def condition(code: str, reply: Reply = NO_REPLY) -> str:
+    """A condition; if it is about the answer just given, that answer."""
     code = " ".join(code.split())
-    if name:
-        own = rf"(?:dialog\.)?{re.escape(name)}"
-        if truth and (match := re.fullmatch(rf"(!?) ?{own}(?: ?===? ?(true|false))?", code)):
-            return "yes" if (match[1] == "") == (match[2] != "false") else "no"
+    if reply.name:
+        own = rf"(?:dialog\.)?{re.escape(reply.name)}"
+        truth = re.fullmatch(rf"(!?) ?{own}(?: ?===? ?(true|false))?", code)
+        if reply.is_yes_or_no and truth:
+            return "yes" if (truth[1] == "") == (truth[2] != "false") else "no"
         if match := re.fullmatch(rf"{own} ?===? ?(?:{LITERAL.pattern})", code):
             return quoted(match[1] or match[2] or "")
     return "if " + short(clean(code), TOLD)
@@ -67,7 +78,7 @@ def handled(events: Iterable[str], count: int, cond: str, hints: dict[str, list[
         more = hints.get(event, [])
         told.append(f"{event} ({short('; '.join(more), TOLD)})" if more else event or "any event")
     times = f", {ordinal(count)} time" if count > 1 else ""
-    return joined(", ".join(told) + times, [condition(cond, "", False)] if cond else [])
+    return joined(", ".join(told) + times, [condition(cond)] if cond else [])
 
 
 def literals(code: str, names: Iterable[str]) -> list[str]:
@@ -94,19 +105,21 @@ def sayings(grammars: Iterable[Node]) -> str:
 
 def _phrases(node: Node, depth: int = 0) -> list[str]:
     """The alternatives at a grammar's beginning, or else all of its words."""
-    if depth > 40:
+    if depth > MOST_DEEP:
         return []
+    if around := _only_part(node):
+        return _phrases(around, depth + 1)
+    texts = map(_words, node.nodes[:4] if node.tag == "one-of" else [node])
+    return [text for text in texts if text]
+
+
+def _only_part(node: Node) -> Node | None:
+    """The part of a grammar that says all that it takes: its root rule, or its only part."""
     inner = [child for child in node.nodes if child.tag not in ("tag", "meta", "metadata")]
-    own = node.text
-    if not own and len(inner) == 1 and inner[0].tag in ("rule", "one-of", "item"):
-        return _phrases(inner[0], depth + 1)
-    if node.tag == "one-of":
-        return [text for child in inner[:4] if (text := _words(child))]
     if node.tag == "grammar" and inner and inner[0].tag == "rule":
-        root = next((rule for rule in inner if rule.get("id") == node.get("root")), inner[0])
-        return _phrases(root, depth + 1)
-    text = _words(node)
-    return [text] if text else []
+        return next((rule for rule in inner if rule.get("id") == node.get("root")), inner[0])
+    alone = len(inner) == 1 and inner[0].tag in ("rule", "one-of", "item")
+    return inner[0] if alone and not node.text else None
 
 
 def _words(node: Node, depth: int = 0) -> str:
@@ -115,10 +128,30 @@ def _words(node: Node, depth: int = 0) -> str:
     for item in node.content:
         if isinstance(item, str):
             parts.append(item)
-        elif depth < 40 and item.tag == "one-of" and item.nodes:
+        elif depth < MOST_DEEP and item.tag == "one-of" and item.nodes:
             parts.append(_words(item.nodes[0], depth + 1))
         elif item.tag == "ruleref":
             parts.append("...")
-        elif depth < 40 and item.tag in ("item", "token") and item.get("repeat")[:1] != "0":
+        elif depth < MOST_DEEP and item.tag in ("item", "token") and item.get("repeat")[:1] != "0":
             parts.append(_words(item, depth + 1))
     return " ".join(" ".join(parts).split())[:200]
+
+
+def notes(questions: Sequence[str], said: str, goals: Sequence[str]) -> list[str]:
+    """What a state asks or says, and where its Commands lead."""
+    more = len(questions) - QUESTIONS
+    return [
+        *(f"asks {quoted(text)}" for text in questions[:QUESTIONS]),
+        *([f"and {more} more"] if more > 0 else []),
+        *([f"says {quoted(said)}"] if said else []),
+        *map(clean, goals),
+    ]
+
+
+def known(sources: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
+    """The sources of events, each once, by event."""
+    found: dict[str, list[str]] = {}
+    for event, told in sources:
+        if told not in found.setdefault(event, []):
+            found[event].append(told)
+    return found

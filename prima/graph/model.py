@@ -155,14 +155,7 @@ def settle(graph: Graph, everywhere: dict[str, list[str]]) -> None:
         graph: the states of an application.
         everywhere: the nodes of what holds in all states of a document, each with those states.
     """
-    starts = [node.key for node in graph.nodes.values() if node.start]
-    found: set[str] = set()
-    while True:
-        now = reach(graph, [*starts, *found])
-        now |= {key for key, states in everywhere.items() if now.intersection(states)}
-        if now == found:
-            break
-        found = now
+    found = _reachable(graph, everywhere)
     loose = any(edge.kind == "computed" and edge.source in found for edge in graph.edges)
     for node in graph.nodes.values():
         if node.key not in found and loose:
@@ -171,6 +164,17 @@ def settle(graph: Graph, everywhere: dict[str, list[str]]) -> None:
             node.reached = False
             node.marks.append("never reached")
     _returns(graph)
+
+
+def _reachable(graph: Graph, everywhere: dict[str, list[str]]) -> set[str]:
+    """The nodes reachable from the start, also through what holds in a reachable state."""
+    now = {node.key for node in graph.nodes.values() if node.start}
+    found: set[str] = set()
+    while now != found:
+        found = now
+        now = found | reach(graph, found)
+        now |= {key for key, states in everywhere.items() if now.intersection(states)}
+    return found
 
 
 def _returns(graph: Graph) -> None:

@@ -33,16 +33,22 @@ def trees(run: Run, until: float = NEVER) -> Graph:
     colour = colours(run.apps)
     there = run if whole else run_until(run, until)
     asked = {name: one for name, one in there.behaviors.items() if one.requested}
-    parents = {name: _parents(one.asked) for name, one in asked.items()}
-    for name, one in asked.items():
-        if one.asked.before in parents:
-            parents[one.asked.before].append(name)
+    parents = _all_parents(asked)
     kept = [one for one in asked.values() if whole or one.state in ("running", "waiting")]
     for one in kept:
         _node(graph, one, _state(one, asked, parents[one.name]), colour, whole)
     for one in kept:
         _edges(graph, one, [name for name in parents[one.name] if name in graph.nodes])
     return graph
+
+
+def _all_parents(asked: Mapping[str, Behavior]) -> dict[str, list[str]]:
+    """The ABs after which each AB runs, also those that the mediator put in before it."""
+    parents = {name: _parents(one.asked) for name, one in asked.items()}
+    for name, one in asked.items():
+        if one.asked.before in parents:
+            parents[one.asked.before].append(name)
+    return parents
 
 
 def _edges(graph: Graph, one: Behavior, parents: list[str]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
 
 from prima.graph.model import INWARD, Edge, Graph, Node
 from prima.graph.run import History, in_words
@@ -14,6 +15,12 @@ MEANS = re.compile(r"[^\w ,?!'/=]|_")
 """Characters that may be syntax in Mermaid, and are escaped."""
 DATES = "YYYY-MM-DD HH:mm:ss.SSS"
 DASHED = ("call", "back", "guess", "stay")
+DOT_LINES = {
+    "call": ", style=dashed",
+    "back": ", style=dashed",
+    "guess": ", style=dotted",
+    "stay": ", style=dotted",
+}
 
 
 def lines(node: Node) -> list[str]:
@@ -22,13 +29,27 @@ def lines(node: Node) -> list[str]:
     return [node.title, *marks, *node.notes]
 
 
-def ends(graph: Graph) -> dict[tuple[str, str], Edge]:
-    """Targets outside the application, which need a node, by kind and name."""
+def numbered(graph: Graph) -> dict[str, str]:
+    """An identifier for each node, by its key."""
+    return {key: f"n{index}" for index, key in enumerate(graph.nodes, 1)}
+
+
+def ends(graph: Graph) -> list[Edge]:
+    """Edges to targets outside the application, which need a node: one for each target."""
     found: dict[tuple[str, str], Edge] = {}
     for edge in graph.edges:
         if edge.kind not in INWARD:
             found.setdefault((edge.kind, edge.where), edge)
-    return found
+    return list(found.values())
+
+
+def arrows(graph: Graph) -> Iterator[tuple[Edge, str, str]]:
+    """The edges with the identifiers of the nodes where they begin and end."""
+    number = numbered(graph)
+    outside = {(edge.kind, edge.where): f"out{i}" for i, edge in enumerate(ends(graph), 1)}
+    for edge in graph.edges:
+        target = number[edge.target] if edge.target else outside[edge.kind, edge.where]
+        yield edge, number[edge.source], target
 
 
 def groups(graph: Graph) -> dict[str, list[Node]]:
@@ -50,7 +71,7 @@ def quote(text: str) -> str:
 
 def dot(graph: Graph) -> str:
     """A graph in DOT."""
-    number = {key: f"n{index}" for index, key in enumerate(graph.nodes, 1)}
+    number = numbered(graph)
     made = [
         "digraph prima {",
         f"  graph [label={quote(graph.title)}, labelloc=t, rankdir={'LR' if graph.across else 'TB'}];",
@@ -59,35 +80,34 @@ def dot(graph: Graph) -> str:
     ]
     for index, (group, nodes) in enumerate(groups(graph).items(), 1):
         inside = [f"  {number[node.key]} [{_attributes(node)}];" for node in nodes]
-        if group:
-            inside = [
-                f"  subgraph cluster_{index} {{",
-                f"    label={quote(f'stream {group}')}; style=dashed;",
-                *(f"  {one}" for one in inside),
-                "  }",
-            ]
-        made += inside
-    starts = [key for key, node in graph.nodes.items() if node.start]
-    if starts:
+        made += _cluster(index, group, inside) if group else inside
+    if starts := _starts(graph):
         made.append('  start [shape=point, width=0.2, label=""];')
         made += [f"  start -> {number[key]};" for key in starts]
-    outside = {}
-    for index, (name, edge) in enumerate(ends(graph).items(), 1):
-        outside[name] = f"out{index}"
+    for index, edge in enumerate(ends(graph), 1):
         shape = "doublecircle" if edge.kind == "exit" else "plaintext"
-        label = "end" if edge.kind == "exit" else edge.words
-        made.append(f"  out{index} [shape={shape}, label={quote(label)}];")
-    for edge in graph.edges:
-        to = number[edge.target] if edge.target else outside[edge.kind, edge.where]
-        style = {
-            "call": ", style=dashed",
-            "back": ", style=dashed",
-            "guess": ", style=dotted",
-            "stay": ", style=dotted",
-        }
+        made.append(f"  out{index} [shape={shape}, label={quote(_end(edge))}];")
+    for edge, source, target in arrows(graph):
         label = quote("\n".join(_edge_lines(edge)))
-        made.append(f"  {number[edge.source]} -> {to} [label={label}{style.get(edge.kind, '')}];")
+        made.append(f"  {source} -> {target} [label={label}{DOT_LINES.get(edge.kind, '')}];")
     return "\n".join([*made, "}"]) + "\n"
+
+
+def _cluster(index: int, group: str, inside: list[str]) -> list[str]:
+    return [
+        f"  subgraph cluster_{index} {{",
+        f"    label={quote(f'stream {group}')}; style=dashed;",
+        *(f"  {one}" for one in inside),
+        "  }",
+    ]
+
+
+def _starts(graph: Graph) -> list[str]:
+    return [key for key, node in graph.nodes.items() if node.start]
+
+
+def _end(edge: Edge) -> str:
+    return "end" if edge.kind == "exit" else edge.words
 
 
 def _attributes(node: Node) -> str:
@@ -140,7 +160,7 @@ def entity(text: str) -> str:
 
 def mermaid(graph: Graph) -> str:
     """A graph as a Mermaid flowchart."""
-    number = {key: f"n{index}" for index, key in enumerate(graph.nodes, 1)}
+    number = numbered(graph)
     made = ["---", f"title: {json.dumps(graph.title)}", "---"]
     made.append(f"flowchart {'LR' if graph.across else 'TB'}")
     for index, (group, nodes) in enumerate(groups(graph).items(), 1):
@@ -149,24 +169,23 @@ def mermaid(graph: Graph) -> str:
             title = entity(f"stream {group}")
             inside = [f'  subgraph g{index}["{title}"]', *(f"  {one}" for one in inside), "  end"]
         made += inside
-    starts = [key for key, node in graph.nodes.items() if node.start]
-    if starts:
+    if starts := _starts(graph):
         made.append('  start(("start"))')
         made += [f"  start --> {number[key]}" for key in starts]
-    outside = {}
-    for index, (name, edge) in enumerate(ends(graph).items(), 1):
-        outside[name] = f"out{index}"
-        text = "end" if edge.kind == "exit" else edge.words
-        shape = f'((("{entity(text)}")))' if edge.kind == "exit" else f'>"{entity(text)}"]'
+    for index, edge in enumerate(ends(graph), 1):
+        label = entity(_end(edge))
+        shape = f'((("{label}")))' if edge.kind == "exit" else f'>"{label}"]'
         made.append(f"  out{index}{shape}")
-    for edge in graph.edges:
-        to = number[edge.target] if edge.target else outside[edge.kind, edge.where]
-        label = "<br/>".join(map(entity, _edge_lines(edge)))
-        arrow = "-.->" if edge.kind in DASHED else "-->"
-        words = f'|"{label}"|' if label else ""
-        made.append(f"  {number[edge.source]} {arrow}{words} {to}")
+    made += [_arrow(*one) for one in arrows(graph)]
     made += _classes(graph, number)
     return "\n".join(made) + "\n"
+
+
+def _arrow(edge: Edge, source: str, target: str) -> str:
+    label = "<br/>".join(map(entity, _edge_lines(edge)))
+    arrow = "-.->" if edge.kind in DASHED else "-->"
+    words = f'|"{label}"|' if label else ""
+    return f"  {source} {arrow}{words} {target}"
 
 
 def _shape(node: Node) -> str:
@@ -222,21 +241,8 @@ def _date(seconds: float) -> str:
 
 def data(graph: Graph) -> str:
     """A graph as JSON: ``nodes`` by their ``id``, and ``edges`` between them."""
-    number = {key: f"n{index}" for index, key in enumerate(graph.nodes, 1)}
-    nodes = [
-        {
-            "id": number[node.key],
-            "name": node.title,
-            "kind": node.kind,
-            "start": node.start,
-            "reached": node.reached,
-            "marks": node.marks,
-            "notes": node.notes,
-            **({"stream": node.group} if node.group else {}),
-            **({"source": node.source} if node.source else {}),
-        }
-        for node in graph.nodes.values()
-    ]
+    number = numbered(graph)
+    nodes = [_node_data(number[key], node) for key, node in graph.nodes.items()]
     edges = [
         {
             "from": number[edge.source],
@@ -249,6 +255,20 @@ def data(graph: Graph) -> str:
     ]
     made = {"title": graph.title, "nodes": nodes, "edges": edges}
     return json.dumps(made, ensure_ascii=False, indent=2) + "\n"
+
+
+def _node_data(name: str, node: Node) -> dict[str, object]:
+    return {
+        "id": name,
+        "name": node.title,
+        "kind": node.kind,
+        "start": node.start,
+        "reached": node.reached,
+        "marks": node.marks,
+        "notes": node.notes,
+        **({"stream": node.group} if node.group else {}),
+        **({"source": node.source} if node.source else {}),
+    }
 
 
 def data_streams(history: History) -> str:

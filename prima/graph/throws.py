@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
@@ -13,24 +13,30 @@ MOST_DEEP = 4
 """Maximum depth of handlers that throw in turn."""
 MOST_FOLLOWED = 2000
 """Maximum number of throws of one application that are followed."""
-T = TypeVar("T")
+Act = TypeVar("Act")
 
 
 @dataclass(frozen=True, slots=True)
-class Taker(Generic[T]):
-    """A handler that takes an event from its ``count``-th time on, if its condition holds."""
+class Taker(Generic[Act]):
+    """A handler that takes events from their ``count``-th time on, if its condition holds."""
 
-    handler: T
+    acts: Sequence[Act]
+    events: Sequence[str]
+    """The prefixes of the events; the empty one takes all."""
     count: int
     cond: str
+    stays: bool
+    """Whether it does something without a transition."""
+    named: bool = True
+    """Whether the document names its events; else it shows only where they are thrown."""
 
     def told(self, told: str) -> str:
         """The label of an edge that leads through this handler."""
         times = f", {ordinal(self.count)} time" if self.count > 1 else ""
-        return joined(told + times, [condition(self.cond, "", False)] if self.cond else [])
+        return joined(told + times, [condition(self.cond)] if self.cond else [])
 
 
-def chosen(takers: Iterable[Taker[T]]) -> tuple[list[Taker[T]], bool]:
+def chosen(takers: Iterable[Taker[Act]]) -> tuple[list[Taker[Act]], bool]:
     """The handlers that may run, and whether one of them always does.
 
     Of those for one count the innermost and first runs whose condition holds
@@ -39,7 +45,7 @@ def chosen(takers: Iterable[Taker[T]]) -> tuple[list[Taker[T]], bool]:
     Args:
         takers: all that take the event, innermost first and each scope's in document order.
     """
-    kept: list[Taker[T]] = []
+    kept: list[Taker[Act]] = []
     settled: set[int] = set()
     for one in takers:
         if one.count not in settled:

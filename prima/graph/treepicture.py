@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from html import escape
+from itertools import accumulate
 
 from prima.graph.layout import THREAD, Link, arrange, depths
 from prima.graph.model import Graph, Node
@@ -73,26 +74,29 @@ def _frame(graph: Graph, name: str, nodes: list[Node]) -> tuple[list[str], float
 
 def _trees(graph: Graph, nodes: list[Node]) -> list[list[Node]]:
     """The nodes of a stream, divided into those that are linked with each other."""
-    held = {node.key: node for node in nodes}
-    near: dict[str, list[str]] = {key: [] for key in held}
-    for key in held:
+    held = {node.key for node in nodes}
+    near: dict[str, list[str]] = {node.key: [] for node in nodes}
+    for key in near:
         for edge in graph.out(key):
             if edge.target in held:
                 near[key].append(edge.target)
                 near[edge.target].append(key)
-    found: list[list[Node]] = []
-    seen: set[str] = set()
-    for key in held:
-        if key in seen:
-            continue
-        tree = [key]
-        seen.add(key)
-        for one in tree:
-            new = [two for two in dict.fromkeys(near[one]) if two not in seen]
-            seen.update(new)
-            tree += new
-        members = set(tree)
-        found.append([node for node in nodes if node.key in members])
+    trees: dict[str, list[Node]] = {}
+    root: dict[str, str] = {}
+    for node in nodes:
+        if node.key not in root:
+            root |= dict.fromkeys(_linked(node.key, near), node.key)
+        trees.setdefault(root[node.key], []).append(node)
+    return list(trees.values())
+
+
+def _linked(key: str, near: dict[str, list[str]]) -> set[str]:
+    """All nodes that a node is linked with, and itself."""
+    found, waiting = {key}, [key]
+    while waiting:
+        new = set(near[waiting.pop()]) - found
+        found |= new
+        waiting += new
     return found
 
 
@@ -107,36 +111,37 @@ def _tree(graph: Graph, nodes: list[Node]) -> tuple[list[str], float, float]:
     }
     words = [_lines(node) for node in nodes]
     layers = depths(len(nodes), list(kinds))
-    links = {
-        pair: Link(*pair, WIDTH / 2, WIDTH / 2)
-        for pair in kinds
-        if layers[pair[0]] < layers[pair[1]]
-    }
-    layout = arrange([WIDTH] * len(nodes), layers, list(links.values()), GAP)
-    tops, y = [], 0.0
-    for layer in range(max(layers) + 1):
-        tops.append(y)
-        y += max(_height(words[i]) for i, one in enumerate(layers) if one == layer) + STEP
+    links = [
+        Link(low, high, WIDTH / 2, WIDTH / 2) for low, high in kinds if layers[low] < layers[high]
+    ]
+    layout = arrange([WIDTH] * len(nodes), layers, links, GAP)
+    heights = [0.0] * (max(layers) + 1)
+    for layer, lines in zip(layers, words, strict=True):
+        heights[layer] = max(heights[layer], _height(lines) + STEP)
+    tops = list(accumulate(heights, initial=0.0))
     parts: list[str] = []
     for index, node in enumerate(nodes):
         parts += _box(node, words[index], layout.aside[index], tops[layers[index]])
-    for (low, high), link in links.items():
-        at = layout.aside[low] + WIDTH / 2
-        down = tops[layers[low]] + _height(words[low])
-        path = f"M{at:.1f} {down:.1f}"
-        for place, layer in zip(link.chain[1:], range(layers[low] + 1, len(tops)), strict=False):
-            last = layer == layers[high]
-            to = layout.aside[place] + (WIDTH / 2 if last else THREAD / 2)
-            end = tops[layer] - (7 if last else 0)
-            begin = tops[layer] - STEP
-            middle = (begin + end) / 2
-            path += f"V{begin:.1f}C{at:.1f} {middle:.1f} {to:.1f} {middle:.1f} {to:.1f} {end:.1f}"
-            at = to
-        kind = kinds[low, high]
-        parts.append(f'<path class="edge {kind}" d="{path}"/>')
-        shape = "head" if kind == "child" else f"{kind}-head"
-        parts.append(head(at, tops[layers[high]], shape, "down"))
-    return parts, layout.extent, y - STEP
+    for link in links:
+        down = tops[layers[link.low]] + _height(words[link.low])
+        stops = tops[layers[link.low] + 1 : layers[link.high] + 1]
+        parts += _line(link, kinds[link.low, link.high], layout.aside, down, stops)
+    return parts, layout.extent, tops[-1] - STEP
+
+
+def _line(link: Link, kind: str, aside: list[float], down: float, stops: list[float]) -> list[str]:
+    """A line from the foot of an AB, through the layers between, to the top of another."""
+    at = aside[link.low] + WIDTH / 2
+    path = f"M{at:.1f} {down:.1f}"
+    for place, top in zip(link.chain[1:], stops, strict=True):
+        last = place == link.high
+        to = aside[place] + (WIDTH / 2 if last else THREAD / 2)
+        begin, end = top - STEP, top - (7 if last else 0)
+        middle = (begin + end) / 2
+        path += f"V{begin:.1f}C{at:.1f} {middle:.1f} {to:.1f} {middle:.1f} {to:.1f} {end:.1f}"
+        at = to
+    shape = "head" if kind == "child" else f"{kind}-head"
+    return [f'<path class="edge {kind}" d="{path}"/>', head(at, stops[-1], shape, "down")]
 
 
 def _lines(node: Node) -> list[str]:

@@ -21,7 +21,7 @@ rule is believed, and its start is held to it.
 Each file is a family of rules and stands on those before it: ``model``,
 ``table`` (Table 4.2), ``memory``, ``channel`` (K, C5), ``turn`` (X7), ``floor`` (F, C2),
 ``extensions`` (X), ``late`` (X8, X10), ``streams`` (C, O1), ``patience`` (E6), ``selection`` (S), ``endings`` (O2, O3,
-E, U5), ``leaving`` (O3), ``telling`` (what records say of themselves), ``checker``.
+E, U5), ``leaving`` (O3), ``telling`` (what records say of themselves), ``starts``, ``checker``.
 
 The extensions relax some invariants, and each is held to what it relaxes:
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from prima.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Record, Tree, base
+from prima.invariants.model import AB, GONE, LINKED, Record, Tree, base
+from prima.invariants.starts import Starts
 from prima.invariants.table import contradictions
-from prima.invariants.telling import Telling
 
 
-class Checker(Telling):
+class Checker(Starts):
     """Goes through the records of one run, in order."""
 
     def run(self) -> list[str]:
@@ -24,7 +24,7 @@ class Checker(Telling):
             "stream-end": self.note_stream_end,
             "emergency": self.note_emergency,
             "decision": self._decision,
-            "start": self._start,
+            "start": self.note_start,
             "end": self._end,
             "starve": self.note_starve,
             "fail": self.note_fail,
@@ -169,145 +169,47 @@ class Checker(Telling):
 
     def _made(self, record: Record, tree: Tree) -> AB:
         """The AB that a request asks for."""
-        name = record["behavior"]
-        parents = record.get("parents") or ([record["parent"]] if record.get("parent") else [])
-        names = {base(parent) for parent in parents}
-        unknown = [parent for parent in names if parent not in self.abs]
-        if unknown:
-            self.report(4, "U3", f"{name} follows {unknown[0]}, which was never requested")
-        unit = self.abs.get(base(record["unit"])) if record.get("unit") else None
-        if record.get("inserted"):
-            names.discard(base(record["before"]))  # the loop of it that has ended
         cause = record.get("cause") if record.get("reactive") else None
+        unit = self.abs.get(base(record["unit"])) if record.get("unit") else None
         return AB(
-            name=name,
+            name=record["behavior"],
             command=record["command"],
             app=record["app"],
             tree=tree,
             devices=frozenset(record["devices"]),
             high=record["priority"] == "high",
-            leaves=bool(record.get("leaves")),
-            engages=bool(record.get("engages")),
-            feedback=bool(record.get("feedback")),
             question=record["command"] == "q-and-a",
             state=record.get("state"),
             unit=unit,
             cause=cause,
             reacted_to=cause,
-            parents={one for one in names if one in self.abs and self.abs[one].phase != GONE},
+            parents=self._parents(record),
             requested=self.now,
             place=self.place,
             urgent=record.get("order") == "now",
-            restartable=bool(record.get("restartable")),
             motion=record.get("motion") or "" if unit is None else "",
             fresh_until=self.now + record["fresh"] * self.second if record.get("fresh") else None,
-            spans=bool(record.get("spans")),
-            connect=bool(record.get("connect")),
             inserted=record.get("inserted") or "",
             put_before=base(record.get("before") or ""),
+            leaves=bool(record.get("leaves")),
+            engages=bool(record.get("engages")),
+            feedback=bool(record.get("feedback")),
+            restartable=bool(record.get("restartable")),
+            spans=bool(record.get("spans")),
+            connect=bool(record.get("connect")),
         )
 
-    # Starts -------------------------------------------------------------------------
-
-    def _start(self, record: Record) -> None:
-        ab = self.abs.get(base(record["behavior"]))
-        if ab is None:
-            self.report(3, "U1", f"{record['behavior']} starts and was never requested")
-            return
-        self.close_trees()
-        self._may_run(ab, record)
-        if self.halted:
-            self.report(2, "E5", f"{record['behavior']} starts during the emergency stop")
-        self._devices_free(ab, record["behavior"])
-        self.started_by(ab, record)
-        if ab.interrupted:
-            self.starts_again(ab, record)
-        if ab.unit is None:
-            self._start_outside(ab, record)
-        else:
-            self._start_inside(ab, record)
-
-    def _start_outside(self, ab: AB, record: Record) -> None:
-        shown = record["behavior"]
-        if self.prima and ab.phase == WAITING:
-            self.allowed(ab, shown)
-            self.decided_rightly(ab, shown)
-        if not self.third_turn(ab):
-            self.channel_connected(ab)
-            self.stands_right(ab)
-            self.words_said(ab)
-        reaction = self._reaction_of(ab, record)
-        aside = self.starts_aside(ab)
-        beside = aside or self.carries_floor(ab)
-        self._run(ab)
-        if not aside:
-            self.resume(ab)
-        if not self.prima:
-            ab.tree.suspended = False
-            return
-        if reaction is not None or not beside:
-            self.take_floor(ab, reaction)
-        self.note_words(ab)
-        self.floor_told_rightly()
-
-    def _start_inside(self, ab: AB, record: Record) -> None:
-        unit = ab.unit
-        assert unit is not None
-        self.started_inside.append(ab)
-        if unit.phase != RUNNING:
-            self.report(4, "U5", f"{ab.shown} starts, but its unit {unit.shown} does not run")
-        if self.prima and ab.leaves:
-            self.channel_kept(ab, record["behavior"])
-        self._run(ab)
-
-    def _run(self, ab: AB) -> None:
-        self.waiting.pop(ab.name, None)
-        self.turn = None if ab is self.turn else self.turn
-        ab.phase = RUNNING
-        ab.starts += 1
-        ab.started, ab.started_at, ab.reacted = self.place, self.now, ab.cause
-        ab.loop += 1 if ab.feedback else 0
-        ab.cause = ab.fresh_until = None
-        ab.listening = False
-        self.running[ab.name] = ab
-        self.driven = self.driven or "locomotion" in ab.devices
-        ab.tree.started = self.place
-        ab.tree.spoken = ab.tree.spoken or ("speaker" in ab.devices and ab.command != "iu")
-        ab.tree.engaged = ab.tree.engaged or ab.engages
-
-    def _may_run(self, ab: AB, record: Record) -> None:
-        """Invariants 3 and 4: asked for, not over, not running, and its parents have ended."""
-        shown = record["behavior"]
-        if ab.phase == GONE:
-            self.report(3, "U1", f"{shown} starts again: it was over")
-        elif ab.phase == RUNNING:
-            self.report(3, "U1", f"{shown} starts and runs already")
-        if ab.parents:
-            self.report(4, "U3", f"{shown} starts before {', '.join(sorted(ab.parents))} has ended")
-        expected = f"{ab.name}.{ab.loop + 1}" if ab.feedback else ab.name
-        if shown != expected:
-            self.report(3, "U2", f"{shown} starts where {expected} was due")
-        if frozenset(record["devices"]) != ab.devices or record["tree"] != ab.tree.name:
-            self.report(3, "U1", f"{shown} starts as something else than was requested")
-        if ab.app in self.gone_apps and ab.unit is None:
-            self.report(3, "E2", f"{shown} starts, but {ab.app} has ended")
-
-    def _devices_free(self, ab: AB, shown: str) -> None:
-        """Invariant 1; a unit's own Commands run on its devices."""
-        for other in self.running.values():
-            both = ab.devices & other.devices
-            if both and self.composes(ab, other):
-                continue
-            if both and other is not ab and not ab.inside(other) and not other.inside(ab):
-                what = ", ".join(sorted(both))
-                self.report(1, "S1", f"{shown} starts while {other.shown} runs on {what}")
-
-    def _reaction_of(self, ab: AB, record: Record) -> int | None:
-        """The event that a starting AB reacts to. E4's bound makes a reaction of what starved."""
-        if ab.cause is None and record.get("reactive"):
-            self.extra_reactions -= 1
-            return self.extra_reactions
-        return ab.cause
+    def _parents(self, record: Record) -> set[str]:
+        """U3: the ABs that a request follows and that are still there."""
+        parents = record.get("parents") or ([record["parent"]] if record.get("parent") else [])
+        names = {base(parent) for parent in parents}
+        unknown = [parent for parent in names if parent not in self.abs]
+        if unknown:
+            text = f"{record['behavior']} follows {unknown[0]}, which was never requested"
+            self.report(4, "U3", text)
+        if record.get("inserted"):
+            names.discard(base(record["before"]))  # the loop of it that has ended
+        return {one for one in names if one in self.abs and self.abs[one].phase != GONE}
 
     # The end of an instant ----------------------------------------------------------
 

@@ -2,8 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+
 from prima.invariants.late import Late
-from prima.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Cut, Record, base
+from prima.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Cut, Record, Tree, base
+
+Fault = tuple[int | None, str, str]
+"""The invariant that a cancellation violates, by default that of its AB's phase; a rule; a text."""
+
+
+def _shown(cut: Cut) -> str:
+    return f"{cut.ab.shown} ({cut.was}) is cancelled"
 
 
 class Endings(Late):
@@ -31,17 +40,21 @@ class Endings(Late):
         if ab.feedback and not record["goal"]:
             self._loop_over(ab)
             if record["outcome"] == "again":
-                self.wait(ab)
-                ab.followed_at = self.now
-                if self.has_left(ab):
-                    self.report(3, "O3", f"{ab.shown} goes on, but its state was left")
+                self._goes_on(ab)
                 return
-            if not (self.has_left(ab) or ab.silent or ab.app in self.gone_apps):
+            if not (self.is_given_up(ab) or ab.silent):
                 self.report(3, "U2", f"{ab.shown} ends before its goal, but its state goes on")
         self.hears_of(ab)
-        if not (ab.silent or ab.inserted or ab.command == "iu" or ab.unit):
+        if not (ab.inserted or ab.command == "iu"):
             self.hears_surely(ab)
         self.remove(ab)
+
+    def _goes_on(self, ab: AB) -> None:
+        """U2: a loop has ended, and the next one waits."""
+        self.wait(ab)
+        ab.followed_at = self.now
+        if self.has_left(ab):
+            self.report(3, "O3", f"{ab.shown} goes on, but its state was left")
 
     def note_fail(self, record: Record) -> None:
         """A request or an AB fails (E1)."""
@@ -73,32 +86,21 @@ class Endings(Late):
         ab = self.abs.get(base(record["behavior"]))
         if ab is None or ab.phase == GONE:
             self.report(3, "O2", f"{record['behavior']} is cancelled, but it is not there")
-            return
-        was, rule = ab.phase, record["rule"]
-        if record["outcome"] == "answered":
+        elif record["outcome"] == "answered":
             self.answered_early(ab, record)
-            return
-        if record["outcome"] == "halted":
-            if was != RUNNING:
-                self.report(3, "E5", f"{ab.shown} is halted, but it is {was}")
-            if not self.halted:
-                self.report(2, "E5", f"{ab.shown} is halted without an emergency stop")
-            if was == RUNNING:
-                self._loop_over(ab)
-            self.wait(ab)
-            return
+        elif record["outcome"] == "halted":
+            self._halted(ab)
+        else:
+            self._cancelled(ab, record)
+
+    def _cancelled(self, ab: AB, record: Record) -> None:
+        was, rule = ab.phase, record["rule"]
         # What is taken out at once, a failed tree or a unit, may be told as it was before.
-        behind = (
-            rule in ("E1", "X2") and was == WAITING and self.now in (ab.followed_at, ab.freed_at)
-        )
+        lately = was == WAITING and self.now in (ab.followed_at, ab.freed_at)
+        behind = rule in ("E1", "X2") and lately
         if record["outcome"] not in ((was, LINKED) if behind else (was,)):
             self.report(13, rule, f"{ab.shown} is {was} when cancelled, not {record['outcome']}")
-        # What the tree wanted when the first of it was taken out, and what it was asked since.
-        devices = self.tree_devices.get(ab.tree.name, frozenset()).union(
-            *(one.devices for one in ab.tree.members.values())
-        )
-        self.tree_devices[ab.tree.name] = devices
-        self.cuts.append(Cut(ab, was, rule, self.place, devices))
+        self.cuts.append(Cut(ab, was, rule, self.place, self._wanted(ab.tree)))
         if was == RUNNING:
             self._loop_over(ab)
         late = self.reaction_of(ab) if rule == "X8" else None
@@ -107,55 +109,94 @@ class Endings(Late):
         if rule == "X8":
             self.comes_too_late(ab, was, late, waited)
 
+    def _wanted(self, tree: Tree) -> frozenset[str]:
+        """The devices a tree wanted when the first of it was taken out, and has asked for since."""
+        there = [one.devices for one in tree.members.values()]
+        devices = self.tree_devices.get(tree.name, frozenset()).union(*there)
+        self.tree_devices[tree.name] = devices
+        return devices
+
+    def _halted(self, ab: AB) -> None:
+        """E5: the emergency stop ends an AB, which waits from here on."""
+        if ab.phase == RUNNING:
+            self._loop_over(ab)
+        else:
+            self.report(3, "E5", f"{ab.shown} is halted, but it is {ab.phase}")
+        if not self.halted:
+            self.report(2, "E5", f"{ab.shown} is halted without an emergency stop")
+        self.wait(ab)
+
     def justified(self, cut: Cut) -> None:
         """Invariants 2 and 3: why an AB was taken out of working memory."""
-        ab, number = cut.ab, 2 if cut.was == RUNNING else 3
-        shown = f"{ab.shown} ({cut.was}) is cancelled"
-        whole = [other.ab for other in self.cuts if ab.inside(other.ab)]
+        reasons: dict[str, Callable[[Cut], Iterator[Fault]]] = {
+            "O2": self._for_something_urgent,
+            "O3": self._as_state_was_left,
+            "E2": self._as_application_ended,
+            "U5": self._as_unit_ended,
+            "E1": self._as_tree_failed,
+            "X2": self._as_unit_gave_way,
+            "E5": self._in_emergency,
+        }
+        if cut.rule == "X8":
+            return  # looked at when it was cancelled
+        number = 2 if cut.was == RUNNING else 3
+        if cut.rule not in reasons:
+            text = f"{_shown(cut)} by a rule that cancels nothing"
+            self.report(number, cut.rule, text)
+            return
+        for only, rule, text in reasons[cut.rule](cut):
+            self.report(only or number, rule, f"{_shown(cut)}{text}")
+
+    def _units_cut(self, cut: Cut) -> list[AB]:
         """Units that are cancelled with it: what is in them goes with them."""
-        match cut.rule:
-            case "O2":
-                wanted = [
-                    one.devices
-                    for one, place in self.urgent
-                    if one.app == ab.app and place > cut.place
-                ]
-                devices = ab.devices.union(*(unit.devices for unit in whole))
-                if cut.was != RUNNING:
-                    devices = cut.tree_devices
-                if not any(one & devices for one in wanted):
-                    self.report(number, "O2", f"{shown} without a Command wanted now")
-            case "O3" | "E2":
-                if cut.was == RUNNING and not ab.listening and not whole:
-                    self.report(2, "O3", f"{shown}: it does not listen")
-                if cut.rule == "O3":
-                    if not self._given_up(cut):
-                        self.report(number, "O3", f"{shown}, but its state goes on")
-                elif ab.app not in self.unloaded:
-                    self.report(number, "E2", f"{shown}, but {ab.app} goes on")
-            case "U5":
-                if cut.was == RUNNING and not ab.listening:
-                    self.report(2, "U5", f"{shown}: it does not listen")
-            case "E1":
-                near = [one for one in self.failed if one.tree is ab.tree]
-                if not near:
-                    self.report(number, "E1", f"{shown}, but nothing of its tree has failed")
-                if cut.was == RUNNING and not any(ab.inside(one.unit) for one in near if one.unit):
-                    self.report(2, "E1", f"{shown}, but nothing of its unit has failed")
-            case "X2":
-                if not any(ab.inside(unit) for unit, _, _ in self.gave_way):
-                    self.report(number, "X2", f"{shown}, but no unit around it is interrupted")
-            case "E5":
-                if not (self.released or self.halted):
-                    self.report(number, "E5", f"{shown} without an emergency")
-            case "X8":
-                pass  # looked at when it was cancelled
-            case rule:
-                self.report(number, str(rule), f"{shown} by a rule that cancels nothing")
+        return [other.ab for other in self.cuts if cut.ab.inside(other.ab)]
+
+    def _for_something_urgent(self, cut: Cut) -> Iterator[Fault]:
+        """O2: something wanted now needs a device of it, or of its tree where it did not run."""
+        devices = cut.tree_devices
+        if cut.was == RUNNING:
+            devices = cut.ab.devices.union(*(unit.devices for unit in self._units_cut(cut)))
+        later = [one for one, place in self.urgent if place > cut.place]
+        if not any(one.app == cut.ab.app and one.devices & devices for one in later):
+            yield None, "O2", " without a Command wanted now"
+
+    def _only_listens(self, cut: Cut) -> Iterator[Fault]:
+        """O3, E2: what runs goes on, unless it listens or its unit is cancelled."""
+        if cut.was == RUNNING and not cut.ab.listening and not self._units_cut(cut):
+            yield 2, "O3", ": it does not listen"
+
+    def _as_state_was_left(self, cut: Cut) -> Iterator[Fault]:
+        yield from self._only_listens(cut)
+        if not self._given_up(cut):
+            yield None, "O3", ", but its state goes on"
+
+    def _as_application_ended(self, cut: Cut) -> Iterator[Fault]:
+        yield from self._only_listens(cut)
+        if cut.ab.app not in self.unloaded:
+            yield None, "E2", f", but {cut.ab.app} goes on"
+
+    def _as_unit_ended(self, cut: Cut) -> Iterator[Fault]:
+        if cut.was == RUNNING and not cut.ab.listening:
+            yield 2, "U5", ": it does not listen"
+
+    def _as_tree_failed(self, cut: Cut) -> Iterator[Fault]:
+        near = [one for one in self.failed if one.tree is cut.ab.tree]
+        if not near:
+            yield None, "E1", ", but nothing of its tree has failed"
+        if cut.was == RUNNING and not any(cut.ab.inside(one.unit) for one in near if one.unit):
+            yield 2, "E1", ", but nothing of its unit has failed"
+
+    def _as_unit_gave_way(self, cut: Cut) -> Iterator[Fault]:
+        if not any(cut.ab.inside(unit) for unit, _, _ in self.gave_way):
+            yield None, "X2", ", but no unit around it is interrupted"
+
+    def _in_emergency(self, _cut: Cut) -> Iterator[Fault]:
+        if not (self.released or self.halted):
+            yield None, "E5", " without an emergency"
 
     def _given_up(self, cut: Cut) -> bool:
         """O3: its state is left in this instant; of what ran, it or its application was left before."""
         ab = cut.ab
         if cut.was == RUNNING:
-            return self.has_left(ab) or ab.app in self.gone_apps
+            return self.is_given_up(ab)
         return (ab.app, ab.state) in self.left_now

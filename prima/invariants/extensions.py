@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import TypeGuard
 
 from prima.invariants.floor import Floor
 from prima.invariants.model import AB, LINKED, RUNNING, WAITING, Record, Tree, base
@@ -33,16 +34,7 @@ class Extensions(Floor):
         if before is None or before.tree is not ab.tree or before.inserted or before.unit:
             self.report(11, rule, f"{shown} before something that it cannot stand before")
             return
-        first = before.phase == WAITING
-        if not first and not before.parents & ab.parents:
-            self.report(11, rule, f"{shown}, but {before.shown} is {before.phase}")
-        if ab.cause != (before.cause if first else None):
-            self.report(11, "C5", f"{shown} with a flag that {before.shown} has not")
-        ab.fresh_until = before.fresh_until if first else None
-        before.cause = before.fresh_until = None
-        # It takes the other's place in the order of S2.
-        ab.requested, ab.place = before.requested, before.place
-        ab.followed_at = before.followed_at
+        self._takes_place(ab, before)
         if rule == "X1":
             self._restores(ab, record)
         elif rule == "X9":
@@ -53,8 +45,25 @@ class Extensions(Floor):
         before.phase = LINKED
         self.waiting.pop(before.name, None)
         if rule != "X4":
-            for other in [one for one in self.waiting.values() if one.tree is ab.tree]:
-                self.join_first(other)
+            self._goes_first(ab.tree)
+
+    def _goes_first(self, tree: Tree) -> None:
+        """X1, X9: all that waits in a stream waits for what is put in."""
+        for other in [one for one in self.waiting.values() if one.tree is tree]:
+            self.join_first(other)
+
+    def _takes_place(self, ab: AB, before: AB) -> None:
+        """What is put in takes the other's place in the order of S2, with its flag."""
+        rule, shown = ab.inserted, f"{ab.name} is put in"
+        first = before.phase == WAITING
+        if not first and not before.parents & ab.parents:
+            self.report(11, rule, f"{shown}, but {before.shown} is {before.phase}")
+        if ab.cause != (before.cause if first else None):
+            self.report(11, "C5", f"{shown} with a flag that {before.shown} has not")
+        ab.fresh_until = before.fresh_until if first else None
+        before.cause = before.fresh_until = None
+        ab.requested, ab.place = before.requested, before.place
+        ab.followed_at = before.followed_at
 
     def _restores(self, ab: AB, record: Record) -> None:
         """X1: only what a suspended stream relies on is restored."""
@@ -130,14 +139,13 @@ class Extensions(Floor):
         by = self.abs.get(base(record["by"]))
         if "x2" not in self.extensions or not ab.restartable or ab.unit is not None:
             self.report(2, "X2", f"{ab.shown} is interrupted, which is not marked so")
-        if self.has_left(ab) or ab.app in self.gone_apps:
+        if self.is_given_up(ab):
             self.report(2, "X2", f"{ab.shown} is interrupted, but nobody wants it to start again")
-        if by is None or by.phase != WAITING or by.cause is None or not by.devices & ab.devices:
+        if not _reacts_to(by, ab):
             self.report(2, "X2", f"{ab.shown} is interrupted for {record['by']}, no reaction to it")
-        elif ab.started_at == self.now and (not by.high or by.cause <= (ab.reacted or 0)):
-            self.report(
-                2, "S2", f"{ab.shown} is interrupted at its start: {by.shown} was outranked"
-            )
+        elif ab.started_at == self.now and not _later(by, ab):
+            text = f"{ab.shown} is interrupted at its start: {by.shown} was outranked"
+            self.report(2, "S2", text)
         if by is not None:
             self.gave_way.append((ab, by, self.place))
         ab.interrupted = True
@@ -172,10 +180,11 @@ class Extensions(Floor):
             tree.hold, tree.hold_state = hold, ab.state
         tree.requested = self.place
         tree.words = record.get("words") or ""
-        if ab.parents or ab.unit is not None or ab.inserted:
-            return
-        if any(one.app == ab.app for one in self.windows):
-            return  # C3 and X3 both claim it
+        begins = not ab.parents and ab.unit is None and not ab.inserted
+        if begins and not any(one.app == ab.app for one in self.windows):  # else C3 claims it
+            self._joins_rightly(tree, ab)
+
+    def _joins_rightly(self, tree: Tree, ab: AB) -> None:
         held = [other for other in self.trees.values() if other.app == ab.app and other.until]
         if held and not any(tree is other for other in held) and not self.joined_now(tree):
             self.report(10, "X3", f"{ab.name} does not join {held[0].name}, which is held for it")
@@ -256,16 +265,8 @@ class Extensions(Floor):
         was left, so that it must not start again (O3).
         """
         ab = ab.outermost
-        heard = not ab.silent and ab.app not in self.gone_apps
-        return (
-            "x2" in self.extensions
-            and ab.restartable
-            and reaction.high
-            and reaction.cause is not None
-            and reaction.cause > (ab.reacted or 0)
-            and heard
-            and not self.has_left(ab)
-        )
+        may = "x2" in self.extensions and ab.restartable and not ab.silent
+        return may and _later(reaction, ab) and not self.is_given_up(ab)
 
     def channel_connected(self, ab: AB) -> None:
         """X4: the first word waits until the robot has turned to a user whom it does not see."""
@@ -284,3 +285,15 @@ class Extensions(Floor):
             if tree in self.floor:
                 self.floor.remove(tree)
                 self.turned.append((tree.name, "returned", "F3"))
+
+
+def _reacts_to(by: AB | None, ab: AB) -> TypeGuard[AB]:
+    """X2: whether one is a reaction that waits for a device of the other."""
+    waits = by is not None and by.phase == WAITING and by.cause is not None
+    return by is not None and waits and bool(by.devices & ab.devices)
+
+
+def _later(reaction: AB, ab: AB) -> bool:
+    """X2: whether a reaction of high priority has a later cause than a running AB."""
+    cause = reaction.cause
+    return reaction.high and cause is not None and cause > (ab.reacted or 0)

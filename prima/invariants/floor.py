@@ -42,14 +42,19 @@ class Floor(Turn):
         held = {holder.cause} if surely else holder.causes
         if ab.cause is not None and ab.cause not in held:
             return None
-        contending = holder.contending()
-        if any(one.inserted and self.refused_by_channel(one) for one in holder.members.values()):
-            # A way back that K1 keeps counts as itself, so that the two do not wait for each other.
-            contending = [one for one in holder.members.values() if one.contends]
         high = any(one.high for one in ab.tree.meant(ab))
+        contending = self._contending(holder)
         if contending and all(high and not other.high for other in contending):
             return None
         return None if self.carries_floor(ab) else holder
+
+    def _contending(self, holder: Tree) -> list[AB]:
+        """F2: what of the floor's stream keeps others from starting."""
+        members = holder.members.values()
+        if any(one.inserted and self.refused_by_channel(one) for one in members):
+            # A way back that K1 keeps counts as itself, so that the two do not wait for each other.
+            return [one for one in members if one.contends]
+        return holder.contending()
 
     def refused_by_topic(self, ab: AB) -> Tree | None:
         """F6: the stream into which the AB would speak."""

@@ -16,12 +16,12 @@ class Late(Selection):
 
     def hears_surely(self, ab: AB) -> None:
         """C3: nothing can have made the mediator deaf for its end, as a unit that is left can."""
-        if not (self.has_left(ab) or ab.app in self.gone_apps):
+        if not (self.is_given_up(ab) or ab.silent or ab.unit):
             self.owed[ab.tree.name] += 1
 
     def hears_of(self, ab: AB) -> None:
         """C3, O3, E2: an end opens a window, but not of what was given up before."""
-        if not (self.has_left(ab) or ab.app in self.gone_apps):
+        if not self.is_given_up(ab):
             self.heard[ab.tree.name] += 1
 
     def reaction_of(self, ab: AB) -> AB | None:
@@ -52,20 +52,10 @@ class Late(Selection):
 
     def answered_early(self, ab: AB, record: Record) -> None:
         """X8, X10: a question is answered that nobody has asked yet."""
-        rule = record["rule"]
-        if rule not in ("X8", "X10") or rule.lower() not in self.extensions:
-            self.report(3, str(rule), f"{ab.shown} is answered by a rule that is not on")
-        if not ab.question or ab.phase not in (WAITING, "linked"):
-            self.report(3, str(rule), f"{ab.shown} is answered early, but it is {ab.phase}")
-        if self.speech_at != self.now:
-            self.report(3, str(rule), f"{ab.shown} is answered, but nobody has said anything")
-        root = self.reaction_of(ab)
-        if rule == "X8" and root is None:
-            self.report(3, "X8", f"{ab.shown} is answered early, but is of no reaction that waits")
+        self._may_be_answered(ab, record["rule"])
         self.answered_now(ab)
         self.hears_of(ab)
-        if not (ab.silent or ab.unit):
-            self.hears_surely(ab)
+        self.hears_surely(ab)
         waited = [one for one in ab.tree.members.values() if ab.name in one.parents]
         for other in waited:
             other.parents |= ab.parents
@@ -74,6 +64,16 @@ class Late(Selection):
         for other in waited:
             if reacts and other.phase == WAITING:
                 other.cause = self.speech
+
+    def _may_be_answered(self, ab: AB, rule: str) -> None:
+        if rule not in ("X8", "X10") or rule.lower() not in self.extensions:
+            self.report(3, str(rule), f"{ab.shown} is answered by a rule that is not on")
+        if not ab.question or ab.phase not in (WAITING, "linked"):
+            self.report(3, str(rule), f"{ab.shown} is answered early, but it is {ab.phase}")
+        if self.speech_at != self.now:
+            self.report(3, str(rule), f"{ab.shown} is answered, but nobody has said anything")
+        if rule == "X8" and self.reaction_of(ab) is None:
+            self.report(3, "X8", f"{ab.shown} is answered early, but is of no reaction that waits")
 
     def note_speech(self, record: Record) -> None:
         """X10: whose question the user answers, if the time for that is just over."""

@@ -115,17 +115,17 @@ class Memory:
         self.nested: set[str] = set()
         """Units inside units: what is in them is requested when they start, and by nobody."""
         for place, record in enumerate(self.records):
-            if record["phase"] == "end" and record["command"] == "iu":
-                self.unit_ends[record["behavior"]] = record["time"]
-            if record["phase"] == "held" and record["outcome"] == "begun":
-                self.begins[record["time"], record["tree"]] = place
             if record.get("behavior") and record["phase"] != "halted":
                 self.last[base(record["behavior"])] = place
-            if record["phase"] == "start" and record["rule"] == "U4":
-                self.groups.add(record["unit"])
-            unit = record["phase"] == "request" and record["command"] == "iu"
-            if unit and record.get("unit"):
-                self.nested.add(record["behavior"])
+            match record["phase"]:
+                case "end" if record["command"] == "iu":
+                    self.unit_ends[record["behavior"]] = record["time"]
+                case "held" if record["outcome"] == "begun":
+                    self.begins[record["time"], record["tree"]] = place
+                case "start" if record["rule"] == "U4":
+                    self.groups.add(record["unit"])
+                case "request" if record["command"] == "iu" and record.get("unit"):
+                    self.nested.add(record["behavior"])
 
     def _new_instant(self) -> None:
         self.cuts: list[Cut] = []
@@ -206,6 +206,10 @@ class Memory:
     def has_left(self, ab: AB) -> bool:
         """O3: whether the state that has asked for it was left."""
         return (ab.app, ab.state) in self.left
+
+    def is_given_up(self, ab: AB) -> bool:
+        """O3, E2: whether nobody wants it any more: its state was left, or its application ended."""
+        return self.has_left(ab) or ab.app in self.gone_apps
 
     def in_group(self, ab: AB) -> bool:
         """Whether it is part of a unit that runs, and finishes whole (U4)."""

@@ -34,13 +34,13 @@ class Patience(Streams):
         waiting = {ab.name: ab for ab in self.waiting.values() if ab.unit is None}
         kept = {name for name in self._kept if self.abs[name].phase in (WAITING, LINKED)}
         self._kept = {name: time for name, time in self._kept.items() if name in kept}
-        self._starving &= kept | set(waiting)
+        self._starving &= kept | waiting.keys()
         self._kept_now = {name for name, ab in waiting.items() if self._kept_from_speaker(ab)}
         if self.halted:
             self._kept_now = set()
             return
-        for name in sorted(kept & set(waiting)):
-            if self.overdue(waiting[name]) and name not in self._starving:
+        for name in sorted((kept & waiting.keys()) - self._starving):
+            if self.overdue(waiting[name]):
                 self.report(13, "E6", f"{name} starves, and nothing says so")
 
     def _kept_from_speaker(self, ab: AB) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from prima.invariants.model import AB, RUNNING, WAITING, Record, base
@@ -165,15 +166,28 @@ class Selection(Patience):
             self.report(13, "S2", f"{shown} starts, but nobody has decided so")
             return
         rivals = [other for other in self.competing(ab) if self.could_start(other, ab)]
+        needed = {other.shown for other in rivals if self._keeps_from(ab, other)}
+        self._losers_told_rightly(ab, shown, told, needed)
+        named = {*told["losers"], *needed}
+        rivals = [other for other in rivals if other.shown in named]
+        self._rule_told_rightly(
+            ab, shown, told["rule"], rivals or self._perhaps(ab, told["losers"])
+        )
+
+    def _perhaps(self, ab: AB, losers: Sequence[str]) -> list[AB]:
+        """The losers of a decision to which F2 is open."""
+        named = [other for other in self.competing(ab) if other.shown in losers]
+        return [other for other in named if self.could_start(other, ab, surely=False)]
+
+    def _keeps_from(self, ab: AB, other: AB) -> bool:
+        """S1: whether two cannot run at once."""
+        return bool(other.devices & ab.devices) and not self.composes(ab, other)
+
+    def _losers_told_rightly(self, ab: AB, shown: str, told: Record, needed: set[str]) -> None:
+        """S2: the losers could have started; all are named, or of many as many as fit."""
         losers, count = set(told["losers"]), told["losers_count"]
         allowed = {other.shown for other in self.competing(ab) if self.kept_by_s3(other)}
-        strangers = losers - allowed
-        needed = {
-            other.shown
-            for other in rivals
-            if other.devices & ab.devices and not self.composes(ab, other)
-        }
-        if strangers:
+        if strangers := losers - allowed:
             text = f"{shown} is said to start before {self.ordered(strangers)}"
             self.report(13, "S2", f"{text}, which could not have started")
         elif count <= MANY and (needed - losers or len(losers) != count):
@@ -181,12 +195,6 @@ class Selection(Patience):
             self.report(13, "S2", f"{text}, {count}, not {self.ordered(needed)}")
         elif count > MANY and (len(losers) != MANY or not len(needed) <= count <= len(allowed)):
             self.report(13, "S2", f"{shown} is said to start before {count}, not {len(needed)}")
-        rivals = [other for other in rivals if other.shown in losers | needed] or [
-            other
-            for other in self.competing(ab)
-            if other.shown in losers and self.could_start(other, ab, surely=False)
-        ]
-        self._rule_told_rightly(ab, shown, told["rule"], rivals)
 
     def _rule_told_rightly(self, ab: AB, shown: str, rule: str, rivals: list[AB]) -> None:
         """S2: what decided between the winner and the first that could have started, if any."""
@@ -242,24 +250,26 @@ class Selection(Patience):
 
     def _held_by(self, ab: AB, rule: str, by: str) -> bool:
         """Whether a reason to wait is true."""
-        other = self.abs.get(base(by))
-        if rule == "S1":
-            busy = other is not None and other.phase == RUNNING
-            return busy and other is not None and bool(other.devices & ab.devices)
-        if rule == "S3":
-            if other is None or other.phase != WAITING:
-                return False
-            return self.keeps_devices(other) and bool(other.devices & ab.devices)
-        if rule == "X7":
-            return other is not None and other is self.refused_by_turn(ab)
-        if rule == "F6":
-            return other is not None and self.keeps_topic(other, ab)
         if rule == "F2":
             kept = self.refused_by_floor(ab, surely=False)
             return kept is not None and by == kept.name
-        tree = self.trees.get(by)
         if rule == "K1":  # another stream than the first that keeps it may be named
+            tree = self.trees.get(by)
             return ab.leaves and tree is not None and self.keeps_user(tree, ab)
+        other = self.abs.get(base(by))
+        return other is not None and self._held_by_ab(ab, rule, other)
+
+    def _held_by_ab(self, ab: AB, rule: str, other: AB) -> bool:
+        match rule:
+            case "S1":
+                return other.phase == RUNNING and bool(other.devices & ab.devices)
+            case "S3":
+                waits = other.phase == WAITING and self.keeps_devices(other)
+                return waits and bool(other.devices & ab.devices)
+            case "X7":
+                return other is self.refused_by_turn(ab)
+            case "F6":
+                return self.keeps_topic(other, ab)
         return False
 
     def _ahead(self, other: AB, ab: AB) -> bool:

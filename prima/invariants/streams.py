@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from prima.invariants.extensions import Extensions
-from prima.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Record, Tree
+from prima.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Cut, Record, Tree
 
 A_MOMENT_LATER = 0.0015
 """Seconds after a selection by which an application has heard of it."""
@@ -105,22 +105,9 @@ class Streams(Extensions):
         """O2: it is never linked, and continues what it cancels, before all what ran."""
         if ab.parents:
             self.report(15, "O2", f"{ab.name} is wanted now, but waits for {sorted(ab.parents)}")
-        mine = [one.place for one in self.abs.values() if one.app == ab.app]
-        since = max((place for place in mine if place < ab.place), default=-1)
-        cut = [
-            one
-            for one in self.cuts
-            if one.rule == "O2" and one.ab.app == ab.app and one.place > since
-        ]
+        cut = self._cut_for(ab)
         trees = {one.ab.tree.name for one in cut if not one.ab.unit}
-        ran = {
-            one.ab.tree.name
-            for one in cut
-            if one.was == RUNNING
-            or any(
-                other.phase == RUNNING for other in one.ab.tree.members.values() if other is not ab
-            )
-        }
+        ran = {one.ab.tree.name for one in cut if self._ran(one, ab)}
         if trees and ab.tree.name not in (ran or trees) and not self.joined_now(ab.tree):
             text = f"{ab.name} is of {ab.tree.name}, but cancels {', '.join(self.ordered(trees))}"
             self.report(15, "O2", text)
@@ -128,16 +115,27 @@ class Streams(Extensions):
             if tree.app == ab.app:
                 self._cancelled_whole(tree, ab)
 
+    def _cut_for(self, urgent: AB) -> list[Cut]:
+        """O2: what was cancelled of its application since the request before it."""
+        mine = [one for one in self.abs.values() if one.app == urgent.app]
+        since = max((one.place for one in mine if one.place < urgent.place), default=-1)
+        cut = [one for one in self.cuts if one.rule == "O2" and one.place > since]
+        return [one for one in cut if one.ab.app == urgent.app]
+
+    def _ran(self, cut: Cut, urgent: AB) -> bool:
+        """O2: whether something of a tree ran when an AB of it was cancelled."""
+        others = [one for one in cut.ab.tree.members.values() if one is not urgent]
+        return cut.was == RUNNING or any(one.phase == RUNNING for one in others)
+
     def _cancelled_whole(self, tree: Tree, urgent: AB) -> None:
         """O2: nothing is left of a tree that wanted one of the devices but what runs on others."""
         own = [ab for ab in tree.members.values() if ab is not urgent and ab.unit is None]
-        if any(ab.unit is urgent.unit for ab in own) and urgent.unit is not None:
+        before = [ab for ab in own if ab.requested < self.now]
+        if not any(ab.devices & urgent.devices for ab in before):
             return
-        if any(ab.devices & urgent.devices for ab in own if ab.requested < self.now):
-            for ab in own:
-                cut = ab.phase != RUNNING or bool(ab.devices & urgent.devices)
-                if cut and ab.requested < self.now:
-                    self.report(15, "O2", f"{ab.shown} is left, though {urgent.name} is wanted now")
+        for ab in before:
+            if ab.phase != RUNNING or ab.devices & urgent.devices:
+                self.report(15, "O2", f"{ab.shown} is left, though {urgent.name} is wanted now")
 
     def _reaction_placed(self, ab: AB, new: bool) -> None:
         """O1: a reaction is the root of a new tree, or of what it continues (O3, X3)."""

@@ -1,5 +1,5 @@
 """Editor support while documents are written: problems, completion, names, documentation.
 
-Everything here works on texts that need not be well-formed. :mod:`prima.lsp.server`
-and ``protocol`` alone use the Language Server Protocol.
+Everything here works on texts that need not be well-formed. Only :mod:`prima.lsp.server`,
+``answers`` and ``protocol`` use the Language Server Protocol.
 """

@@ -9,19 +9,15 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-from prima.interpreter.vocabulary import DIALOGUE
 from prima.language.commands import DEVICES, TABLE_4_2
 from prima.lsp.descriptions import EVENTS, SESSION, VOICEXML_EVENTS
 from prima.lsp.hover import attribute_text, element_text
+from prima.lsp.meanings import DEFINES, FILES, REFERS, Use
 from prima.lsp.names import dialect
 from prima.lsp.scan import Attr, Page, Tag
+from prima.lsp.snippets import opening, snippet
 from prima.lsp.tables import (
     BY_NAMESPACE,
-    DEFINES,
-    FILES,
-    REFERS,
-    Choice,
-    Use,
     attributes,
     children,
     is_code,
@@ -29,25 +25,24 @@ from prima.lsp.tables import (
     values,
 )
 from prima.lsp.workspace import Found, Text, Workspace
-from prima.markup.vocabulary import Element, Vocabulary
-from prima.scheduler.policy import BASELINES
-from prima.voicexml.vocabulary import ALTERNATIVES, PRIMA_NAMESPACE, VOICEXML
 
 MOST = 500
 """Maximum number of proposals."""
 END_TAG = re.compile(r"</([^\s<>]*)$")
 WORD_BEFORE = re.compile(r"(?:(?P<of>[\w$.]+)\.)?(?P<word>(?:[^\W\d]|\$)[\w$]*)?$")
 WORD_AFTER = re.compile(r"[\w$]*")
-PROPERTIES = (
-    *("bargein", "bargeintype", "completetimeout", "confidencelevel", "fetchaudio"),
-    *("fetchtimeout", "incompletetimeout", "inputmodes", "interdigittimeout", "maxnbest"),
-    *("sensitivity", "speedvsaccuracy", "termchar", "termtimeout", "timeout", "universals"),
-)
 MEMBERS = {
     "event": ("name", "data", "message"),
     "session": ("connection",),
     "application": ("lastresult$",),
 }
+EVENTS_OF = (
+    ("sensor", "touch."),
+    ("service", "reply."),
+    ("service", "error.service."),
+    ("device", "error.device."),
+)
+"""Beginnings of events, by kinds of names."""
 SHADOWS = ("utterance", "confidence", "inputmode", "interpretation")
 
 
@@ -126,36 +121,23 @@ class _Completion:
         self, parent: Tag | None, start: int, end: int, tag: Tag | None
     ) -> Iterator[Proposal]:
         """Elements allowed in another; ``tag`` is the unfinished element there, if any."""
-        begin = "" if tag is not None else "<"
-        alone = tag is None or (not tag.attributes and not tag.finished)
-        if parent is None:
-            if self.page.root not in (None, tag):
-                return
-            for choice in roots():
-                opening = _opening(choice) if alone else choice.name
-                yield Proposal(
-                    choice.name,
-                    "element",
-                    start,
-                    end,
-                    begin + choice.name,
-                    begin + opening if alone else "",
-                    choice.element.source,
-                    element_text(choice.element),
-                )
+        if parent is None and self.page.root not in (None, tag):
             return
-        for choice in children(parent):
+        begin = "" if tag is not None else "<"
+        alone = tag is None or not (tag.attributes or tag.finished)
+        choices, whole = (children(parent), snippet) if parent else (roots(), opening)
+        for choice in choices:
             yield Proposal(
                 choice.name,
                 "element",
                 start,
                 end,
                 begin + choice.name,
-                begin + _snippet(choice) if alone else "",
+                begin + whole(choice) if alone else "",
                 choice.element.source,
                 element_text(choice.element),
             )
-        if tag is not None and not tag.finished and not tag.attributes:
+        if parent and tag and alone:
             yield Proposal(f"/{parent.name}", "element", start, end, f"/{parent.name}>")
 
     def _attributes(self, tag: Tag, start: int, end: int, now: Attr | None) -> Iterator[Proposal]:
@@ -164,17 +146,14 @@ class _Completion:
             return
         given = {attr.name for attr in tag.attributes if attr is not now}
         bare = now is None or now.first < 0
-        for name, (item, expression) in attributes(element).items():
-            other = name.removesuffix("-expr") if expression else f"{name}-expr"
-            if name in given or (other in given and item.dynamic):
-                continue
-            detail = "required" if item.required else ""
-            doc = attribute_text(element, name)
-            yield _attribute(name, start, end, bare, detail, doc)
-        if tag.parent is None:
-            for name in ("xmlns", "xml:lang"):
-                if name not in given:
-                    yield _attribute(name, start, end, bare)
+        for name, (item, _) in attributes(element).items():
+            forms = {item.name, f"{item.name}-expr"} if item.dynamic else {name}
+            if given.isdisjoint(forms):
+                detail = "required" if item.required else ""
+                yield _attribute(name, start, end, bare, detail, attribute_text(element, name))
+        for name in ("xmlns", "xml:lang") if tag.parent is None else ():
+            if name not in given:
+                yield _attribute(name, start, end, bare)
 
     # Values -------------------------------------------------------------------
 
@@ -195,7 +174,6 @@ class _Completion:
             yield from self._events(tag, attr, own=True)
         if key in FILES:
             yield from self._files(attr, FILES[key])
-        yield from self._plain(attr, _others(key))
         if attr.name == "xml:lang" or key == ("robot", "voice", "lang"):
             yield from self._plain(attr, ("en", "ja"))
         if key[1:] == ("param", "name"):
@@ -234,13 +212,10 @@ class _Completion:
             path = target or self.path
         for found in self._known(path, use.kinds, tag):
             name = found.mark.name
-            yield Proposal(
-                sign + name, "name", *start, escape(sign + name), "", _where(self, found)
-            )
-        if use.kinds == ("device",):
-            known = {found.mark.name for found in self._known(path, use.kinds, tag)}
-            if not known:
-                yield from self._plain(attr, DEVICES)
+            where = _where(self, found)
+            yield Proposal(sign + name, "name", *start, escape(sign + name), "", where)
+        if use.kinds == ("device",) and not self._known(path, use.kinds, tag):
+            yield from self._plain(attr, DEVICES)
 
     def _known(self, path: Path, kinds: tuple[str, ...], tag: Tag) -> list[Found]:
         found = self.workspace.known(path, kinds)
@@ -252,19 +227,7 @@ class _Completion:
 
     def _events(self, tag: Tag, attr: Attr, own: bool = False) -> Iterator[Proposal]:
         """Events that may occur, or with ``own`` those that this document handles."""
-        voice = dialect(self.page) == "voicexml"
-        known = dict(VOICEXML_EVENTS | EVENTS if voice else EVENTS)
-        for kind, begins in (
-            ("sensor", ("touch.",)),
-            ("service", ("reply.", "error.service.")),
-            ("device", ("error.device.",)),
-        ):
-            for found in self.workspace.known(self.path, (kind,)):
-                for begin in begins:
-                    known.setdefault(begin + found.mark.name, _where(self, found))
-        if tag.parent is not None and tag.parent.key in TABLE_4_2:
-            for begin in ("end.", "cancel."):
-                known[begin + tag.parent.key] = EVENTS[begin[:-1]]
+        known = self._occurring(tag)
         for found in self.workspace.known(self.path, ("event",)):
             known.setdefault(found.mark.name, _where(self, found))
         for mark in self.text.marks if own else ():
@@ -275,12 +238,23 @@ class _Completion:
             if name != attr.value or not own:
                 yield Proposal(name, "event", *span, name, doc=doc)
 
+    def _occurring(self, tag: Tag) -> dict[str, str]:
+        """Events of the language, and of what the robot and its services can do."""
+        voice = dialect(self.page) == "voicexml"
+        known = dict(VOICEXML_EVENTS | EVENTS if voice else EVENTS)
+        for kind, begin in EVENTS_OF:
+            for found in self.workspace.known(self.path, (kind,)):
+                known.setdefault(begin + found.mark.name, _where(self, found))
+        if tag.parent is not None and tag.parent.key in TABLE_4_2:
+            for begin in ("end.", "cancel."):
+                known[begin + tag.parent.key] = EVENTS[begin[:-1]]
+        return known
+
     def _commands(self, tag: Tag, attr: Attr) -> Iterator[Proposal]:
         span = self._span(attr)
         for found in self.workspace.known(self.path, ("command",)):
-            yield Proposal(
-                found.mark.name, "name", *span, found.mark.name, detail=_where(self, found)
-            )
+            name = found.mark.name
+            yield Proposal(name, "name", *span, name, detail=_where(self, found))
         if tag.key != "command":
             for row in TABLE_4_2.values():
                 yield Proposal(row.name, "name", *span, row.name, detail=row.title, doc=row.doc)
@@ -290,16 +264,20 @@ class _Completion:
         holder = tag.parent
         if holder is None:
             return []
-        found: list[str] = []
-        if holder.key == "subdialog":
-            called = holder.get("src").strip()
-            for form in self.page.forms.get(called[1:], ()) if called[:1] == "#" else ():
-                found += [one.get("name") for one in form.children if one.key == "var"]
-        for one in self.workspace.known(self.path, ("command",)) if holder.key == "command" else ():
-            if one.mark.name == holder.get("type"):
-                arguments = one.mark.tag.children
-                found += [child.get("name") for child in arguments if child.key == "argument"]
-        return [name for name in found if name]
+        found: list[Tag] = []
+        called = holder.get("src").strip()
+        if holder.key == "subdialog" and called[:1] == "#":
+            forms = self.page.forms.get(called[1:], ())
+            found = [one for form in forms for one in form.children if one.key == "var"]
+        elif holder.key == "command":
+            found = self._arguments(holder.get("type"))
+        return [name for one in found if (name := one.get("name"))]
+
+    def _arguments(self, command: str) -> list[Tag]:
+        """The arguments of an added Command."""
+        known = self.workspace.known(self.path, ("command",))
+        tags = [one.mark.tag for one in known if one.mark.name == command]
+        return [child for tag in tags for child in tag.children if child.key == "argument"]
 
     def _files(self, attr: Attr, wanted: tuple[str, ...]) -> Iterator[Proposal]:
         """Documents of the workspace, as paths relative to this one."""
@@ -346,10 +324,8 @@ class _Completion:
         elif of in ("dialog", "document"):
             known = self._visible(tag)
         elif of == "sensor":
-            known = {
-                one.mark.name: _where(self, one)
-                for one in self.workspace.known(self.path, ("reading",))
-            }
+            readings = self.workspace.known(self.path, ("reading",))
+            known = {one.mark.name: _where(self, one) for one in readings}
         elif of in MEMBERS:
             known = dict.fromkeys(MEMBERS[of], of)
         elif of.endswith("$"):
@@ -372,53 +348,3 @@ def _where(asked: _Completion, found: Found) -> str:
     title = tag.get("title")
     at = "" if found.path == asked.path else f" in {found.path.name}"
     return f"<{tag.name}>{at}{f': {title}' if title else ''}"
-
-
-def _others(key: tuple[str, str, str]) -> tuple[str, ...]:
-    """Values that are in no table."""
-    if key == ("scenario", "scenario", "policy"):
-        return ("prima", "prima+all", *BASELINES)
-    if key == ("voicexml", "property", "name"):
-        return PROPERTIES
-    return ()
-
-
-def _snippet(choice: Choice) -> str:
-    """A snippet of an element with its required parts and tab stops."""
-    element, place = choice.element, 1
-    words = [choice.name]
-    for name in _needed(choice.vocabulary, element):
-        words.append(f'{name}="${place}"')
-        place += 1
-    if not element.children and not element.text:
-        return " ".join(words) + "/>$0"
-    return " ".join(words) + f">$0</{choice.name}>"
-
-
-def _needed(vocabulary: Vocabulary, element: Element) -> list[str]:
-    """Attributes that an element requires, or usually has."""
-    needed = [item.name for item in element.attributes if item.required]
-    if vocabulary is VOICEXML:
-        for line in ALTERNATIVES.get(element.key, ()):
-            if line.endswith("!") and "content" not in line:
-                needed.append(line.split()[0])
-    if vocabulary is DIALOGUE and element.key == "goto":
-        needed.append("next")
-    return needed
-
-
-def _opening(choice: Choice) -> str:
-    """A snippet of a new document."""
-    namespace = choice.vocabulary.namespace
-    begin = f'{choice.name} xmlns="{namespace}"'
-    if choice.vocabulary is VOICEXML:
-        begin += f' xmlns:p="{PRIMA_NAMESPACE}" version="2.1" xml:lang="en"'
-        return f'{begin}>\n  <form id="$1">\n    <block>$0</block>\n  </form>\n</{choice.name}>'
-    if choice.vocabulary is DIALOGUE:
-        begin += ' version="1.0" kind="${1|ea,fa|}" id="$2" xml:lang="en"'
-        body = '\n  <form id="$3">\n    <block>\n      $0\n      <exit/>\n    </block>\n  </form>\n'
-        return f"{begin}>{body}</{choice.name}>"
-    begin += ' version="1.0" id="$1"'
-    if choice.name == "scenario":
-        begin += ' world="$2" robot="$3"'
-    return f"{begin}>\n  $0\n</{choice.name}>"

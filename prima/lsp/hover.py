@@ -13,7 +13,7 @@ from prima.lsp.names import Mark, mark_at
 from prima.lsp.scan import Page, Tag
 from prima.lsp.tables import about_attribute, attributes
 from prima.lsp.workspace import Found, Workspace
-from prima.markup.vocabulary import Element
+from prima.markup.vocabulary import Attribute, Element
 
 NAMED = re.compile(r"\b([A-Z][0-9])\b")
 WORD = re.compile(r"[\w$.\-]+")
@@ -94,15 +94,19 @@ def attribute_text(element: Element, name: str) -> str:
     kind = ", ".join(f"`{one}`" for one in item.choices) or KINDS[item.kind].doc
     lines = [f"**`{name}`** {words[:1].upper()}{words[1:]}{'.' if words else ''}"]
     lines.append(("Required. " if item.required else "") + f"Value: {kind}.")
-    if item.low is not None or item.high is not None:
-        low = "" if item.low is None else f"from {_bound(item.kind, item.low)} "
-        high = "" if item.high is None else f"up to {_bound(item.kind, item.high)}"
-        lines.append(f"Bounds: {low}{high}".strip() + ".")
+    if bounds := _bounds(item):
+        lines.append(f"Bounds: {bounds}.")
     if item.default:
         lines.append(f"Default: `{item.default}`.")
     if item.dynamic:
         lines.append(f"Or `{item.name}-expr` with an expression.")
     return "\n\n".join(lines)
+
+
+def _bounds(item: Attribute) -> str:
+    low = "" if item.low is None else f"from {_bound(item.kind, item.low)}"
+    high = "" if item.high is None else f"up to {_bound(item.kind, item.high)}"
+    return f"{low} {high}".strip()
 
 
 def _bound(kind: str, value: float) -> str:

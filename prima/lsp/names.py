@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from prima.interpreter.vocabulary import DIALOGUE
+from prima.lsp.meanings import DEFINES, REFERS, SHARED, Use
 from prima.lsp.scan import Attr, Page, Tag
-from prima.lsp.tables import DEFINES, REFERS, SHARED, Use, is_code
+from prima.lsp.tables import is_code
 from prima.script.globals import GLOBALS, RESERVED
 from prima.script.names import expression_names, script_names
 
@@ -64,23 +65,26 @@ def marks(page: Page) -> list[Mark]:
 
 
 def _of_tag(page: Page, tag: Tag) -> Iterator[Mark]:
-    assert tag.vocabulary is not None
     for attr in tag.attributes:
-        if attr.first < 0:
-            continue
-        key = (tag.vocabulary.name, tag.key, attr.name)
-        if key in DEFINES:
-            kind = DEFINES[key]
-            for start, end in _words(attr, 1):
-                yield Mark((kind,), page.text[start:end], start, end, True, tag, _home(kind, tag))
-        elif key in REFERS:
-            yield from _references(page, tag, attr, REFERS[key])
-        elif is_code(tag, attr.name):
-            yield from _code(plain(attr.value), attr.first, tag)
-        elif attr.name == "name" and tag.key == "param":
-            yield from _given(page, tag, attr)
+        if attr.first >= 0:
+            yield from _of_attribute(page, tag, attr)
     if tag.key == "script" and not tag.empty and not tag.children:
         yield from _script(page.text[tag.end : tag.content], tag)
+
+
+def _of_attribute(page: Page, tag: Tag, attr: Attr) -> Iterator[Mark]:
+    assert tag.vocabulary is not None
+    key = (tag.vocabulary.name, tag.key, attr.name)
+    if key in DEFINES:
+        kind = DEFINES[key]
+        for start, end in _words(attr, 1):
+            yield Mark((kind,), page.text[start:end], start, end, True, tag, _home(kind, tag))
+    elif key in REFERS:
+        yield from _references(page, tag, attr, REFERS[key])
+    elif is_code(tag, attr.name):
+        yield from _code(plain(attr.value), attr.first, tag)
+    elif attr.name == "name" and tag.key == "param":
+        yield from _given(page, tag, attr)
 
 
 def _words(attr: Attr, most: int = 1000) -> list[tuple[int, int]]:

@@ -1,4 +1,4 @@
-"""Tables of the languages for editors: allowed elements, and the meaning of names."""
+"""What editors know of the languages: the elements and attributes allowed at a place."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from prima.markup.vocabulary import (
     attribute,
     attributes_by_name,
 )
+from prima.scheduler.policy import BASELINES
 from prima.sim.vocabulary import SCENARIO, USER, WORLD
 from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, HOLDING, SRGS, VALUES, VOICEXML
@@ -89,6 +90,20 @@ GRAMMAR = Vocabulary(
 )
 """SRGS in XML, as used in VoiceXML documents."""
 
+PROPERTIES = (
+    *("bargein", "bargeintype", "completetimeout", "confidencelevel", "fetchaudio"),
+    *("fetchtimeout", "incompletetimeout", "inputmodes", "interdigittimeout", "maxnbest"),
+    *("sensitivity", "speedvsaccuracy", "termchar", "termtimeout", "timeout", "universals"),
+)
+LISTED: dict[tuple[str, str, str], tuple[str, ...]] = {
+    ("dialogue", "property", "value"): ("true", "false"),
+    ("scenario", "scenario", "policy"): ("prima", "prima+all", *BASELINES),
+    ("voicexml", "vxml", "version"): ("2.1", "2.0"),
+    ("voicexml", "field", "type"): TYPES,
+    ("voicexml", "property", "name"): PROPERTIES,
+}
+"""Values to propose that no vocabulary lists, by vocabulary, key of the element and attribute."""
+
 VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO, USER, SERVICES, VOICEXML, GRAMMAR)
 BY_NAMESPACE = {one.namespace: one for one in VOCABULARIES}
 BY_ROOT = {one.elements[one.root].tag: one for one in reversed(VOCABULARIES)}
@@ -129,15 +144,17 @@ def _child(parent: Tag, tag: Tag) -> tuple[Vocabulary | None, str]:
     assert inner is not None
     if inner is VOICEXML and parent.key == "grammar":
         inner = GRAMMAR
-    if tag.namespace and tag.namespace != inner.namespace and tag.namespace in BY_NAMESPACE:
-        own = BY_NAMESPACE[tag.namespace]
-        if not (inner is GRAMMAR and own is VOICEXML):
-            around_items = own is DIALOGUE and tag.local == "iu" and parent.key == "form"
-            return own, UNIT if around_items else tag.local
-    key = inner.child(parent.key, tag.local) if parent.key in inner.elements else None
-    if key is None:
-        key = next((one.key for one in inner.elements.values() if one.tag == tag.local), tag.local)
-    return inner, key
+    own = BY_NAMESPACE.get(tag.namespace, inner)
+    if own is not inner and not (inner is GRAMMAR and own is VOICEXML):
+        around_items = own is DIALOGUE and tag.local == "iu" and parent.key == "form"
+        return own, UNIT if around_items else tag.local
+    return inner, _key(inner, parent, tag)
+
+
+def _key(inner: Vocabulary, parent: Tag, tag: Tag) -> str:
+    if parent.key in inner.elements and (key := inner.child(parent.key, tag.local)) is not None:
+        return key
+    return next((one.key for one in inner.elements.values() if one.tag == tag.local), tag.local)
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,13 +181,16 @@ def children(tag: Tag) -> list[Choice]:
         for key in element.children
         if key in inner.elements
     ]
+    return found + _of_prima(tag) if inner is VOICEXML else found
+
+
+def _of_prima(tag: Tag) -> list[Choice]:
+    """The elements of PRIMA allowed in one of VoiceXML, if they have a prefix there."""
     prefix = _prefix(tag, DIALOGUE)
-    if inner is VOICEXML and prefix:
-        acts = tag.key in HOLDING or VOICEXML.child(tag.key, "assign")
-        keys = sorted([*COMMANDS, *ARRANGING]) if acts else [UNIT] if tag.key == "form" else []
-        own = [DIALOGUE.elements[key] for key in keys]
-        found += [Choice(prefix + one.tag, one, DIALOGUE) for one in own]
-    return found
+    acts = tag.key in HOLDING or VOICEXML.child(tag.key, "assign")
+    keys = sorted([*COMMANDS, *ARRANGING]) if acts else [UNIT] if tag.key == "form" else []
+    own = [DIALOGUE.elements[key] for key in keys if prefix]
+    return [Choice(prefix + one.tag, one, DIALOGUE) for one in own]
 
 
 def _in_unit(tag: Tag) -> list[Choice]:
@@ -214,13 +234,9 @@ def values(vocabulary: Vocabulary, element: Element, name: str) -> tuple[str, ..
         return item.choices
     if item.kind == "boolean":
         return ("true", "false")
-    if vocabulary is DIALOGUE and (element.key, name) == ("property", "value"):
-        return ("true", "false")
+    if listed := LISTED.get((vocabulary.name, element.key, name)):
+        return listed
     if vocabulary is VOICEXML:
-        if (element.key, name) == ("vxml", "version"):
-            return ("2.1", "2.0")
-        if (element.key, name) == ("field", "type"):
-            return TYPES
         kind = VALUES.get(f"{element.key} {name}") or VALUES.get(name, "")
         return tuple(kind.split()) if kind not in ("time", "integer", "rate") else ()
     return ()
@@ -235,151 +251,3 @@ def is_code(tag: Tag, name: str) -> bool:
         return name in EXPRESSIONS
     item, expression = attributes(element).get(name, (None, False))
     return expression or (item is not None and item.kind == "expression")
-
-
-# Names ---------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class Use:
-    """The reference in an attribute's value: the kinds of names, and the notation.
-
-    ``how`` is empty, ``#`` (behind a ``#``), ``list`` (several with spaces) or ``uri``
-    (a file, a ``#`` and a name).
-    """
-
-    kinds: tuple[str, ...]
-    how: str = ""
-
-
-_FORM, _POINT = Use(("form",), "#"), Use(("place", "thing"))
-_VARIABLES = Use(("variable",), "list")
-
-DEFINES: dict[tuple[str, str, str], str] = {
-    ("dialogue", "prima", "id"): "application",
-    ("dialogue", "form", "id"): "form",
-    ("dialogue", "rule", "id"): "rule",
-    **{
-        ("dialogue", key, "name"): "variable"
-        for key in ("var", "field", "block", "subdialog", "iu-items")
-    },
-    ("dialogue", "foreach", "item"): "variable",
-    ("dialogue", "watch", "name"): "event",
-    **{("dialogue", key, "event"): "event" for key in ("throw", "send", "link", "return")},
-    ("world", "place", "id"): "place",
-    ("world", "thing", "id"): "thing",
-    ("world", "corner", "event"): "event",
-    ("robot", "touch", "sensor"): "sensor",
-    ("robot", "device", "name"): "device",
-    ("robot", "gesture", "name"): "gesture",
-    ("robot", "adds", "command"): "command",
-    ("scenario", "application", "id"): "application",
-    ("scenario", "person", "id"): "person",
-    ("scenario", "service", "name"): "service",
-    ("scenario", "event", "name"): "event",
-    ("scenario", "sensor", "name"): "reading",
-    ("voicexml", "form", "id"): "form",
-    ("voicexml", "menu", "id"): "form",
-    **{
-        ("voicexml", key, "name"): "variable"
-        for key in (
-            *("var", "field", "block", "initial", "record", "object", "subdialog"),
-            *("transfer", "data"),
-        )
-    },
-    **{("voicexml", key, "item"): "variable" for key in ("foreach", "said-foreach")},
-    **{("voicexml", key, "event"): "event" for key in ("throw", "link", "return", "choice")},
-    ("srgs", "rule", "id"): "rule",
-}
-"""Attributes that define a name, by vocabulary and key of the element."""
-
-REFERS: dict[tuple[str, str, str], Use] = {
-    ("dialogue", "goto", "next"): _FORM,
-    ("dialogue", "link", "next"): _FORM,
-    ("dialogue", "subdialog", "src"): _FORM,
-    ("dialogue", "goto", "nextitem"): Use(("variable",)),
-    ("dialogue", "assign", "name"): Use(("variable",), "code"),
-    **{("dialogue", key, "namelist"): _VARIABLES for key in ("clear", "return", "filled")},
-    ("dialogue", "ruleref", "uri"): Use(("rule",), "#"),
-    ("dialogue", "grammar", "root"): Use(("rule",)),
-    ("dialogue", "on", "event"): Use(("event",), "list"),
-    ("dialogue", "topological-move", "to"): Use(("place",)),
-    **{
-        ("dialogue", key, "toward"): _POINT
-        for key in ("turn-and-speak", "set-direction", "point-by-hand")
-    },
-    ("dialogue", "gesture", "name"): Use(("gesture",)),
-    ("dialogue", "command", "type"): Use(("command",)),
-    ("dialogue", "send", "to"): Use(("service",)),
-    ("world", "way", "from"): Use(("place",)),
-    ("world", "way", "to"): Use(("place",)),
-    ("robot", "adds", "devices"): Use(("device",), "list"),
-    ("robot", "allows", "command"): Use(("command",)),
-    ("robot", "substitute", "command"): Use(("command",)),
-    ("robot", "substitute", "by"): Use(("command",)),
-    ("scenario", "robot", "at"): Use(("place",)),
-    ("scenario", "person", "at"): _POINT,
-    ("scenario", "walk", "to"): _POINT,
-    ("scenario", "look", "at"): _POINT,
-    ("scenario", "touch", "sensor"): Use(("sensor",)),
-    ("scenario", "fail", "device"): Use(("device",)),
-    ("scenario", "repair", "device"): Use(("device",)),
-    ("scenario", "when", "doing"): Use(("command",)),
-    ("scenario", "when", "done"): Use(("command",)),
-    ("scenario", "when", "on"): Use(("event",)),
-    ("scenario", "unload", "application"): Use(("application",)),
-    ("scenario", "service", "application"): Use(("application",)),
-    ("scenario", "message", "to"): Use(("application",)),
-    ("scenario", "when", "person"): Use(("person",)),
-    ("scenario", "answer", "person"): Use(("person",)),
-    ("voicexml", "goto", "next"): Use(("form",), "uri"),
-    ("voicexml", "link", "next"): Use(("form",), "uri"),
-    ("voicexml", "choice", "next"): Use(("form",), "uri"),
-    ("voicexml", "submit", "next"): Use(("form",), "uri"),
-    ("voicexml", "subdialog", "src"): Use(("form",), "uri"),
-    ("voicexml", "goto", "nextitem"): Use(("variable",)),
-    ("voicexml", "assign", "name"): Use(("variable",), "code"),
-    **{
-        ("voicexml", key, "namelist"): _VARIABLES
-        for key in (
-            "clear",
-            "return",
-            "filled",
-            "submit",
-            "subdialog",
-            "exit",
-            "disconnect",
-            "data",
-        )
-    },
-    ("voicexml", "catch", "event"): Use(("event",), "list"),
-    ("srgs", "ruleref", "uri"): Use(("rule",), "uri"),
-    ("voicexml", "grammar", "root"): Use(("rule",)),
-    ("srgs", "grammar", "root"): Use(("rule",)),
-}
-"""Attributes that refer to a name, by vocabulary and key of the element."""
-
-FILES: dict[tuple[str, str, str], tuple[str, ...]] = {
-    ("scenario", "scenario", "world"): ("world",),
-    ("scenario", "scenario", "robot"): ("robot",),
-    ("scenario", "application", "src"): ("dialogue", "voicexml"),
-    ("scenario", "person", "user"): ("user",),
-    ("scenario", "reply", "src"): (),
-    ("world", "area", "application"): ("dialogue", "voicexml"),
-    ("voicexml", "vxml", "application"): ("voicexml",),
-    **{("voicexml", key, "next"): ("voicexml",) for key in ("goto", "submit", "link", "choice")},
-    ("voicexml", "subdialog", "src"): ("voicexml",),
-    ("voicexml", "grammar", "src"): ("srgs",),
-    ("dialogue", "grammar", "src"): ("srgs",),
-    ("srgs", "ruleref", "uri"): ("srgs",),
-    **{("voicexml", key, "src"): () for key in ("script", "audio", "data")},
-}
-"""Attributes that name a file, with the vocabularies of documents that fit."""
-
-SHARED = frozenset(
-    [
-        *("place", "thing", "sensor", "device", "gesture", "command", "service"),
-        *("application", "event", "reading"),
-    ]
-)
-"""Kinds of names that documents of one scenario share."""

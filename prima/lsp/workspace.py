@@ -2,32 +2,28 @@
 
 from __future__ import annotations
 
-import os
 import time
-from collections import deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from urllib.parse import quote, unquote, urlsplit
+from urllib.parse import unquote, urlsplit
 
 from prima.errors import DocumentError
+from prima.lsp.meanings import FILES, SHARED
 from prima.lsp.names import Mark, dialect, marks
+from prima.lsp.paths import MOST_FILES, path_of, uri_of, walk
 from prima.lsp.scan import Page
-from prima.lsp.tables import FILES, SHARED, resolve
+from prima.lsp.tables import resolve
 from prima.lsp.text import Lines
 from prima.markup.encodings import ENCODING, decode
 from prima.markup.limits import LIMITS
 
-MOST_FILES = 2_000
-"""Maximum number of documents of a workspace."""
 MOST_FOLDERS = 5_000
 """Maximum number of folders searched for them."""
 FEW_FOLDERS = 50
 """Maximum number of folders searched around a document outside the workspace."""
 FRESH_SECONDS = 3.0
 """How long a listing of the workspace is used."""
-SUFFIXES = (".xml", ".vxml", ".grxml")
-SKIPPED = frozenset(["node_modules", "__pycache__", "build", "dist", "target"])
 
 
 @dataclass(slots=True)
@@ -87,30 +83,6 @@ class Found:
 
     path: Path
     mark: Mark
-
-
-def path_of(uri: str) -> Path | None:
-    """The file of a URI; an untitled document gets a path of its own."""
-    try:
-        parts = urlsplit(uri)
-    except ValueError:
-        return None
-    if parts.scheme == "untitled":
-        return Path("/untitled", unquote(parts.path).strip("/") or "document")
-    if parts.scheme != "file" or "\0" in unquote(parts.path):
-        return None
-    name = unquote(parts.path)
-    if os.name == "nt":
-        name = name.lstrip("/")
-    try:
-        return Path(name).resolve()
-    except (OSError, ValueError, RuntimeError):
-        return None
-
-
-def uri_of(path: Path) -> str:
-    """The URI of a file."""
-    return path.as_uri() if path.is_absolute() else quote(str(path))
 
 
 class Workspace:
@@ -187,7 +159,7 @@ class Workspace:
         since, listed = self._listed
         if time.monotonic() - since > FRESH_SECONDS:
             lone = {path.parent.parent for path in self.open if not self._has_folder(path)}
-            listed = [*_walk(self.folders, MOST_FOLDERS), *_walk(sorted(lone), FEW_FOLDERS)]
+            listed = [*walk(self.folders, MOST_FOLDERS), *walk(sorted(lone), FEW_FOLDERS)]
             self._listed = (time.monotonic(), listed)
         return sorted({*listed, *self.open})
 
@@ -337,49 +309,8 @@ class Workspace:
         for path in paths:
             text = self.text(path)
             own = dialect(text.top) if text else ""
+            private = "event" if own in ("dialogue", "voicexml") else ""
             for one in text.marks if text else ():
-                mine = "event" in one.kind and own in (
-                    "dialogue",
-                    "voicexml",
-                )  # private to each document
-                if one.defines and not wanted.isdisjoint(one.kind) and not mine:
+                if one.defines and wanted.intersection(one.kind) and private not in one.kind:
                     found.append(Found(path, one))
         return found
-
-
-def _walk(roots: Iterable[Path], most: int) -> Iterator[Path]:
-    """Documents in folders, up to the limits, without hidden folders and build output."""
-    waiting = deque(str(root) for root in roots)
-    folders = files = 0
-    while waiting and folders < most:
-        folders += 1
-        entries = _entries(waiting.popleft())
-        waiting += [entry.path for entry in entries if _is_searched(entry)]
-        found = [Path(entry.path).resolve() for entry in entries if _is_document(entry)]
-        yield from found[: MOST_FILES - files]
-        files += len(found)
-        if files > MOST_FILES:
-            return
-
-
-def _entries(folder: str) -> list[os.DirEntry[str]]:
-    """The entries of a folder by name; none if it cannot be read."""
-    try:
-        return sorted(os.scandir(folder), key=lambda entry: entry.name)
-    except (OSError, ValueError):
-        return []
-
-
-def _is_searched(entry: os.DirEntry[str]) -> bool:
-    hidden = entry.name.startswith(".") or entry.name in SKIPPED
-    try:
-        return not hidden and entry.is_dir(follow_symlinks=False)
-    except OSError:
-        return False
-
-
-def _is_document(entry: os.DirEntry[str]) -> bool:
-    try:
-        return entry.name.lower().endswith(SUFFIXES) and entry.is_file()
-    except OSError:
-        return False

@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from string import Template
-from typing import Any
 
 from prima.errors import counted
-from prima.errors.visible import visible
-from prima.report.lanes import Bar, Lanes
+from prima.report.data import LONGEST_NAME, page_data
 from prima.report.parts import json_text, part, policy_of, style_of, text
 from prima.report.view import View
-from prima.scheduler.policy import BASELINES
 from prima.transcript import colours
 from prima.transcript.colours import NOBODY
 from prima.transcript.diff import MARKS, Change, Difference, compare, remark, summary_line
 from prima.transcript.row import Row
-from prima.transcript.rules import RULES
 
 ROOM = "prima.report"
 WHO = {"R": "robot", "U": "user", "E": "surroundings"}
 LETTERS = "AB"
-LONGEST_NAME = 200
 PART = 50
 """Rows of a table's part."""
 KINDS = {
@@ -56,7 +50,7 @@ def page(views: Sequence[View]) -> str:
         "table": (
             _differences(views, difference, shades) if difference else _table(views[0], shades)
         ),
-        "data": json_text(_data(views, difference, shades)),
+        "data": json_text(page_data(views, difference, shades)),
     }
     return Template(part(ROOM, "template.html")).substitute(body)
 
@@ -287,72 +281,3 @@ def _time(row: Row | None) -> str:
         return '<td role="cell" class="time"><span aria-hidden="true">–</span></td>'
     number = f'<span class="number">#{row.number}</span>'
     return f'<td role="cell" class="time">{row.time:.2f} {number}</td>'
-
-
-# Data ----------------------------------------------------------------------------------------
-
-
-def _data(
-    views: Sequence[View], difference: Difference | None, shades: dict[str, int]
-) -> dict[str, Any]:
-    used = {row.rule for view in views for row in view.rows}
-    used |= {told[2] for view in views for why in view.whys for told in why.get("told", [])}
-    known = RULES | dict.fromkeys(BASELINES, "the baseline policy of that name")
-    data: dict[str, Any] = {
-        "runs": [_run(view, shades) for view in views],
-        "nobody": NOBODY,
-        "rules": {rule: known[rule] for rule in sorted(used) if rule in known},
-    }
-    if difference is not None:
-        data["changes"] = [
-            [
-                change.kind,
-                change.before.number if change.before else -1,
-                change.after.number if change.after else -1,
-            ]
-            for change in difference.changes
-        ]
-        data["marks"] = MARKS
-    return data
-
-
-def _run(view: View, shades: dict[str, int]) -> dict[str, Any]:
-    lanes = view.lanes
-    return {
-        "title": visible(view.title),
-        "seconds": lanes.seconds,
-        "apps": [visible(app[:LONGEST_NAME]) for app in lanes.apps],
-        "colours": [shades[app] for app in lanes.apps],
-        "devices": [visible(device)[:200] for device in lanes.devices],
-        "rows": [_row_data(view, row) for row in view.rows],
-        "whys": view.whys,
-        "names": view.names,
-        "bars": [_bar(bar, lanes) for bar in lanes.behaviors],
-        "away": [_bar(bar, lanes) for bar in lanes.away],
-        "held": [_bar(bar, lanes) for bar in lanes.held],
-        "floor": [_bar(bar, lanes) for bar in lanes.floor],
-        "streams": [_bar(bar, lanes) for bar in lanes.streams],
-        "walk": asdict(view.walk),
-    }
-
-
-def _row_data(view: View, row: Row) -> list[Any]:
-    """Time, who, application, what, whether an event; of what is said its language and place."""
-    made = [row.time, row.actor, visible(row.app[:LONGEST_NAME]), row.what, int(row.event)]
-    words, lang = view.spoken.get(row.number, ("", ""))
-    place = row.what.find(words) if words else -1
-    return [*made, lang, _units(row.what[:place]), _units(words)] if place >= 0 else made
-
-
-def _units(words: str) -> int:
-    """How long a text is for JavaScript, which counts in UTF-16."""
-    return len(words.encode("utf-16-le")) // 2
-
-
-def _bar(bar: Bar, lanes: Lanes) -> list[Any]:
-    """Begin, end, name, application, text, row, devices, cuts."""
-    app = lanes.apps.index(bar.app) if bar.app in lanes.apps else -1
-    devices = [lanes.devices.index(one) for one in bar.devices if one in lanes.devices]
-    words = visible(bar.text)
-    words = words if len(words) <= 300 else words[:300] + "…"
-    return [bar.begin, bar.end, visible(bar.name)[:200], app, words, bar.row, devices, bar.cuts]

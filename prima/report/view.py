@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from prima.errors.visible import visible
@@ -207,20 +208,27 @@ def _whys(run: Run, rows: Sequence[Row]) -> tuple[list[dict[str, Json]], dict[st
     whys: list[dict[str, Json]] = []
     names: dict[str, list[Json]] = {}
     for row in rows:
-        asked = run.asked(row.behavior)
-        why: dict[str, Json] = {}
-        if row.source:
-            why["source"] = _short(row.source)
-        if row.actor != "R":
-            why["outside"] = True
-        if asked is not None and asked.cause in events:
-            why["cause"] = events[asked.cause]
-        if told := [_reason(reason, row) for reason in reasons(run, row, MOST_REASONS)]:
-            why["told"] = told
-        for name in (name for *_, rivals in told for name in rivals if name not in names):
-            names[name] = _named(name, run, first)
-        whys.append(why)
+        told = [_reason(reason, row) for reason in reasons(run, row, MOST_REASONS)]
+        whys.append(_why(run, row, events, told))
+        for name in chain.from_iterable(rivals for *_, rivals in told):
+            if name not in names:
+                names[name] = _named(name, run, first)
     return whys, names
+
+
+def _why(run: Run, row: Row, events: Mapping[int, int], told: Sequence[Json]) -> dict[str, Json]:
+    """The reasons of a row: its place in a document, the event behind it, and decisions."""
+    asked = run.asked(row.behavior)
+    why: dict[str, Json] = {}
+    if row.source:
+        why["source"] = _short(row.source)
+    if row.actor != "R":
+        why["outside"] = True
+    if asked is not None and asked.cause and asked.cause in events:
+        why["cause"] = events[asked.cause]
+    if told:
+        why["told"] = told
+    return why
 
 
 def _first_rows(rows: Sequence[Row]) -> dict[str, int]:

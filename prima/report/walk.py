@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from prima.errors import UsageError
 from prima.language.commands import PATIENCE_MS
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from prima.api import Transcript
     from prima.loading import Loaded
     from prima.sim.map import Map
+    from prima.sim.rehearsal import Rehearsal
     from prima.sim.world import World
     from prima.transcript.run import Run
 
@@ -106,24 +107,10 @@ def check_files(transcript: Transcript, loaded: Loaded) -> None:
 
 def _again(transcript: Transcript, loaded: Loaded) -> Walk | None:
     """Run the scenario again and record the paths; None if the records differ."""
-    from prima.loading import seeded
-    from prima.scheduler.policy import policy_named
-    from prima.sim.rehearsal import Rehearsal
     from prima.transcript.lines import finished
 
-    head = transcript.run().head
-    policy, bound = head.get("policy"), head.get("bound")
-    if bound is not None and (not isinstance(bound, int) or bound < 1):
-        return None
-    patience = head.get("patience", PATIENCE_MS / 1000)
-    if not isinstance(patience, int | float) or patience < 0:
-        return None
-    seed = head.get("seed")
-    try:
-        policy = policy_named(str(policy))
-        cast = seeded(loaded, seed if isinstance(seed, int) else None).cast
-        rehearsal = Rehearsal(cast, policy, bound, patience=round(patience * 1000))
-    except UsageError:
+    rehearsal = _rehearsal(loaded, transcript.run().head)
+    if rehearsal is None:
         return None
     watch = Watch(rehearsal.devices.world)
     expected: Sequence[Record] = transcript.records
@@ -135,10 +122,28 @@ def _again(transcript: Transcript, loaded: Loaded) -> Walk | None:
             place += 1
         watch.look()
         if place >= len(expected):
-            break  # an incomplete transcript ends here
-    if place < len(expected):
+            return Walk(watch.robot, watch.person, source="run")
+    return None  # the transcript has more
+
+
+def _rehearsal(loaded: Loaded, head: Mapping[str, Any]) -> Rehearsal | None:
+    """A scenario, ready to run as a transcript's first record says; None if that is damaged."""
+    from prima.loading import seeded
+    from prima.scheduler.policy import policy_named
+    from prima.sim.rehearsal import Rehearsal
+
+    bound, seed = head.get("bound"), head.get("seed")
+    patience = head.get("patience", PATIENCE_MS / 1000)
+    if bound is not None and (not isinstance(bound, int) or bound < 1):
         return None
-    return Walk(watch.robot, watch.person, source="run")
+    if not isinstance(patience, int | float) or patience < 0:
+        return None
+    try:
+        policy = policy_named(str(head.get("policy")))
+        cast = seeded(loaded, seed if isinstance(seed, int) else None).cast
+        return Rehearsal(cast, policy, bound, patience=round(patience * 1000))
+    except UsageError:
+        return None
 
 
 class Watch:

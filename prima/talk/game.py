@@ -5,23 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from prima.errors import DocumentError, Problem, UsageError, one_of
+from prima.errors import UsageError, one_of
 from prima.grammar.phrases import phrases
-from prima.interpreter.elements import Document
-from prima.interpreter.events import Events
 from prima.language.values import LONGEST_MS
 from prima.loading import Loaded, favourite_problem
 from prima.messages import Record
 from prima.scheduler.behavior import Behavior
 from prima.scheduler.policy import policy_named
 from prima.sim.devices import Cast
-from prima.sim.happenings import Doing
-from prima.sim.hearing import check_hearing
-from prima.sim.rehearsal import Rehearsal, check_cast
-from prima.sim.scenario import Scenario, read_scenario
+from prima.sim.rehearsal import Rehearsal
 from prima.sim.services import Web
+from prima.talk.actions import Played, check_there, doings_of, names_of, scenario_of
 from prima.talk.scene import Scene, comment, seconds, when
-from prima.talk.typed import Line, Names
+from prima.talk.typed import Line
 from prima.transcript.lines import finished
 from prima.transcript.row import Row
 from prima.transcript.rows import GrowingTable
@@ -32,24 +28,14 @@ PATIENCE_MS = 60_000
 """How long time passes without a row before the author is asked again."""
 AT_ONCE_MS = 600_000
 """How long time passes at most before the author is asked again."""
+SAVED = (
+    "Played with prima talk. It ends where the session ended:"
+    ' write a later until="..." to let it go on.'
+)
 MOST_LINES = 10_000
 """Maximum number of lines of a session."""
-FILE = "typed"
-"""The file name under which typed lines are read as a scenario."""
-MOVES = ("walk", "follow", "stay", "leave")
-"""Actions for which the user must be present."""
 
 Sink = Callable[[list[Record]], object]
-
-
-@dataclass(frozen=True, slots=True)
-class Played:
-    """An action of the user: its time (ms), elements, and the row before it."""
-
-    at: int
-    xml: str
-    doings: list[Doing]
-    after: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,13 +77,13 @@ class Game:
         if problem := favourite_problem(self.policy, cast.documents):
             raise UsageError(f"{problem[0]} {problem[1].text}")
         self.scene = Scene(cast.scenario.node, folder, self.policy, scripted)
-        scenario = self._read([])
+        scenario = scenario_of(self.scene, [])
         scenario.services = cast.scenario.services  # with their answers
         if scripted:
             for name, user in cast.scenario.users.items():
                 scenario.take(name, user)
         self.cast: Cast = replace(cast, scenario=scenario)
-        self.names = _names(self.cast)
+        self.names = names_of(self.cast)
         self._web = web
         self._sink = sink
         self.lines: list[Played] = []
@@ -258,11 +244,15 @@ class Game:
             UsageError: it names something unknown, or nobody is there to do it.
         """
         if len(self.lines) >= MOST_LINES:
+            message = f"A session may have {MOST_LINES} lines: save it, and start a new one."
+            raise UsageError(message)
+        doings = doings_of(line, self.scene, self.cast)
+        if self.over and not line.loads:
+            again = f"/load {one_of(self.names.applications)}"
             raise UsageError(
-                f"A session may have {MOST_LINES} lines: save it, and start a new one."
+                f"Every application has ended. Load one again ({again}), or type /quit."
             )
-        doings = self._doings(line)
-        self._check_there(line, doings)
+        check_there(self.rehearsal, doings)
         thinking = self._thinking() if think and doings[0].name == "say" else 0
         at = max(self.clock + thinking, self.rehearsal.now + 1)
         if at > LONGEST_MS:
@@ -294,56 +284,6 @@ class Game:
         what = " ".join(filter(None, (row.app, row.what)))
         return f"after row {row.number}, {row.time:.2f} s: {what[:200]}"
 
-    def _check_there(self, line: Line, doings: list[Doing]) -> None:
-        """Check that the user, and the application to load or unload, are there.
-
-        Raises:
-            UsageError: they are not.
-        """
-        if self.over and not line.loads:
-            raise UsageError(
-                "Every application has ended. Load one again"
-                f" (/load {one_of(self.names.applications)}), or type /quit."
-            )
-        if not self.rehearsal.devices.people.there:
-            for doing in doings:
-                if doing.name in MOVES:
-                    raise UsageError(f'Nobody is there to do "/{doing.name}".')
-        self._check_loaded(doings[0])
-
-    def _check_loaded(self, doing: Doing) -> None:
-        session = self.rehearsal.session
-        app = session.apps.get(doing.values.get("application", ""))
-        if app is None:
-            return
-        loaded = app.name in session.mediator.memory.apps and not app.over
-        if doing.name == "load" and loaded:
-            raise UsageError(f'"{app.name}" is already loaded. Remove it with /unload.')
-        if doing.name == "unload" and not loaded:
-            raise UsageError(f'"{app.name}" is not loaded. Load it with /load.')
-
-    def _doings(self, line: Line) -> list[Doing]:
-        """The actions of a line, read and checked as a scenario's ``when``."""
-        scenario = self._read([when(0, line.xml)])
-        made = replace(self.cast, scenario=scenario)
-        last = scenario.node.all("when")[-1].place.line
-        found = [*check_cast(made), *check_hearing(made)]
-        problems = [one for one in found if one.place.file == FILE and one.place.line == last]
-        if problems:
-            raise UsageError(self._message(problems[0]))
-        return [one for one in scenario.whens if one.trigger == "at"][-1].doings
-
-    def _message(self, problem: Problem) -> str:
-        """A problem of a line, as a message."""
-        return f"{problem.message} {problem.remedy}".rstrip()
-
-    def _read(self, whens: list[str]) -> Scenario:
-        """The scene as a scenario, with these actions."""
-        try:
-            return read_scenario(FILE, self.scene.text(whens).encode())
-        except DocumentError as error:
-            raise UsageError(self._message(error.problems[0])) from None
-
     # Going back ------------------------------------------------------------------------
 
     def keep(self) -> None:
@@ -373,9 +313,8 @@ class Game:
         """
         self._check_back()
         if clock > self.clock:
-            raise UsageError(
-                f"It is only {seconds(self.clock)}: type /wait {seconds(clock - self.clock)}."
-            )
+            left = seconds(clock - self.clock)
+            raise UsageError(f"It is only {seconds(self.clock)}: type /wait {left}.")
         self.lines = [line for line in self.lines if line.at <= clock]
         self.points = [point for point in self.points if point.clock < clock]
         self._return(clock)
@@ -395,24 +334,10 @@ class Game:
 
     def saved(self, target: str) -> str:
         """The session so far as a scenario that repeats it, for a file."""
-        whens = [
-            f"<!-- {comment(line.after)} -->\n  {when(line.at, line.xml)}" for line in self.lines
-        ]
+        whens = [f"<!-- {comment(one.after)} -->\n  {when(one.at, one.xml)}" for one in self.lines]
         return self.scene.text(
             whens,
             seconds(self.clock),
             target,
-            "Played with prima talk. It ends where the session ended: write a later"
-            ' until="..." to let it go on.',
+            SAVED,
         )
-
-
-def _names(cast: Cast) -> Names:
-    events = [Events(one) for one in cast.documents if isinstance(one, Document)]
-    return Names(
-        sensors=frozenset(cast.robot.touch),
-        points=frozenset(cast.world.places) | frozenset(cast.world.things),
-        devices=frozenset(cast.robot.devices),
-        applications=frozenset(doc.id for doc in cast.documents),
-        events=frozenset(name for one in events for name in one.heard if name),
-    )

@@ -222,9 +222,9 @@ def read_line(text: str) -> Line:
             made.append(_pause(linger, first=not made))
         linger = 0
         made.append(_element(name, rest))
-    if linger and not made:
-        return Line(linger=linger, control="wait")
-    return Line("".join(made), linger) if made else Line(control="go")
+    if made:
+        return Line("".join(made), linger)
+    return Line(linger=linger, control="wait" if linger else "go")
 
 
 def _wait(rest: str) -> int:

@@ -118,18 +118,12 @@ class Checker:
 
     def _check_state(self, one: Expectation, window: Window) -> None:
         """A state lasts: an application must be in it at some time of the window, or never."""
-        states = self.run.states.changes
         closes = self.run.end if window.closes is None else window.closes
         if window.ahead is not None:
             closes = window.closes = min(self.run.facts[window.ahead].time, closes)
-        apps = [one.by] if one.by else list(states)
-        held = [
-            (app, change.time)
-            for app in apps
-            for change, ends in _spans(states.get(app, []))
-            if change.state == one.words["state"]
-            and _meets(change.time, ends, window.opens, closes)
-        ]
+        apps = [one.by] if one.by else list(self.run.states.changes)
+        wanted = one.words["state"]
+        held = [(app, at) for app in apps for at in self._times(app, wanted, window.opens, closes)]
         if one.never and held:
             app, time = held[0]
             message = f"{app} is in it from {seconds(time)} on."
@@ -137,6 +131,12 @@ class Checker:
         elif not one.never and not held:
             message = " ".join(self._state_at(app, window.opens) for app in apps[:MOST_TOLD])
             self._fail(one, window, message, window.opens)
+
+    def _times(self, app: str, state: str, opens: int, closes: int) -> list[int]:
+        """When an application entered a state in which it was at some time of a window."""
+        spans = _spans(self.run.states.changes.get(app, []))
+        spans = [(change, ends) for change, ends in spans if change.state == state]
+        return [change.time for change, ends in spans if _meets(change.time, ends, opens, closes)]
 
     def _state_at(self, app: str, time: int) -> str:
         """The state of an application at a time."""

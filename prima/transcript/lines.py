@@ -81,11 +81,7 @@ def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) ->
         if len(text) > MAX_LINE:
             raise UsageError(f"{name}:{number}: the line is too long for a transcript.")
         try:
-            try:
-                odd = "NaN" in text or "Infinity" in text
-                record = _closely(text) if odd else quick(text)
-            except ValidationError:
-                record = _closely(text)
+            record = _read(text, quick)
             if missing := lacking(record):
                 raise ValueError(f'{record["phase"]} needs "{missing}"')
             if record["time"] < latest:
@@ -100,6 +96,17 @@ def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) ->
         yield record
     if count == 0:
         raise UsageError(f"{name}: not a transcript: it has no records.")
+
+
+def _read(text: str, quick: Callable[[str], Record]) -> Record:
+    from pydantic import ValidationError
+
+    if "NaN" in text or "Infinity" in text:
+        return _closely(text)
+    try:
+        return quick(text)
+    except ValidationError:
+        return _closely(text)
 
 
 @cache

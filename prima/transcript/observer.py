@@ -3,79 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 from prima.messages import Record
 from prima.transcript.criteria import Criteria, Delay
+from prima.transcript.perceived import AwaitedAnswer, AwaitingEvent, PerceivedStream
 from prima.transcript.record import Entry
-
-
-@dataclass(slots=True)
-class _Tree:
-    """A Communication Stream as a user perceives it."""
-
-    name: str
-    app: str
-    pending: dict[str, Entry] = field(default_factory=dict)
-    """Requests of it that have not ended, by AB."""
-    topics: set[str] = field(default_factory=set)
-    """Those of them that do not leave the user."""
-    running: set[str] = field(default_factory=set)
-    leaving: set[str] = field(default_factory=set)
-    """What of it runs and leaves the user."""
-    looping: set[str] = field(default_factory=set)
-    """What of it runs and works in a feedback loop."""
-    speaking: set[str] = field(default_factory=set)
-    """What of it runs and speaks."""
-    spoken: bool = False
-    """Whether it has spoken, and no break has been counted since."""
-    spoken_into: bool = False
-    """Whether another application has spoken, by no reaction, since it last did."""
-    since: float = 0.0
-    """When another application came in or spoke into it."""
-    owed: list[tuple[float, Delay]] = field(default_factory=list)
-    """Events that it reacts to and has not responded to, with their times."""
-    begun: bool = False
-    engaged: bool = False
-    broken_by: str = ""
-    """The application that has come in since it last did something, if any."""
-    by_reaction: bool = False
-    left_by: set[str] = field(default_factory=set)
-    reacting: float = -1.0
-    """When a reaction of it started last, if nobody has come in since; else less than 0."""
-    asks: bool = False
-    """Whether it has asked or will ask the user something."""
-    faced: bool | None = None
-    """Whether robot and user faced each other at its first word, if that has been said."""
-
-    @property
-    def unfaced(self) -> bool:
-        """Whether it is a conversation that was begun without the channel."""
-        return self.asks and self.faced is False
-
-
-@dataclass(slots=True)
-class _Wait:
-    """An application waits for a service's answer."""
-
-    talked: bool
-    """Whether it was or has been doing something for the user: else nobody notices."""
-    since: float
-    broken: bool = False
-    """Whether another application came in, by no reaction."""
-
-
-@dataclass(slots=True)
-class _Event:
-    """An event that applications may react to."""
-
-    name: str
-    time: float
-    answered: set[str] = field(default_factory=set)
-    """Applications that have reacted."""
-    waited: str = ""
-    """The application whose wait was broken and that this answers, until it is taken up."""
-
 
 LATE_REACTION = 3.0
 """Seconds after its event from which on a reaction is late."""
@@ -103,8 +36,8 @@ class Observer:
         """The seconds of all reactions, in parts so small that the sum is exact."""
         self._responded = 0
         """The seconds until all responses, in such parts."""
-        self._trees: dict[str, _Tree] = {}
-        self._of: dict[str, _Tree] = {}
+        self._trees: dict[str, PerceivedStream] = {}
+        self._of: dict[str, PerceivedStream] = {}
         """The streams of behaviors that have not ended."""
         self.broken_since = 0.0
         """When another application came into the stream that was counted as broken last."""
@@ -112,9 +45,9 @@ class Observer:
         self._cut: set[str] = set()
         """Behaviors that go on and have lost a device."""
         self._now = 0.0
-        self._events: dict[int, _Event] = {}
+        self._events: dict[int, AwaitingEvent] = {}
         """The latest events, by serial number."""
-        self._waits: dict[tuple[str, str], _Wait] = {}
+        self._waits: dict[tuple[str, str], AwaitedAnswer] = {}
         """Applications that wait for a service's answer, by application and service."""
         self._stolen: dict[str, bool] = {}
         """Streams with a question that was answered, of which the next word is awaited, and
@@ -145,7 +78,7 @@ class Observer:
 
     def _send(self, record: Entry) -> None:
         talking = any(tree.begun for tree in self._trees.values() if tree.app == record.app)
-        self._waits[record.app, record.data["to"]] = _Wait(talking, self._now)
+        self._waits[record.app, record.data["to"]] = AwaitedAnswer(talking, self._now)
         if len(self._waits) > MOST_STREAMS:
             del self._waits[next(iter(self._waits))]
 
@@ -167,7 +100,7 @@ class Observer:
     def _request(self, record: Entry) -> None:
         tree = self._trees.get(record.tree)
         if tree is None:
-            tree = self._trees[record.tree] = _Tree(record.tree, record.app)
+            tree = self._trees[record.tree] = PerceivedStream(record.tree, record.app)
             if len(self._trees) > MOST_STREAMS:
                 self._forget(next(iter(self._trees)))
         tree.pending[record.behavior] = record
@@ -206,14 +139,14 @@ class Observer:
             tree.looping.add(name)
         tree.engaged = tree.engaged or bool(request.engages)
 
-    def _talk(self, tree: _Tree, record: Entry) -> None:
+    def _talk(self, tree: PerceivedStream, record: Entry) -> None:
         """Something is said: its application is noticed while it waits; a conversation begins."""
         for (app, _), wait in self._waits.items():
             wait.talked = wait.talked or app == tree.app
         if record.command != "active-sensing-human" and tree.faced is None:
             tree.faced = self._seen
 
-    def _begin(self, tree: _Tree, record: Entry, request: Entry) -> None:
+    def _begin(self, tree: PerceivedStream, record: Entry, request: Entry) -> None:
         """A behavior begins or resumes: what does it do to the others, and is it a response?"""
         speaks = "speaker" in request.devices
         self._come_in(tree, speaks)
@@ -225,7 +158,7 @@ class Observer:
         if record.text or (request.engages and record.command != "q-and-a"):
             self._respond(tree)
 
-    def _take_turn(self, tree: _Tree, record: Entry) -> None:
+    def _take_turn(self, tree: PerceivedStream, record: Entry) -> None:
         """Somebody speaks: is it who has asked what the user has answered, or another?"""
         if self._stolen.pop(tree.name, False) and record.command != "q-and-a":
             self.found.third_turns += 1
@@ -246,7 +179,7 @@ class Observer:
                 self._stolen[tree.name] = False
         self._end(record)
 
-    def _go_on(self, tree: _Tree, speaks: bool) -> None:
+    def _go_on(self, tree: PerceivedStream, speaks: bool) -> None:
         """A stream does something, or speaks: has another application broken it meanwhile?
 
         What begins beside it at the same instant has not come in between.
@@ -263,7 +196,7 @@ class Observer:
         elif broken:
             tree.spoken = False
 
-    def _react(self, tree: _Tree, serial: int, event: _Event) -> None:
+    def _react(self, tree: PerceivedStream, serial: int, event: AwaitingEvent) -> None:
         """An application starts something because of an event: the first time counts."""
         found, app = self.found, tree.app
         if app not in event.answered:
@@ -281,7 +214,7 @@ class Observer:
             event.waited = ""
             found.broken_waiting += 1
 
-    def _respond(self, tree: _Tree) -> None:
+    def _respond(self, tree: PerceivedStream) -> None:
         """The user is spoken to or turned to: all that the stream reacts to has its response."""
         found = self.found
         for time, delay in tree.owed:
@@ -291,7 +224,7 @@ class Observer:
             self._responded += int(seconds * PARTS)
         tree.owed = []
 
-    def _come_in(self, tree: _Tree, speaks: bool) -> None:
+    def _come_in(self, tree: PerceivedStream, speaks: bool) -> None:
         """Something of a stream begins: what others have not finished may be broken by it."""
         for other in self._trees.values():
             if other.app != tree.app and other.begun:
@@ -300,7 +233,7 @@ class Observer:
             broken = wait.talked and app != tree.app and tree.reacting < wait.since
             wait.broken = wait.broken or broken
 
-    def _come_into(self, other: _Tree, tree: _Tree, speaks: bool) -> None:
+    def _come_into(self, other: PerceivedStream, tree: PerceivedStream, speaks: bool) -> None:
         """A stream comes into another one, which is broken by it if it goes on later."""
         if speaks and other.spoken and not other.spoken_into:
             self._speak_into(other, tree)
@@ -311,7 +244,7 @@ class Observer:
             other.by_reaction = tree.reacting >= 0
             other.reacting = -1.0  # when it goes on, that is no reaction any more
 
-    def _speak_into(self, other: _Tree, tree: _Tree) -> None:
+    def _speak_into(self, other: PerceivedStream, tree: PerceivedStream) -> None:
         """A stream speaks while another one that has spoken does something: is it its topic?
 
         On a way or a search one may talk: a feedback Command takes as long as it takes.
@@ -320,7 +253,7 @@ class Observer:
             other.spoken_into, other.since = tree.reacting < 0, self._now
             other.reacting = -1.0
 
-    def _leave(self, tree: _Tree, behavior: str) -> None:
+    def _leave(self, tree: PerceivedStream, behavior: str) -> None:
         """The robot goes away: is another application in the middle of a conversation?"""
         for other in self._trees.values():
             if other.app == tree.app or not other.engaged:
@@ -349,7 +282,7 @@ class Observer:
     def _event(self, record: Entry, name: str) -> None:
         if name in ("human.found", "human.lost"):
             self._seen = name == "human.found"
-        event = _Event(name, self._now)
+        event = AwaitingEvent(name, self._now)
         if record.serial:
             self._events[record.serial] = event
             if len(self._events) > MOST_EVENTS:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from prima.messages import Record
 from prima.transcript.record import Entry
@@ -35,19 +35,25 @@ def make_rows(entries: Iterable[Entry]) -> list[Row]:
                 held.append(record)
         elif record.phase not in UNSEEN:
             held.append(record)
-    rows: list[Row] = []
-    collided: set[tuple[str, str]] = set()
-    for record in held:
-        row = row_of(record, asked, handled)
-        if record.phase == "collision":
-            pair = (base(record.behavior), base(record.by))
-            row = None if pair in collided else row  # every loop collides
-            collided.add(pair)
-        if row is not None:
-            row.number = len(rows)
-            rows.append(row)
+    rows = list(_rows(held, asked, handled))
+    for number, row in enumerate(rows):
+        row.number = number
     _bracket(rows, ends)
     return rows
+
+
+def _rows(held: Iterable[Entry], asked: dict[str, Entry], handled: set[int]) -> Iterator[Row]:
+    """The rows of records; of collisions, only the first of a pair, as every loop collides."""
+    collided: set[tuple[str, str]] = set()
+    for record in held:
+        pair = (base(record.behavior), base(record.by))
+        if record.phase == "collision" and pair in collided:
+            continue
+        row = row_of(record, asked, handled)
+        if record.phase == "collision":
+            collided.add(pair)
+        if row is not None:
+            yield row
 
 
 class GrowingTable:

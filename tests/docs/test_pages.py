@@ -17,7 +17,8 @@ from prima.checks.codes import diagnoses
 from prima.errors import UsageError
 from prima.interpreter.vocabulary import SPEAKING
 from prima.markup.vocabulary import Vocabulary
-from prima.transcript.record import FIELDS, PHASES, model
+from prima.transcript.phases import PHASES
+from prima.transcript.record import FIELDS, model
 from tests import ROOT
 from tests.helpers.pages import FENCE, NAMESPACES, PAGES
 from tools import reference

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from prima.handbook import rulebook
+from prima.handbook.situations import EXAMPLES
 from prima.report import strip
 from prima.scheduler.policy import BASELINES
 from prima.transcript.rules import RULES
@@ -18,18 +19,18 @@ from tests import ROOT
 from tests.helpers.pages import run
 
 
-@pytest.mark.parametrize("name", sorted(rulebook.EXAMPLES))
+@pytest.mark.parametrize("name", sorted(EXAMPLES))
 def test_every_example_of_a_rule_shows_it(name: str) -> None:
     run = rulebook.run_of(name)
     looked = next(row for row in run.rows if row.number == run.number)
-    assert rulebook.EXAMPLES[name].row in looked.what
+    assert EXAMPLES[name].row in looked.what
     assert max(map(len, run.picture.splitlines())) <= 80
     assert "\0" not in run.picture
 
 
 def test_every_rule_of_the_page_has_an_example_and_is_explained_in_its_words() -> None:
     rules = rulebook.rules()
-    assert set(rules) == set(rulebook.EXAMPLES), "each rule needs an example"
+    assert set(rules) == set(EXAMPLES), "each rule needs an example"
     assert {*RULES, *BASELINES} <= set(rules), "each rule that records name is in the page"
     page = (ROOT / "docs" / "mediation.md").read_text(encoding="utf-8")
     named = set(re.findall(r"^- \*\*([A-Z]\d+)", page, re.MULTILINE))

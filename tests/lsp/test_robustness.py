@@ -21,12 +21,13 @@ from prima.lsp.fixes import fixes
 from prima.lsp.hover import hover
 from prima.lsp.names import marks
 from prima.lsp.outline import links, outline
+from prima.lsp.paths import path_of
 from prima.lsp.problems import check, spots
 from prima.lsp.protocol import Server
 from prima.lsp.scan import Page
 from prima.lsp.tables import resolve
 from prima.lsp.text import UTF8, UTF16, UTF32, Lines
-from prima.lsp.workspace import Workspace, path_of
+from prima.lsp.workspace import Workspace
 from tests import ROOT
 from tests.helpers.editor import BEGIN, SECONDS, WRONG, Editor
 

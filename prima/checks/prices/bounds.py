@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from prima.checks.prices.model import Gap, Loop, Outline, Price, Reaction, State, devices_of
 from prima.errors import Place
+from prima.markup.tree import Node
 
 MANY_STATES = 8
 """Maximum number of states named in a loop."""
@@ -129,12 +130,17 @@ def _loop_of(outline: Outline, states: list[State]) -> Loop:
     repeats = [one for state in states for one in state.repeats]
     if len(states) == 1 and first.name not in first.goes and repeats:
         return _loop(repeats[0].place, repeats[0].reason, parts, names)
-    ways = [node for state in states for to, node in state.goes.items() if to in names]
-    place = min(ways, key=lambda node: node.index).place if ways else first.node.place
+    place = _way_back(states, names, first.node).place
     more = ", ..." if len(states) > MANY_STATES else ""
     listed = ", ".join(state.name for state in states[:MANY_STATES]) + more
     follows = "follow one another" if len(states) > 1 else "follows itself"
     return _loop(place, f"{listed} {follows} without a wait for an event", parts, names)
+
+
+def _way_back(states: list[State], names: frozenset[str], otherwise: Node) -> Node:
+    """The first element that leads from one of the states to another."""
+    ways = [node for state in states for to, node in state.goes.items() if to in names]
+    return min(ways, key=lambda node: node.index, default=otherwise)
 
 
 def _with_called(outline: Outline, states: list[State]) -> list[State]:

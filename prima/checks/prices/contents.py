@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import TypeGuard
 
 from prima.interpreter.acts import Act, Handler, Return, Run, SendOut, Throw, all_acts, run_commands
 from prima.interpreter.elements import (
@@ -70,11 +71,12 @@ def sent_by(document: Document) -> set[str]:
 
 def thrown_by(document: Document) -> set[str]:
     """The events that the application throws itself."""
-    acts = [act for _, content, _ in document.contents() for act in all_acts(content)]
-    thrown = {
-        str(act.event) for act in acts if isinstance(act, Throw) and isinstance(act.event, str)
-    }
-    returned = {act.event for act in acts if isinstance(act, Return)}
-    links = [*document.links, *(one for form in document.forms.values() for one in form.links)]
-    linked = {link.event for link in links}
-    return {name for name in thrown | returned | linked if name}
+    scopes: list[Document | Form] = [document, *document.forms.values()]
+    events = {link.event for scope in scopes for link in scope.links}
+    for _, content, _ in document.contents():
+        events |= {str(act.event) for act in all_acts(content) if _throws(act)}
+    return events - {""}
+
+
+def _throws(act: Act) -> TypeGuard[Throw | Return]:
+    return isinstance(act, Throw | Return) and isinstance(act.event, str)

@@ -105,28 +105,29 @@ class Firsts:
         """Add what content may do first; whether it may come to its end without a Command."""
         for act in content:
             match act:
-                case Run():
-                    if not self._run(act, form):
-                        return False
-                case If():
-                    if not self._branch(act, form):
-                        return False
                 case Foreach():
                     self._go_through(act.content, form)
-                case Goto():
-                    self._goto(act, form)
-                    return False
                 case Throw():
                     return self._throw(act, form)
                 case SendOut() if act.event and self._response:
                     self.later.append(act)
                     self._handled(act.node, [act.event], form)
-                case Return():
-                    self._stay(None)
-                    return False
-                case Exit():
+                case _ if not self._goes_on(act, form):
                     return False
         return True
+
+    def _goes_on(self, act: Act, form: Form | None) -> bool:
+        """Add what an act may do first; whether what is behind it may be first as well."""
+        match act:
+            case Run():
+                return self._run(act, form)
+            case If():
+                return self._branch(act, form)
+            case Goto():
+                self._goto(act, form)
+            case Return():
+                self._stay(None)
+        return not isinstance(act, Goto | Return | Exit)
 
     def _run(self, act: Run, form: Form | None) -> bool:
         """Add what Commands are looked for among some; whether the content behind them is, too."""
@@ -144,11 +145,15 @@ class Firsts:
         for at in sorted(before):
             self._add(prices[at])
         if not answering:
-            for command in run_commands(act.steps):
-                for hook in command.handlers:
-                    self._go_through(hook.content, form)
-            self._handled(act.node, sorted(raised_in([act])), form)
+            self._ends(act, form)
         return not answering
+
+    def _ends(self, act: Run, form: Form | None) -> None:
+        """Add what is done about the ends of Commands."""
+        for command in run_commands(act.steps):
+            for hook in command.handlers:
+                self._go_through(hook.content, form)
+        self._handled(act.node, sorted(raised_in([act])), form)
 
     def _branch(self, act: If, form: Form | None) -> bool:
         over = [self._go_through(branch, form) for _, branch in act.branches]

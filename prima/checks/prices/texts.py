@@ -170,19 +170,23 @@ def _comma(code: str, at: int, closing: str) -> int:
 
 def _inside(value: Literal, step: re.Match[str]) -> Iterable[Literal]:
     """What a step of a path may lead to; all that there is where the step is computed."""
-    key = step["key"]
-    code = step["code"] or ""
-    if key is None and code[:1] in "'\"" and code[:1] == code[-1:] and len(code) > 1:
-        key = code[1:-1]
-    if key is None and code.isdecimal():
-        key = code
-    if isinstance(value, list):
-        if key is None:
-            return [*value, UNDEFINED]
-        return [value[int(key)]] if key.isdecimal() and int(key) < len(value) else [UNDEFINED]
+    if not isinstance(value, list | dict):
+        return [UNDEFINED]
+    key = _key(step)
+    if key is None:
+        return [*(value if isinstance(value, list) else value.values()), UNDEFINED]
     if isinstance(value, dict):
-        return [*value.values(), UNDEFINED] if key is None else [value.get(key, UNDEFINED)]
-    return [UNDEFINED]
+        return [value.get(key, UNDEFINED)]
+    return [value[int(key)]] if key.isdecimal() and int(key) < len(value) else [UNDEFINED]
+
+
+def _key(step: re.Match[str]) -> str | None:
+    """The name or number that a step has as a literal."""
+    key: str | None = step["key"]
+    code: str = step["code"] or ""
+    if key is None and code[:1] in "'\"" and code[:1] == code[-1:] and len(code) > 1:
+        return code[1:-1]
+    return code if key is None and code.isdecimal() else key
 
 
 def _said(value: Literal) -> str:

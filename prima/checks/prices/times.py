@@ -1,0 +1,156 @@
+"""Prices of the parts of an application in PRIMA's language."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from prima.checks.prices.commands import command_price, group_price, unit_price
+from prima.checks.prices.contents import (
+    again,
+    contents_of,
+    inside,
+    thrown_by,
+)
+from prima.checks.prices.model import Price, devices_of
+from prima.checks.prices.texts import Constants
+from prima.devices.profile import Profile
+from prima.devices.voice import duration
+from prima.interpreter.acts import (
+    Act,
+    CommandTemplate,
+    Expression,
+    Handler,
+    Pause,
+    Run,
+    StepTemplate,
+    Text,
+    all_acts,
+    pauses_in,
+)
+from prima.interpreter.elements import Block, Document, Field, Form, Item, Prompt, Unit
+from prima.interpreter.selection import takes
+from prima.interpreter.units import reach_of
+from prima.language.commands import TABLE_4_2
+
+UNKNOWN_LETTERS = 20
+"""The assumed text of an expression."""
+ASKED_AGAIN = "the question is asked again until the user answers"
+OFTEN = "an expression says how often it is done"
+SAYS = "an expression gives its text"
+QUESTION = TABLE_4_2["q-and-a"]
+DEFAULT_TIMEOUT = int(QUESTION.arguments["timeout"].default or 0)
+INNER = ("noinput", "nomatch", "help", "end", "cancel", "interrupted", "exit", "error")
+"""What begins an event of the application's own: what it does about it is no reaction (C5)."""
+BROKEN = ("error.device", "error.unsupported")
+"""What happens where a device does not work: then no time holds."""
+SERVICES = "error.service"
+
+
+class Times:
+    """How long Commands, questions and units may last."""
+
+    def __init__(self, document: Document, profile: Profile) -> None:
+        self.document = document
+        self.profile = profile
+        self.constants = Constants(document)
+        self.thrown = thrown_by(document)
+        self.of_items: dict[int, Price] = {}
+        """Of fields and units, by the index of their element."""
+
+    def steps(self, content: Sequence[Act]) -> list[Price]:
+        """The parts of executable content."""
+        runs = [act for act in all_acts(content) if isinstance(act, Run)]
+        return [self.step(step) for run in runs for step in run.steps]
+
+    def step(self, step: StepTemplate) -> Price:
+        """A Command, or a unit of them (U4)."""
+        what = step.what
+        if isinstance(what, CommandTemplate):
+            return self.command(what)
+        inner = [self.step(one) for one in what.steps]
+        return group_price(what.node, what.longest, inner, [one.after for one in what.steps])
+
+    def command(self, command: CommandTemplate) -> Price:
+        """A Command by itself."""
+        args = {
+            name: None if isinstance(value, Expression) else value
+            for name, value in command.args.items()
+        }
+        lang = command.lang or self.document.lang
+        speech = self.speech(command.text, lang) if command.text else None
+        return command_price(command.node, command.type, args, speech, self.profile)
+
+    def speech(self, text: Text, lang: str) -> tuple[int, str]:
+        """The longest duration of a text (ms), and why it may be longer."""
+        known = [self._texts(one) for one in text if not isinstance(one, Pause)]
+        said = "".join(
+            "x" * UNKNOWN_LETTERS if one is None else max(one, key=self._weight(lang), default="")
+            for one in known
+        )
+        spoken = duration(said, lang, self.profile.voices) if known else 0
+        return spoken + pauses_in(text), SAYS if None in known else ""
+
+    def _texts(self, piece: str | Expression) -> list[str] | None:
+        return self.constants.texts(piece.code) if isinstance(piece, Expression) else [piece]
+
+    def _weight(self, lang: str) -> Callable[[str], int]:
+        return lambda text: duration(f"{text} x", lang, self.profile.voices)
+
+    def question(self, field: Field, form: Form) -> Price:
+        """A question: its longest prompts and the time in which nobody answers (C4)."""
+        settings = (field.properties, form.properties, self.document.properties)
+        usual = next((one["timeout"] for one in settings if "timeout" in one), DEFAULT_TIMEOUT)
+        lasts, unknown = 1 + int(usual) if self._unsaid(field, form) else 0, ""
+        for count in {prompt.count for prompt in field.prompts}:
+            said = [prompt for prompt in field.prompts if prompt.count == count]
+            asked, why = self._asked(said, int(usual), field.lang or self.document.lang)
+            unknown = unknown or why
+            lasts = max(lasts, asked)
+        return Price(
+            field.node, "question", QUESTION.devices, lasts, unknown, engages=True, listens=True
+        )
+
+    def _asked(self, said: list[Prompt], usual: int, lang: str) -> tuple[int, str]:
+        """How long prompts and the wait for an answer take (ms), and why it may be longer."""
+        text = [piece for prompt in said for piece in (" ", *prompt.text)][1:]
+        speech, why = self.speech(tuple(text), lang)
+        timeout = max(usual if one.timeout is None else one.timeout for one in said)
+        return speech + max(timeout, 1), why
+
+    def _unsaid(self, field: Field, form: Form) -> bool:
+        """Whether a question may be asked silently, as a handler may not repeat it aloud."""
+        always = any(prompt.count == 1 and prompt.cond is None for prompt in field.prompts)
+        handlers = [*field.handlers, *form.handlers, *self.document.handlers]
+        return not always or any(self.takes_inner(one) for one in handlers)
+
+    def unit(self, unit: Unit, form: Form) -> Price:
+        """A unit around form items: its longest duration, and what runs then to its end (U5)."""
+        inner = [price for one in inside(unit) for price in self._within(one, unit)]
+        reached = reach_of(self.document, form, unit).commands
+        inner += [self.command(one.command) for one in reached if not one.inside]
+        lasts = unit.longest + max((one.lasts for one in inner), default=0)
+        if _runs_once(unit):
+            lasts = min(lasts, sum(one.lasts for one in inner))
+        return unit_price(unit.node, unit.devices | devices_of(inner), lasts, inner)
+
+    def _within(self, part: Item | Handler, unit: Unit) -> list[Price]:
+        own = self.of_items.get(part.node.index) if part is not unit else None
+        return ([own] if own else []) + [
+            price for content in contents_of(part) for price in self.steps(content)
+        ]
+
+    def takes_inner(self, handler: Handler) -> bool:
+        """Whether it may take an event of what the application is doing, without a wait."""
+        names = [name for name in handler.events if not name.startswith((*BROKEN, SERVICES))]
+        return any(is_inner(name) or name in self.thrown for name in names)
+
+
+def is_inner(name: str) -> bool:
+    """Whether an event belongs to what the application does itself."""
+    return any(takes(one, name) for one in INNER)
+
+
+def _runs_once(unit: Unit) -> bool:
+    """Whether nothing in a unit can be done more than once."""
+    blocks = all(isinstance(item, Block) and not item.handlers for item in unit.items)
+    return blocks and not unit.handlers and not any(again(item) for item in unit.items)

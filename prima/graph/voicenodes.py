@@ -1,0 +1,121 @@
+"""What elements of VoiceXML say, take and lead to."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from prima.graph.labels import ASKED, sayings
+from prima.graph.model import clean
+from prima.graph.throws import Taker
+from prima.graph.transitions import Branches
+from prima.language.commands import TABLE_4_2
+from prima.markup.tree import Node
+from prima.voicexml.arranging import is_unit, parts_of
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE, WORDED
+
+ITEMS = ("block", "field", "initial", "record", "transfer", "object", "subdialog")
+HANDLERS = ("catch", "error", "help", "noinput", "nomatch")
+LEAVING = frozenset(["goto", "submit", "exit", "return", "disconnect", "throw"])
+"""Executable content behind which nothing is executed."""
+MOST_DEEP = 40
+"""Maximum depth of speech that is read."""
+
+
+def takers(scope: Node) -> list[Taker[Node]]:
+    """The handlers of a document, a dialog, a unit or an item."""
+    return [_taker(node) for node in scope.all(*HANDLERS)]
+
+
+def _taker(node: Node) -> Taker[Node]:
+    named = node.tag == "catch"
+    events = _caught(node) if named else [node.tag]
+    stays = _does_something(node) and not ASKED.issuperset(events)
+    return Taker(node.nodes, events, _count(node), node.get("cond").strip(), stays, named)
+
+
+def _caught(catch: Node) -> list[str]:
+    """The events that a ``catch`` takes; the empty name is for all."""
+    return [name if name != "." else "" for name in catch.get("event").split()] or [""]
+
+
+def _count(handler: Node) -> int:
+    """The occurrence from which a handler takes its events."""
+    count = handler.get("count", "1")
+    return int(count) if re.fullmatch("[0-9]{1,4}", count) else 1
+
+
+def _does_something(handler: Node) -> bool:
+    """Whether a handler has content, and none that leads away."""
+    empty = not handler.nodes and not handler.text
+    return not empty and not any(one.tag in LEAVING for one in handler.walk())
+
+
+def divided(node: Node) -> Branches[Node]:
+    """The parts of an ``if`` with their conditions; ``else`` has none."""
+    parts: list[tuple[str | None, list[Node]]] = [(node.get("cond"), [])]
+    for child in node.nodes:
+        if child.tag in ("elseif", "else"):
+            parts.append((child.get("cond") if child.tag == "elseif" else None, []))
+        else:
+            parts[-1][1].append(child)
+    return parts
+
+
+def leaves_user(node: Node) -> bool:
+    """Whether an element is a Command of the robot that leaves the user."""
+    row = TABLE_4_2.get(node.tag) if node.namespace == PRIMA_NAMESPACE else None
+    return row is not None and row.leaves
+
+
+def leaves_at_its_end(form: Node) -> bool:
+    """Whether a form is left before its items end; otherwise the application ends (2.1.6)."""
+    units = [one for one in form.nodes if is_unit(one)]
+    conditional = {id(item) for unit in units if unit.get("cond") for item in unit.nodes}
+    contents = form.all("filled")
+    for item in parts_of(form):
+        asked_for = item.attributes.keys() & {"cond", "expr"} or id(item) in conditional
+        if item.tag in ITEMS and not asked_for:
+            contents += [item] if item.tag == "block" else item.all("filled")
+    return any(_never_ends(content.nodes) for content in contents)
+
+
+def _never_ends(acts: Iterable[Node]) -> bool:
+    """Whether content always leaves its dialog."""
+    for act in acts:
+        if act.tag in LEAVING:
+            return not act.attributes.keys() & {"nextitem", "expritem"}
+        parts = divided(act) if act.tag == "if" else []
+        if parts and parts[-1][0] is None and all(_never_ends(part) for _, part in parts):
+            return True
+    return False
+
+
+def asked(node: Node) -> str:
+    """The first question of a dialog or item."""
+    prompts = [one for one in node.all("prompt") if one.get("count", "1") == "1"]
+    text = said(prompts[0]) if prompts else ""
+    return text or (node.text if node.tag in ("menu", "field") else "")
+
+
+def said_by(link: Node) -> list[str]:
+    """What users say to follow a link, if its grammars show it."""
+    words = sayings(link.all("grammar"))
+    return [f"said {words}"] if words else []
+
+
+def said(node: Node, depth: int = 0) -> str:
+    """The words of a prompt or block, without those under conditions."""
+    parts: list[str] = []
+    for item in node.content:
+        if isinstance(item, str):
+            parts.append(item)
+        elif item.tag == "value":
+            parts.append(f"{{{item.get('expr')}}}")
+        elif item.tag == "enumerate":
+            parts.append("...")
+        elif depth < MOST_DEEP and (
+            item.namespace == PRIMA_NAMESPACE or item.tag in (*WORDED, "prompt")
+        ):
+            parts.append(" " + said(item, depth + 1) + " ")
+    return clean(" ".join("".join(parts).split()))

@@ -1,0 +1,239 @@
+"""Answers to the questions of an editor, in the terms of the Language Server Protocol."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcException
+
+from prima.errors import Problem, in_order
+from prima.errors.visible import visible
+from prima.lsp import naming
+from prima.lsp import outline as outlines
+from prima.lsp.complete import Proposal, complete
+from prima.lsp.fixes import fixes
+from prima.lsp.hover import hover as meaning
+from prima.lsp.paths import path_of
+from prima.lsp.problems import spot
+from prima.lsp.protocol import Server
+from prima.lsp.scan import Page
+
+REQUEST_FAILED = -32803
+
+ITEMS = {
+    "element": lsp.CompletionItemKind.Class,
+    "attribute": lsp.CompletionItemKind.Property,
+    "value": lsp.CompletionItemKind.EnumMember,
+    "name": lsp.CompletionItemKind.Reference,
+    "variable": lsp.CompletionItemKind.Variable,
+    "event": lsp.CompletionItemKind.Event,
+    "file": lsp.CompletionItemKind.File,
+}
+SYMBOLS = {
+    "module": lsp.SymbolKind.Module,
+    "class": lsp.SymbolKind.Class,
+    "method": lsp.SymbolKind.Method,
+    "event": lsp.SymbolKind.Event,
+    "variable": lsp.SymbolKind.Variable,
+    "function": lsp.SymbolKind.Function,
+    "object": lsp.SymbolKind.Object,
+}
+
+
+def completion(server: Server, params: lsp.CompletionParams) -> lsp.CompletionList | None:
+    """Proposals at the cursor."""
+    asked = server.asked(params)
+    if asked is None:
+        return None
+    path, text, offset = asked
+    typed = params.context.trigger_character if params.context else None
+    found = complete(server.documents, path, offset, typed or "")
+    items = [_item(server, text.page, one, n) for n, one in enumerate(found)]
+    return lsp.CompletionList(is_incomplete=False, items=items)
+
+
+def _item(server: Server, page: Page, one: Proposal, number: int) -> lsp.CompletionItem:
+    snippet = one.snippet if server.snippets else ""
+    edit = lsp.TextEdit(
+        server.range(page.lines, one.start, one.end), snippet or one.insert or one.label
+    )
+    return lsp.CompletionItem(
+        visible(one.label),
+        kind=ITEMS.get(one.kind),
+        detail=visible(one.detail) or None,
+        documentation=lsp.MarkupContent(lsp.MarkupKind.Markdown, one.doc) if one.doc else None,
+        sort_text=f"{number:04}",
+        filter_text=one.label,
+        text_edit=edit,
+        insert_text_format=lsp.InsertTextFormat.Snippet
+        if snippet
+        else lsp.InsertTextFormat.PlainText,
+    )
+
+
+def hover(server: Server, params: lsp.HoverParams) -> lsp.Hover | None:
+    """The meaning of what is under the mouse."""
+    asked = server.asked(params)
+    found = meaning(server.documents, asked[0], asked[2]) if asked else None
+    if asked is None or found is None:
+        return None
+    return lsp.Hover(
+        lsp.MarkupContent(lsp.MarkupKind.Markdown, visible(found.text, "\n")),
+        server.range(asked[1].lines, found.start, found.end),
+    )
+
+
+def definition(server: Server, params: lsp.DefinitionParams) -> list[lsp.Location] | None:
+    """Where the name at the cursor is defined."""
+    asked = server.asked(params)
+    if asked is None:
+        return None
+    return server.locations(naming.definitions(server.documents, asked[0], asked[2])) or None
+
+
+def references(server: Server, params: lsp.ReferenceParams) -> list[lsp.Location] | None:
+    """Where the name at the cursor is used."""
+    asked = server.asked(params)
+    if asked is None:
+        return None
+    path, _, offset = asked
+    own = params.context.include_declaration
+    return server.locations(naming.references(server.documents, path, offset, own)) or None
+
+
+def highlight(
+    server: Server, params: lsp.DocumentHighlightParams
+) -> list[lsp.DocumentHighlight] | None:
+    """The uses of a name in its document."""
+    asked = server.asked(params)
+    if asked is None:
+        return None
+    path, text, offset = asked
+    return [
+        lsp.DocumentHighlight(server.range(text.lines, one.start, one.end))
+        for one in naming.references(server.documents, path, offset)
+        if one.path == path
+    ]
+
+
+def prepare_rename(
+    server: Server, params: lsp.PrepareRenameParams
+) -> lsp.PrepareRenamePlaceholder | None:
+    """The name at the cursor, if it can be renamed."""
+    asked = server.asked(params)
+    found = naming.renamable(server.documents, asked[0], asked[2]) if asked else None
+    if asked is None or found is None:
+        return None
+    page = asked[1].page
+    return lsp.PrepareRenamePlaceholder(
+        server.range(page.lines, found.start, found.end), page.text[found.start : found.end]
+    )
+
+
+def rename(server: Server, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
+    """The edits that rename a name."""
+    asked = server.asked(params)
+    if asked is None:
+        return None
+    try:
+        found, move = naming.rename(server.documents, asked[0], asked[2], params.new_name)
+    except naming.RenameError as error:
+        raise JsonRpcException(str(error), REQUEST_FAILED) from None
+    if move is not None and not server.moves_files:
+        message = "This editor lets no server move a file: move it yourself."
+        raise JsonRpcException(message, REQUEST_FAILED)
+    return server.edits(found, move)
+
+
+def will_move(server: Server, params: lsp.RenameFilesParams) -> lsp.WorkspaceEdit | None:
+    """The edits that follow from moving files."""
+    found: list[naming.Edit] = []
+    for file in params.files:
+        old, new = path_of(file.old_uri), path_of(file.new_uri)
+        if old is not None and new is not None:
+            found += naming.moved(server.documents, old, new)
+    return server.edits(found)
+
+
+def symbols(server: Server, params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol] | None:
+    """A document's outline."""
+    found = server.documents.asked(params.text_document.uri)
+    if found is None:
+        return None
+    page = found[1].page
+    return [_symbol(server, page, part) for part in outlines.outline(page)]
+
+
+def _symbol(server: Server, page: Page, part: outlines.Part) -> lsp.DocumentSymbol:
+    return lsp.DocumentSymbol(
+        visible(part.name),
+        SYMBOLS[part.sort],
+        server.range(page.lines, part.start, part.end),
+        server.range(page.lines, part.name_start, part.name_end),
+        visible(part.detail) or None,
+        children=[_symbol(server, page, one) for one in part.parts],
+    )
+
+
+def links(server: Server, params: lsp.DocumentLinkParams) -> list[lsp.DocumentLink] | None:
+    """The files that a document names."""
+    found = server.documents.asked(params.text_document.uri)
+    if found is None:
+        return None
+    path, text = found
+    return [
+        lsp.DocumentLink(
+            server.range(text.lines, one.start, one.end), server.documents.uri(one.target)
+        )
+        for one in outlines.links(server.documents, path)
+    ]
+
+
+def actions(server: Server, params: lsp.CodeActionParams) -> list[lsp.CodeAction] | None:
+    """Quick fixes."""
+    found = server.documents.asked(params.text_document.uri)
+    if found is None:
+        return None
+    path, text = found
+    page = text.page
+    first, last = (server.offset(page.lines, at) for at in (params.range.start, params.range.end))
+    made: list[lsp.CodeAction] = []
+    for problem in in_order(server.problems(path)):
+        one = spot(page.lines, problem)
+        if one.end >= first and one.start <= last:
+            made += _quick_fixes(server, page, problem, params.text_document.uri)
+    return made
+
+
+def _quick_fixes(
+    server: Server, page: Page, problem: Problem, uri: str
+) -> Iterator[lsp.CodeAction]:
+    """The fixes of a problem, the preferred one first."""
+    for number, (title, changes) in enumerate(fixes(page.lines, problem)):
+        edits = [
+            lsp.TextEdit(server.range(page.lines, change.start, change.end), change.text)
+            for change in changes
+        ]
+        yield lsp.CodeAction(
+            visible(title),
+            lsp.CodeActionKind.QuickFix,
+            [server.diagnostic(page.lines, spot(page.lines, problem))],
+            is_preferred=number == 0,
+            edit=lsp.WorkspaceEdit(changes={uri: edits}),
+        )
+
+
+def linked(server: Server, params: lsp.LinkedEditingRangeParams) -> lsp.LinkedEditingRanges | None:
+    """The names in a start tag and its end tag, which are edited together."""
+    asked = server.asked(params)
+    if asked is None:
+        return None
+    _, text, offset = asked
+    for tag in text.page.tags:
+        if tag.close is None or not tag.name:
+            continue
+        spans = ((tag.start + 1, tag.name_end), tag.close)
+        if any(start <= offset <= end for start, end in spans):
+            return lsp.LinkedEditingRanges([server.range(text.lines, *span) for span in spans])
+    return None

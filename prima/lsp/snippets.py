@@ -1,0 +1,49 @@
+"""Snippets: what is inserted for an element, with tab stops."""
+
+from __future__ import annotations
+
+from prima.interpreter.vocabulary import DIALOGUE
+from prima.lsp.tables import Choice
+from prima.markup.vocabulary import Element, Vocabulary
+from prima.voicexml.vocabulary import ALTERNATIVES, PRIMA_NAMESPACE, VOICEXML
+
+
+def snippet(choice: Choice) -> str:
+    """A snippet of an element with its required parts and tab stops."""
+    element, place = choice.element, 1
+    words = [choice.name]
+    for name in _needed(choice.vocabulary, element):
+        words.append(f'{name}="${place}"')
+        place += 1
+    if not element.children and not element.text:
+        return " ".join(words) + "/>$0"
+    return " ".join(words) + f">$0</{choice.name}>"
+
+
+def _needed(vocabulary: Vocabulary, element: Element) -> list[str]:
+    """Attributes that an element requires, or usually has."""
+    needed = [item.name for item in element.attributes if item.required]
+    if vocabulary is VOICEXML:
+        for line in ALTERNATIVES.get(element.key, ()):
+            if line.endswith("!") and "content" not in line:
+                needed.append(line.split()[0])
+    if vocabulary is DIALOGUE and element.key == "goto":
+        needed.append("next")
+    return needed
+
+
+def opening(choice: Choice) -> str:
+    """A snippet of a new document."""
+    namespace = choice.vocabulary.namespace
+    begin = f'{choice.name} xmlns="{namespace}"'
+    if choice.vocabulary is VOICEXML:
+        begin += f' xmlns:p="{PRIMA_NAMESPACE}" version="2.1" xml:lang="en"'
+        return f'{begin}>\n  <form id="$1">\n    <block>$0</block>\n  </form>\n</{choice.name}>'
+    if choice.vocabulary is DIALOGUE:
+        begin += ' version="1.0" kind="${1|ea,fa|}" id="$2" xml:lang="en"'
+        body = '\n  <form id="$3">\n    <block>\n      $0\n      <exit/>\n    </block>\n  </form>\n'
+        return f"{begin}>{body}</{choice.name}>"
+    begin += ' version="1.0" id="$1"'
+    if choice.name == "scenario":
+        begin += ' world="$2" robot="$3"'
+    return f"{begin}>\n  $0\n</{choice.name}>"

@@ -1,0 +1,75 @@
+"""A run as its user perceives it: streams that talk, answers awaited, events to react to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from prima.transcript.criteria import Delay
+from prima.transcript.record import Entry
+
+
+@dataclass(slots=True)
+class PerceivedStream:
+    """A Communication Stream as a user perceives it."""
+
+    name: str
+    app: str
+    pending: dict[str, Entry] = field(default_factory=dict)
+    """Requests of it that have not ended, by AB."""
+    topics: set[str] = field(default_factory=set)
+    """Those of them that do not leave the user."""
+    running: set[str] = field(default_factory=set)
+    leaving: set[str] = field(default_factory=set)
+    """What of it runs and leaves the user."""
+    looping: set[str] = field(default_factory=set)
+    """What of it runs and works in a feedback loop."""
+    speaking: set[str] = field(default_factory=set)
+    """What of it runs and speaks."""
+    spoken: bool = False
+    """Whether it has spoken, and no break has been counted since."""
+    spoken_into: bool = False
+    """Whether another application has spoken, by no reaction, since it last did."""
+    since: float = 0.0
+    """When another application came in or spoke into it."""
+    owed: list[tuple[float, Delay]] = field(default_factory=list)
+    """Events that it reacts to and has not responded to, with their times."""
+    begun: bool = False
+    engaged: bool = False
+    broken_by: str = ""
+    """The application that has come in since it last did something, if any."""
+    by_reaction: bool = False
+    left_by: set[str] = field(default_factory=set)
+    reacting: float = -1.0
+    """When a reaction of it started last, if nobody has come in since; else less than 0."""
+    asks: bool = False
+    """Whether it has asked or will ask the user something."""
+    faced: bool | None = None
+    """Whether robot and user faced each other at its first word, if that has been said."""
+
+    @property
+    def unfaced(self) -> bool:
+        """Whether it is a conversation that was begun without the channel."""
+        return self.asks and self.faced is False
+
+
+@dataclass(slots=True)
+class AwaitedAnswer:
+    """An application waits for a service's answer."""
+
+    talked: bool
+    """Whether it was or has been doing something for the user: else nobody notices."""
+    since: float
+    broken: bool = False
+    """Whether another application came in, by no reaction."""
+
+
+@dataclass(slots=True)
+class AwaitingEvent:
+    """An event that applications may react to."""
+
+    name: str
+    time: float
+    answered: set[str] = field(default_factory=set)
+    """Applications that have reacted."""
+    waited: str = ""
+    """The application whose wait was broken and that this answers, until it is taken up."""
