@@ -97,6 +97,13 @@ def test_an_empty_level_takes_the_answer_away() -> None:
     assert none["reply"] == "" and none["seconds"] > yes["seconds"] + 2
 
 
+def test_an_answer_that_is_taken_away_has_no_delay() -> None:
+    vary = {"reply": "Yes.|", "reply.after": "1s|2s"}
+    made = rows(vary=vary)
+    assert [one["exit"] for one in made] == [0, 0, 0, 0], made
+    assert made[2]["order"] == made[3]["order"] == rows(vary={"reply": ""})[0]["order"]
+
+
 def test_seeds_draw_and_the_same_seed_is_the_same_run() -> None:
     made = rows(vary={"touch": "normal(3s,2s)", "reply": "Yes.|No."}, seeds=5)
     times = [one["touch"] for one in made]
