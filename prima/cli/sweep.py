@@ -121,7 +121,7 @@ def sweep(
         patience=patience,
         isolate=None if isolate == "ea" else isolate,
     )
-    if resume and output is None:
+    if resume and output in (None, "-"):
         raise UsageError("--resume needs the table: -o sweep.csv.")
     if bundle is not None and output in (None, "-"):
         raise UsageError("--bundle needs the table: -o sweep.csv.")

@@ -238,3 +238,32 @@ def test_the_function_of_python_gives_the_same_table() -> None:
         package.sweep("visit.xml", resume=True)
     with pytest.raises(UsageError, match="Name a scenario"):
         package.sweep([])
+
+
+@pytest.mark.parametrize(
+    ("given", "why"),
+    [
+        ({"workers": -1}, "workers=-1: write a whole number from 1"),
+        ({"seeds": 1.5}, "seeds=1.5: write a whole number from 1"),
+        ({"seeds": "3"}, "seeds='3': write a whole number from 1"),
+        ({"patience": "3s"}, "patience='3s': write a whole number from 0"),
+        ({"vary": {"touch": 5}}, 'touch: "5" is not a time'),
+        ({"policies": "pirma"}, 'Did you mean "prima"'),
+    ],
+)
+def test_mistakes_in_python(given: dict[str, Any], why: str) -> None:
+    import prima as package
+
+    with pytest.raises(UsageError, match=why):
+        package.sweep("visit.xml", **given)
+
+
+def test_what_python_may_leave_out() -> None:
+    import prima as package
+
+    pytest.importorskip("pyarrow")
+    table = package.sweep("visit.xml", {"person.speed": 0.5}, policies="fifo", workers=1)
+    assert table.column("policy").to_pylist() == ["fifo"]
+    for wrong in ({"within": 0}, {"workers": -1}, {"step": -1}, {"runs": True}):
+        with pytest.raises(UsageError, match="write a whole number"):
+            package.explore("visit.xml", "touch", **wrong)
