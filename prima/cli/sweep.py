@@ -139,7 +139,7 @@ def sweep(
         _write(out, resume)
         return
     check_output(bundle, "archive", *scenarios, *question.scenarios)
-    check_bundle(out)
+    check_bundle(bundle, out)
     ended = None
     try:
         _write(out, resume)
