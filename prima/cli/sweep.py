@@ -126,7 +126,7 @@ def sweep(
     if bundle is not None and output in (None, "-"):
         raise UsageError("--bundle needs the table: -o sweep.csv.")
     made = Sweep(question)
-    _tell_cost(made, workers, plan)
+    _tell_cost(made, address, workers, plan)
     if plan:
         return
     pool = pool_of(address, workers)
@@ -167,15 +167,17 @@ def _vary(varied: tuple[str, ...]) -> dict[str, str]:
     return vary
 
 
-def _tell_cost(made: Sweep, workers: int | None, plan: bool) -> None:
+def _tell_cost(made: Sweep, address: str | None, workers: int | None, plan: bool) -> None:
     """Tell how long a sweep takes, if it was asked for, or if it is long."""
+    from prima.experiments.cluster import size_of
     from prima.experiments.sweep import estimate
-    from prima.pool import cores
 
-    if plan:
-        put(estimate(made, workers or cores()))
-    elif len(made) > MANY:
-        tell(estimate(made, workers or cores()))
+    if plan or len(made) > MANY:
+        told = estimate(made, size_of(address, workers))
+        if plan:
+            put(told)
+        else:
+            tell(told)
 
 
 def _print(made: Sweep, pool: Pool) -> None:

@@ -16,7 +16,7 @@ from prima.errors import RunError, UsageError
 from prima.errors.visible import escaped
 from prima.experiments.pools import Making, Pool, Result, Runs, local
 from prima.experiments.variants import Variant
-from prima.pool import Died
+from prima.pool import Died, cores
 from prima.version import __version__
 
 if TYPE_CHECKING:
@@ -67,6 +67,22 @@ def cluster(address: str) -> Pool:
         return _staff(address, stage)
 
     return pool
+
+
+def size_of(address: str | None, workers: int | None) -> int:
+    """How many processes the same pool has.
+
+    Raises:
+        UsageError: as for :func:`pool_of`, or nobody answers.
+    """
+    pool_of(address, workers)
+    if address is None:
+        return workers or cores()
+    client = _connected(address)
+    try:
+        return len(client.nthreads())
+    finally:
+        client.close(timeout=1)
 
 
 @contextmanager

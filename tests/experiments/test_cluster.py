@@ -180,6 +180,13 @@ def test_a_worker_that_ends_while_it_is_asked(
         package.sweep("visit.xml", on=calls[0])
 
 
+def test_a_plan_counts_the_cluster_s_workers(dask: Cluster) -> None:
+    for _ in range(3):
+        dask.worker()
+    done = prima("sweep", "visit.xml", *VARY, "--plan", "--on", dask.address)
+    assert "322 runs: about" in done.stdout and "with 3 processes" in done.stdout, done.stderr
+
+
 def test_nobody_answers() -> None:
     began = time.monotonic()
     done = prima("sweep", "visit.xml", "--on", "tcp://127.0.0.1:9")
