@@ -6,6 +6,8 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 LOCK := $(BIN)/uv pip compile pyproject.toml --universal --generate-hashes --upgrade --quiet \
   --custom-compile-command "make lock"
+# Tests wait for half of their time: for processes, for real time in live runs.
+WORKERS ?= $(shell expr 2 \* $$(getconf _NPROCESSORS_ONLN))
 # Without those for robots (naoqi, rosbridge), which tests/parties installs.
 EXTRAS := dev experiments cluster export editor bench reachy
 
@@ -19,7 +21,7 @@ demo: $(VENV)/.runtime
 	@echo 'or, once in each shell: . $(BIN)/activate; then: prima --help'
 
 test: $(VENV)/.dev
-	$(BIN)/python -m pytest -n auto
+	$(BIN)/python -m pytest -n $(WORKERS)
 
 # Drivers against the second parties of tests/parties, each in an environment of its own.
 test-live: $(VENV)/.dev

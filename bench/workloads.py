@@ -230,9 +230,9 @@ def _lxml() -> Callable[[bytes], None]:
 
     from lxml import etree
 
-    from prima.markup.schema import make_schema
     from prima.markup.vocabulary import Vocabulary
     from prima.voicexml.vocabulary import VOICEXML
+    from tools.xsd import make_schema
 
     elements = [
         replace(one, attributes=tuple(a for a in one.attributes if ":" not in a.name))

@@ -26,7 +26,7 @@ from prima.messages import (
     Unloaded,
 )
 from prima.scheduler.policy import policy_named
-from prima.script.prelude import START
+from prima.script.sandbox import START
 from prima.session import AnyDocument, Session
 
 

@@ -31,6 +31,7 @@ from prima.interpreter import (
     application,
     bounds,
     content,
+    expressions,
     handling,
     transfers,
     units,
@@ -40,22 +41,22 @@ from prima.language.commands import LONGEST_TURN_MS, TABLE_4_2, CommandType
 from prima.language.values import KINDS, LONGEST_MS
 from prima.lsp.descriptions import VOICEXML_ATTRIBUTES
 from prima.markup.limits import LIMITS
-from prima.markup.rnc import make_rnc
-from prima.markup.schema import (
+from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
+from prima.scheduler import failures, starvation
+from prima.script import budget, evaluation, host, parse, sandbox, syntax
+from prima.sim.vocabulary import SCENARIO, USER, WORLD
+from prima.transcript import lines
+from prima.transcript.record import PHASES, model
+from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
+from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, VALUES, VOICEXML
+from tools.rnc import make_rnc
+from tools.xsd import (
     XML_SCHEMA,
     make_catalog,
     make_guest_schema,
     make_locating_rules,
     make_schema,
 )
-from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
-from prima.scheduler import failures, starvation
-from prima.script import budget, evaluation, host, parse, prelude, syntax
-from prima.sim.vocabulary import SCENARIO, USER, WORLD
-from prima.transcript import lines
-from prima.transcript.record import PHASES, model
-from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
-from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, VALUES, VOICEXML
 
 ROOT = Path(__file__).resolve().parent.parent
 VOCABULARIES = (DIALOGUE, WORLD, ROBOT, SCENARIO, USER, SERVICES)
@@ -227,12 +228,12 @@ def limits() -> str:
         ),
         (
             "memory of an application's ECMAScript",
-            f"{prelude.MEMORY_LIMIT // mib} MiB",
+            f"{sandbox.MEMORY_LIMIT // mib} MiB",
             "`error.semantic`",
         ),
         (
             "stack of an application's ECMAScript",
-            f"{prelude.STACK_LIMIT // 1024} KiB",
+            f"{sandbox.STACK_LIMIT // 1024} KiB",
             "`error.semantic`",
         ),
         (
@@ -241,7 +242,7 @@ def limits() -> str:
             "`error.semantic`",
         ),
         ("elements that a `foreach` goes through", f"{content.MAX_REPEATS:,}", "`error.semantic`"),
-        ("what a Command says", f"{content.MAX_TEXT:,} characters", "the rest is not said"),
+        ("what a Command says", f"{expressions.MAX_TEXT:,} characters", "the rest is not said"),
         (
             "what one utterance or question keeps the speaker, at 50 ms a letter",
             f"{LONGEST_TURN_MS // 1000} s",
@@ -473,7 +474,8 @@ def types() -> str:
 def interface() -> str:
     """What the package exports: signatures and docstrings."""
     parts = []
-    for name in sorted(prima.__all__, key=lambda name: (not _is_function(name), name.lower())):
+    public = [name for name in prima.__all__ if not name.startswith("_")]
+    for name in sorted(public, key=lambda name: (not _is_function(name), name.lower())):
         thing = getattr(prima, name)
         if _is_function(name):
             parts.append(f"## `{name}{_signature(thing)}`\n")

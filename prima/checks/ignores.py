@@ -29,7 +29,7 @@ from prima.errors.diagnoses.validation import (
     UNKNOWN_SETTING,
     UNUSED_IGNORE,
 )
-from prima.markup.reader import decode
+from prima.markup.encodings import decode
 from prima.markup.toml import parse_toml
 from prima.markup.tree import MARKUP, Source
 

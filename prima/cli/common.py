@@ -271,7 +271,7 @@ def _begins_document(path: Path) -> bool:
     import re
 
     from prima.loading import is_grammar
-    from prima.markup.opening import root_of
+    from prima.markup.sniff import root_of
     from prima.testing.finding import GLANCE
 
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from typing import TYPE_CHECKING
 
@@ -169,7 +170,7 @@ def _run(visit: Visit, why: bool, as_json: bool) -> None:
     for failure in session.failures:
         tell(f"prima: {failure}")
     if visit.stopped:
-        if visit.journal is not None:
+        if visit.journal is not None and os.path.exists(visit.journal.path):
             tell(f"Stopped. Go on with: prima live --resume {visit.journal.path}")
         raise Exit(INTERRUPTED)
     if session.failures:
@@ -193,6 +194,7 @@ class Rows:
         from prima.transcript.table import format_head, layout
 
         self._table = GrowingTable()
+        self._table.add(visit.before)  # what goes on is shown with its arguments and numbers
         self._shape = layout([doc.id for doc in visit.loaded.cast.documents], columns(), why)
         click.echo(format_head(self._shape))
 

@@ -8,7 +8,7 @@ from prima.devices.goals import LISTEN, SAY
 from prima.devices.reading import Reader
 from prima.devices.settings import DriverSettings, read_driver, share_devices
 from prima.devices.vocabulary import ROBOT
-from prima.errors import Problem, meant, suggestion
+from prima.errors import Place, Problem, meant, suggestion
 from prima.interpreter.events import near
 from prima.language.commands import ABSENCE_MS, DEVICES, TABLE_4_2, Argument, CommandType
 from prima.markup.spans import value_span
@@ -44,6 +44,8 @@ class Profile:
     drivers: list[DriverSettings] = field(default_factory=list)
     warnings: list[Problem] = field(default_factory=list)
     """What is odd in its document, and no error."""
+    place: Place = field(default_factory=lambda: Place("robot.xml"))
+    """Where its document begins."""
 
 
 @dataclass(slots=True)
@@ -86,6 +88,7 @@ def read_robot(file: str, data: bytes) -> Profile:
         absence=reader.get(root, "absence"),
         devices=frozenset(node.get("name") for node in root.all("device")),
         touch=frozenset(node.get("sensor") for node in root.all("touch")),
+        place=root.place,
     )
     _check_devices(reader, profile)
     for node in root.all("camera"):

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import codecs
 import re
 from collections.abc import Callable
 from contextvars import ContextVar
 from functools import cache, partial
 from typing import Any
 
-from lark import Lark, TextSlice, Token, UnexpectedCharacters, UnexpectedInput, UnexpectedToken
+from lark import Lark, TextSlice, Token, UnexpectedInput
 
-from prima.errors import Hint, Place, Problem, Span, suggestion
+from prima.errors import Hint, Span, suggestion
+from prima.grammar.abnferrors import unexpected
+from prima.grammar.abnfheader import header_end
 from prima.grammar.errors import GrammarError, Problems, Where, refuse
-from prima.grammar.media import FIRST_LINE, NO_HEADER
 from prima.grammar.model import Document, Part, Reference, Repeat, Rule, Special, Tag, Words
 from prima.grammar.text import fold, keys
 from prima.grammar.values import (
@@ -28,65 +28,10 @@ from prima.grammar.values import (
     repeat,
     sequence,
 )
-from prima.markup.reader import ENCODINGS, byte_place, with_line_feeds
 from prima.markup.tree import Source
 
 MAX_DEPTH = 100
-HEADER = re.compile(r"#ABNF[ \t]+([^\s;]+)(?:[ \t]+([^\s;]+))?[ \t]*;")
-LINE_END = re.compile(r"[ \t]*(?:\n|\Z)")
 _REPEAT = re.compile(r"<\s*([^/\s]+)\s*(?:/([^/]*)/\s*)?>")
-DECLARATIONS = frozenset(
-    ["base", "http-equiv", "language", "lexicon", "meta", "mode", "root", "tag-format"]
-)
-
-
-def decode_abnf(file: str, data: bytes) -> str:
-    """The text of a file in the ABNF form, in the encoding that its header names (SRGS 4.4).
-
-    Raises:
-        GrammarError: an unknown encoding, or the bytes are not in it.
-    """
-    encoding = _encoding(data)
-    if not _is_accepted(encoding):
-        message = f'The encoding "{encoding[:40]}" is not accepted.'
-        raise refuse(GrammarError, Place(file), "encoding", message, "Save it as UTF-8.")
-    try:
-        return with_line_feeds(data.decode(encoding))
-    except UnicodeDecodeError as error:
-        message = f"A byte here is not {encoding.upper().removesuffix('-SIG')}."
-        remedy = "Save it as UTF-8, or name the encoding it has in the header."
-        place = byte_place(file, encoding, error)
-        raise refuse(GrammarError, place, "encoding", message, remedy) from None
-
-
-def as_unicode(text: str) -> bytes:
-    """A text in this form as UTF-8, which is what its header says then; where nothing moves."""
-    header = HEADER.match(text)
-    if header is None or header[2] is None or not _is_accepted(header[2].lower()):
-        return text.encode(errors="surrogatepass")
-    blank = "UTF-8".ljust(len(header[2]))
-    named = text[: header.start(2)] + blank + text[header.end(2) :]
-    return named.encode(errors="surrogatepass")
-
-
-def _is_accepted(encoding: str) -> bool:
-    """Whether an encoding is one of those accepted, under any of its names."""
-    try:
-        name = codecs.lookup(encoding).name
-    except (LookupError, ValueError):
-        return False
-    more = ("utf-8-sig", "utf-16-le", "utf-16-be")
-    return name in {codecs.lookup(one).name for one in (*ENCODINGS, *more)}
-
-
-def _encoding(data: bytes) -> str:
-    """The encoding of a file by its first bytes, or as its header says."""
-    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return "utf-16"
-    if data.startswith((b"#\0", b"\0#")):
-        return "utf-16-le" if data[0] else "utf-16-be"
-    header = HEADER.match(data[:200].decode("latin-1"))
-    return (header[2] or "utf-8").lower() if header else "utf-8-sig"
 
 
 def read_abnf(source: Source, document: Document, problems: Problems, where: Where) -> None:
@@ -96,109 +41,22 @@ def read_abnf(source: Source, document: Document, problems: Problems, where: Whe
         GrammarError: the text is not of this form.
     """
     document.where = where
-    header = _header(source)
+    header = header_end(source)
     reader = _Reader(source, document, problems)
     before = _reader.set(reader)
     try:
         _parser().parse(TextSlice(source.text, header, len(source.text)))
     except UnexpectedInput as error:
-        raise GrammarError([*problems.found, _unexpected(source, error)]) from None
+        raise GrammarError([*problems.found, unexpected(source, error)]) from None
     finally:
         _reader.reset(before)
-
-
-def _header(source: Source) -> int:
-    """Where the header ends, which has the first line for itself (4.1).
-
-    Raises:
-        GrammarError: there is none, or not of a version that is known, or its line goes on.
-    """
-    header = HEADER.match(source.text)
-    if header is None or header[1] != "1.0":
-        found = header[1] if header else ""
-        message = f'Version "{found[:20]}" is not known.' if found else NO_HEADER
-        raise refuse(GrammarError, source.at(0), "not-abnf", message, FIRST_LINE)
-    if LINE_END.match(source.text, header.end()) is None:
-        message = "The line goes on after the header."
-        remedy = f'Put a line end after "{header[0]}".'
-        raise refuse(GrammarError, source.at(header.end()), "not-abnf", message, remedy)
-    return header.end()
-
-
-# What cannot stand where it stands
-
-_EXPECTED = {
-    "WORD": "a token, or () for nothing",
-    "LANGUAGE": "a declaration such as root $name; or a rule such as $name = ...;",
-    "NAME": "a rule, $name = ...;",
-    "EQUAL": '"="',
-    "SEMICOLON": '";"',
-    "LANGTAG": "a language such as en-US",
-    "MODENAME": "voice or dtmf",
-    "ROOTNAME": "the name of a rule, $name",
-    "FORMATURI": "a URI in angle brackets, <uri>",
-    "BASEURI": "a URI in angle brackets, <uri>",
-    "LEXICONURI": "a URI in angle brackets, <uri>",
-    "TEXT": "a text in quotes",
-    "IS": "the word is",
-}
-"""What is named of all that may stand in a place: the first that may."""
-_CLOSING = {"RPAR": '")"', "RSQB": '"]"', "SEMICOLON": '";"'}
-"""What ends alternatives: named where they may go on, too."""
-_QUANTIFIERS = {
-    "*": 'Write <0-> for any number of times; a sign that is a key or said, in quotes: "*".',
-    "+": 'Write <1-> for once or more; a sign that is said, in quotes: "+".',
-}
-"""Remedies for signs of other languages that SRGS keeps back (2.5)."""
-_UNCLOSED = {
-    '"': 'A quote is opened and not closed: write the other ".',
-    "{": "A tag is opened and not closed: write }, or }!} if it begins with {!{.",
-    "<": "An angle bracket is opened and not closed: write >.",
-    "/": "A comment or a weight is not closed: /* ... */, /0.5/.",
-}
-"""Remedies for what begins something and does not end it."""
-
-
-def _unexpected(source: Source, error: UnexpectedInput) -> Problem:
-    """Something stands where it cannot stand."""
-    text = source.text
-    token = error.token if isinstance(error, UnexpectedToken) else None
-    if token is not None and token.type == "$END":
-        at = len(text.rstrip())
-    else:
-        at = len(text) - len(text[error.pos_in_stream :].lstrip())
-    found = text[at : at + 20].split("\n")[0].strip()
-    message = f'"{found}" cannot stand here.' if found else "The grammar ends too early."
-    remedy = _remedy(error, found, token)
-    return Problem(source.at(at), "error", "not-abnf", message, remedy)
-
-
-def _remedy(error: UnexpectedInput, found: str, token: Token | None) -> str:
-    if found.startswith("}"):
-        return "A tag that holds a } itself is written {!{ ... }!}."
-    if found.startswith("!"):
-        return "A language stands only after a token, a rule or a bracket, before its repeat: oui!fr<2>."
-    if found[:1] in _QUANTIFIERS:
-        return _QUANTIFIERS[found[0]]
-    if token is None and found[:1] in _UNCLOSED:
-        return _UNCLOSED[found[0]]
-    assert isinstance(error, UnexpectedToken | UnexpectedCharacters)
-    stopped: Any = error.interactive_parser
-    accepted: set[str] = stopped.accepts()
-    names = _CLOSING if "OR" in accepted else _EXPECTED
-    remedy = f"Here may stand {next(names[name] for name in names if name in accepted)}."
-    if token is None:
-        return f"{remedy} Signs are words only in quotes."
-    if accepted >= {"NAME", "$END"} and (token in DECLARATIONS or found[0] == "{"):
-        return f"{remedy} Declarations come before all rules."
-    return remedy
 
 
 class _Reader:
     """Makes parts of what the parser finds, as it finds it; notes what is wrong and goes on.
 
     A method in capitals gets a token (abnf.lark says which) as soon as it is taken, any other
-    one what stands in a whole rule of that grammar.
+    one the parts of a whole rule of that grammar.
     """
 
     def __init__(self, source: Source, document: Document, problems: Problems) -> None:
@@ -331,7 +189,7 @@ class _Reader:
         """Those before, if any, and one more, which may have a language and a repeat."""
         before: list[Part | str] = found.pop(0) if isinstance(found[0], list) else []
         part, *more = found
-        for times in more:  # a language stands here as None
+        for times in more:  # a language is None
             if times is not None:
                 part = Repeat(self._words([part]) if isinstance(part, str) else part, *times)
         before.append(part)
@@ -407,7 +265,7 @@ class _Reader:
         return self._token(text, token)
 
     def _no_question_mark(self, token: Token) -> bool:
-        """Refuse the sign that is kept back wherever a repeat may stand (2.5)."""
+        """Refuse the sign that is reserved after an expansion (2.5)."""
         if "?" not in token:
             return False
         message = f'"{token[:40]}" has a question mark, which is reserved after an expansion.'

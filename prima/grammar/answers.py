@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from prima.grammar.text import fold
@@ -27,9 +27,9 @@ class Answers:
     type: str = ""
 
     def match(self, text: str, budget: Budget | None = None, tell: Tell | None = None) -> Json:
-        """The value of an utterance, or None where it is no answer.
+        """The value of an utterance, or None if it is not an answer.
 
-        A grammar of which a tag fails does not take the utterance; ``tell`` is told why.
+        A grammar of which a tag fails does not take the utterance; ``tell`` gets the reason.
         """
         said = fold(text)
         if said in self.options:
@@ -45,3 +45,8 @@ class Answers:
         from prima.grammar.types import read  # most questions have none
 
         return read(self.type, text)
+
+    def in_grammar(self, text: str) -> bool:
+        """Whether an utterance is an answer, and not taken only because any text is one."""
+        known = replace(self, type="") if self.type == "text" else self
+        return known.match(text) is not None

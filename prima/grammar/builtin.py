@@ -11,7 +11,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
-from prima.grammar import moments
+from prima.grammar import dates
 from prima.grammar.model import BuiltIn
 from prima.grammar.numbers import cardinal, dialled, digits, number
 from prima.grammar.text import fold, wide
@@ -19,7 +19,7 @@ from prima.grammar.text import fold, wide
 if TYPE_CHECKING:
     from prima.messages import Json
 
-YES = {  # by language; a type that is told none takes all of them
+YES = {  # by language; without a language all count
     "en": "yes|yeah|yep|yup|yes please|yes i do|yes you may|yes it is|yes sir|yes maam|yes thats right|sure"
     "|of course|ok|okay|correct|right|thats right|thats correct|that is right|that is correct"
     "|true|affirmative|absolutely|definitely|certainly|uh huh|i do|it is",
@@ -58,10 +58,10 @@ CURRENCIES |= {
 }
 CURRENCIES |= {code.lower(): code for code in CURRENCIES.values()}
 MOST_WORDS = 20
-"""A longer amount of money without its currency is none."""
+"""Words of an amount of money without a currency, at most."""
 PARTS = {"cent": "", "cents": "", "penny": "", "pennies": "", "pence": "GBP", "p": "GBP",
          "セント": ""}  # fmt: skip
-"""Hundredths, with the currency if they tell it."""
+"""Hundredths, with the currency if they imply one."""
 
 
 class Conflict(ValueError):
@@ -93,7 +93,7 @@ def built_in(uri: str, mode: str, lang: str) -> BuiltIn:
     """The built-in type that a URI names.
 
     Raises:
-        ValueError: there is none of that name, or not with such parameters.
+        ValueError: there is no type of that name, or it does not have such parameters.
     """
     match = _URI.fullmatch(uri)
     name = match[1] if match else ""
@@ -178,13 +178,19 @@ def _keys(text: str) -> str:
 
 def _number(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
     if mode == "dtmf":
-        match = re.fullmatch(r"([0-9]*)(?:\*([0-9]*))?", _keys(text))
-        if match is None or not (match[1] or match[2]):
-            return None
-        return f"{_plain(match[1])}{'.' + match[2] if match[2] else ''}"
+        whole, part = _decimal_keys(text)
+        return f"{whole}.{part}" if part else whole or None
     plain = _POINT_FIRST.sub("0.", wide(text).strip().replace("\u2212", "-"))
     sign = plain[0] if plain[:1] in ("-", "+") else ""
     return number(f"{sign}{fold(plain)}")
+
+
+def _decimal_keys(text: str) -> tuple[str, str]:
+    """The figures of a number in keys before and after its point, which is ``*``; nothing else."""
+    match = re.fullmatch(r"([0-9]*)(?:\*([0-9]*))?", _keys(text))
+    if match is None or not (match[1] or match[2]):
+        return "", ""
+    return _plain(match[1]), match[2] or ""
 
 
 def _plain(figures: str) -> str:
@@ -194,19 +200,21 @@ def _plain(figures: str) -> str:
 
 def _currency(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
     if mode == "dtmf":
-        match = re.fullmatch(r"([0-9]*)(?:\*([0-9]{0,2}))?", _keys(text))
-        if match is None or not (match[1] or match[2]):
-            return None
-        return f"{_plain(match[1])}.{(match[2] or ''):0<2}"
+        whole, part = _decimal_keys(text)
+        return f"{whole}.{part:0<2}" if whole and len(part) <= 2 else None
     plain = _POINT_FIRST.sub("0.", text.strip(" !?"))
-    if match := _MONEY.fullmatch(plain):
-        unit = (match[1] or match[4] or "").lower()
-        code = CURRENCIES.get(unit)
-        if (unit and code is None) or (match[1] and match[4]):
-            return None
-        whole = _plain(match[2].replace(",", ""))
-        return f"{code or ''}{whole}.{(match[3] or ''):0<2}"
-    return _spoken_money(fold(plain))
+    match = _MONEY.fullmatch(plain)
+    return _written_money(match) if match else _spoken_money(fold(plain))
+
+
+def _written_money(match: re.Match[str]) -> str | None:
+    """``$12.50``, ``EUR 3``."""
+    unit = (match[1] or match[4] or "").lower()
+    code = CURRENCIES.get(unit)
+    if (unit and code is None) or (match[1] and match[4]):
+        return None
+    whole = _plain(match[2].replace(",", ""))
+    return f"{code or ''}{whole}.{(match[3] or ''):0<2}"
 
 
 def _spoken_money(said: str) -> str | None:
@@ -283,15 +291,15 @@ def _phone(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
 def _date(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
     if mode == "dtmf" and re.fullmatch("[0-9]{8}", _keys(text)) is None:
         return None
-    return moments.date(_keys(text) if mode == "dtmf" else text, fold(text))
+    return dates.date(_keys(text) if mode == "dtmf" else text, fold(text))
 
 
 def _time(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
     if mode == "dtmf":
         pressed = _keys(text)
         found = re.fullmatch("[0-9]{4}", pressed)
-        return moments.time(f"{pressed[:2]}:{pressed[2:]}") if found else None
-    return moments.time(fold(text))
+        return dates.time(f"{pressed[:2]}:{pressed[2:]}") if found else None
+    return dates.time(fold(text))
 
 
 _READERS: dict[str, Reader] = {

@@ -76,7 +76,7 @@ class Spot:
 
 
 class Waiting(NamedTuple):
-    """Who asked for an expansion: a spot, how many parts it had, and what they had matched."""
+    """A request for an expansion: the spot that made it, its parts so far, and what they matched."""
 
     spot: Spot
     done: int
@@ -159,7 +159,7 @@ class Chart:
                 self._built_in(spot, part)
 
     def _resume(self, waiting: Waiting, cell: Cell) -> None:
-        """What somebody asked for has matched."""
+        """An expansion that was requested has matched."""
         spot = waiting.spot
         match spot.part:
             case Choice(costs=costs):
@@ -192,7 +192,7 @@ class Chart:
             if length > left:
                 self.open = self.open or (self._prefixes and index.goes_on(said[start:]))
                 break
-            found = index.by_lead.get(said[start : start + length])
+            found = index.by_prefix.get(said[start : start + length])
             if found is not None and self.utterance.edges[start + length]:
                 tried.update(found)
         for number in sorted(tried):
@@ -219,7 +219,7 @@ class Chart:
         cost = part.more if done >= part.low else 0.0
         if cell.end == cell.start:
             if done >= part.low:
-                return  # more of nothing is no more
+                return  # a repetition of nothing adds nothing
             # The times that are still needed may be of nothing as well, each with its tags.
             done = done + 1 if part.low - done <= MOST_EMPTY else part.low
         else:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from prima.errors import Diagnosis, Hint, Place, suggestion
+from prima.errors import Diagnosis, Hint, suggestion
 from prima.errors.diagnoses.grammars import EMPTY_ANSWER, NO_SUCH_RULE
 from prima.errors.diagnoses.structure import DUPLICATE_ID, STRAY_TEXT
 from prima.errors.diagnoses.values import BAD_VALUE
 from prima.errors.diagnosis import NO_HINT
 from prima.grammar.grammar import Grammar
-from prima.grammar.leads import index_choices
 from prima.grammar.model import Document, Part, Reference, Repeat, Rule, Tag, Words
+from prima.grammar.prefixes import index_choices
 from prima.grammar.text import fold
 from prima.grammar.values import choice, repeat, sequence
 from prima.markup.spans import value_span
@@ -55,10 +55,10 @@ class _Reader:
     def __init__(self, note: Note, node: Node) -> None:
         self.note = note
         self.node = node
-        self.document = Document("", partial(_place, node), dialect="last")
+        self.document = Document("", partial(node.place_of, ""), dialect="last")
 
     def grammar(self) -> Grammar:
-        """The grammar; what is wrong is noted, and leads to a rule that takes nothing."""
+        """The grammar; wherever a problem is noted, a rule takes nothing."""
         node, rules = self.node, self.node.all("rule")
         for rule in rules:
             self._rule(rule)
@@ -85,7 +85,7 @@ class _Reader:
         return found
 
     def _rule_named(self, node: Node, name: str, attribute: str, told: bool = False) -> Rule:
-        """A rule, or one that takes nothing where there is none."""
+        """A rule by its name, or one that takes nothing."""
         found = self.document.rules.get(name)
         if found is not None:
             return found
@@ -95,14 +95,14 @@ class _Reader:
         return self._define(name, choice([], []))
 
     def _resolve(self, node: Node) -> None:
-        """Every ruleref names a rule; one without # has been told by the schema's check."""
+        """Resolve all references; those without # have been reported by the schema's check."""
         names = {}
         for one in node.walk():
             if one.tag == "ruleref":
                 name = _named(one)
                 names[name] = self._rule_named(one, name, "uri", "#" not in one.get("uri"))
         for reference in self.document.references:
-            reference.lead_to(names[reference.uri])
+            reference.resolve(names[reference.uri])
 
     def _expansion(self, node: Node) -> Part:
         """What an element holds, as often as it says."""
@@ -124,11 +124,11 @@ class _Reader:
             case "item":
                 return self._expansion(node)
             case "ruleref":
-                found = Reference(_named(node), partial(_place, node))
+                found = Reference(_named(node), partial(node.place_of, ""))
                 self.document.references.append(found)
                 return found
             case "tag":
-                return Tag(node.text, partial(_place, node))
+                return Tag(node.text, partial(node.place_of, ""))
         return None
 
     def _repeated(self, node: Node, part: Part) -> Part:
@@ -148,7 +148,3 @@ class _Reader:
 
 def _named(node: Node) -> str:
     return node.get("uri").strip().removeprefix("#")
-
-
-def _place(node: Node) -> Place:
-    return node.place

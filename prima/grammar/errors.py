@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterable
 from prima.errors import DocumentError, Hint, Place, Problem
 
 MOST_PROBLEMS = 100
-"""How many problems of one grammar are told."""
+"""Problems of one grammar that are reported."""
 
 
 class GrammarError(DocumentError):
-    """A grammar is no legal one; ``problems`` says all of it, with places and remedies."""
+    """A grammar is not legal; ``problems`` has everything that is wrong, with places and remedies."""
 
 
 class UnsupportedFormat(GrammarError):
@@ -23,11 +23,11 @@ class UnsupportedLanguage(GrammarError):
 
 
 class UnsupportedBuiltIn(GrammarError):
-    """There is no such built-in grammar, or not with such parameters."""
+    """There is no such built-in type, or it does not have such parameters."""
 
 
 Where = Callable[[], Place]
-"""Gives a place when somebody asks for it."""
+"""Gives a place on demand."""
 
 
 class Problems:
@@ -36,12 +36,12 @@ class Problems:
     def __init__(self) -> None:
         self.found: list[Problem] = []
         self.warnings: list[Problem] = []
-        """What is accepted, and yet to be told."""
+        """What is accepted and yet reported."""
         self.kind: type[GrammarError] = GrammarError
 
     @property
     def full(self) -> bool:
-        """Whether there are so many that no more are told."""
+        """Whether there are so many that no more are reported."""
         return len(self.found) >= MOST_PROBLEMS
 
     def note(self, where: Where, code: str, message: str, remedy: str | Hint = "") -> None:

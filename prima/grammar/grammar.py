@@ -9,12 +9,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from prima.errors import Problem
-from prima.grammar.chart import MAX_STEPS, Chart
+from prima.grammar.chart import MAX_STEPS, Cell, Chart
 from prima.grammar.errors import GrammarError, Where, refuse
 from prima.grammar.model import Document, Mode, Part, Reference
-from prima.grammar.ranking import best, frames
+from prima.grammar.ranking import Analysis, best, frames
 from prima.grammar.semantics import Failure, Interpreter, SemanticError
-from prima.grammar.text import utterance
+from prima.grammar.text import Utterance, utterance
 from prima.script.budget import Budget
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ class Grammar:
 
     @property
     def uri(self) -> str:
-        """Where the grammar is from, as far as that was told."""
+        """The URI of the grammar, if it is known."""
         return self._document.uri
 
     @property
@@ -145,42 +145,38 @@ class Grammar:
         left = chart.steps_left
         top = chart.run()
         budget.steps -= left - chart.steps_left
-        if top is None:
-            return []
         found: list[Match] = []
-        looked_at = 1 if most == 1 else min(most * 4, MOST_ANALYSES)
-        work = 0
-        for analysis in best(top, looked_at):
-            work += analysis.size
-            if found and (work > MOST_WORK or budget.over):
-                break
-            frame = frames(analysis, said)
-            reader = Interpreter(mode, budget)
-            value: Json = None
-            error = None
-            try:
-                value = reader.interpret(frame)
-                if self._lenient and self._silent and not reader.valued:
-                    value = reader.text()
-                elif self._document.dialect == "last":
-                    value = text.strip() if reader.last is None else reader.last.code
-            except Failure as failure:
-                error = failure.error
-            if not any(_same(one, value, error) for one in found):
-                one = Match(
-                    text,
-                    reader.text(),
-                    tuple(reader.tokens),
-                    value,
-                    round(1 - GARBAGE_SHARE * analysis.lost / max(len(said.ends), 1), 3),
-                    round(math.exp(-analysis.cost), 9),
-                    mode,
-                    error,
-                )
-                found.append(one)
+        for analysis in _analyses(top, most, budget) if top is not None else ():
+            made = self._interpreted(analysis, said, budget)
+            if not any(_same(one, made) for one in found):
+                found.append(made)
             if len(found) == most:
                 break
         return found
+
+    def _interpreted(self, analysis: Analysis, said: Utterance, budget: Budget) -> Match:
+        """The match that an analysis is, with what it means."""
+        reader = Interpreter(said.mode, budget)
+        value: Json = None
+        error = None
+        try:
+            value = reader.interpret(frames(analysis, said))
+            if self._lenient and self._silent and not reader.valued:
+                value = reader.text()
+            elif self._document.dialect == "last":
+                value = said.text.strip() if reader.last is None else reader.last.code
+        except Failure as failure:
+            error = failure.error
+        return Match(
+            said.text,
+            reader.text(),
+            tuple(reader.tokens),
+            value,
+            round(1 - GARBAGE_SHARE * analysis.lost / max(len(said.ends), 1), 3),
+            round(math.exp(-analysis.cost), 9),
+            said.mode,
+            error,
+        )
 
     def accepts_prefix(self, text: str, *, mode: str = "voice") -> bool:
         """Whether more may follow: whether some longer utterance that begins so is taken.
@@ -239,7 +235,18 @@ class Grammar:
         return f"<Grammar {self.uri or 'inline'} root={self.root!r} mode={self.mode!r}>"
 
 
-def _same(one: Match, value: Json, error: SemanticError | None) -> bool:
-    if one.error is not None or error is not None:
-        return one.error == error
-    return type(one.interpretation) is type(value) and bool(one.interpretation == value)
+def _analyses(top: Cell, most: int, budget: Budget) -> Iterator[Analysis]:
+    """The best analyses of an utterance, as long as there is time to look at them."""
+    work = 0
+    for number, analysis in enumerate(best(top, 1 if most == 1 else min(most * 4, MOST_ANALYSES))):
+        work += analysis.size
+        if number and (work > MOST_WORK or budget.over):
+            return
+        yield analysis
+
+
+def _same(one: Match, two: Match) -> bool:
+    if one.error is not None or two.error is not None:
+        return one.error == two.error
+    first, second = one.interpretation, two.interpretation
+    return type(first) is type(second) and bool(first == second)

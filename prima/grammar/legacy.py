@@ -1,14 +1,15 @@
-"""Tags of the time before SISR 1.0, and tags whose format is not told.
+"""Tags of the time before SISR 1.0, and tags without a declared format.
 
 SRGS leaves open what a tag holds where no tag format is declared. Documents of the VoiceXML 2.0
 era write slots (``city='Boston'``), the rule variable as ``$`` (``$.city = $$``), or a value by
-itself; each is told by its looks and put as a script of SISR 1.0.
+itself; each is recognised by its form and rewritten as a script of SISR 1.0.
 """
 
 from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterable
 from functools import lru_cache
 
 from prima.grammar.model import Document
@@ -24,7 +25,7 @@ FORMATS = {
     "swi-semantics/1.0": "legacy",
     "lumenvox/1.0": "legacy",
 }
-"""Tag formats and how their tags are read; where none is told, the tags decide."""
+"""Tag formats and how their tags are read; without a format the tags decide."""
 
 _STRING = r"""(?P<text>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*')"""
 _OWN = frozenset(["out", "rules", "meta"])
@@ -54,21 +55,17 @@ def settle(document: Document) -> None:
 
 def _drafted(codes: list[str], globals: list[str]) -> bool:
     """Whether tags are in the way of the drafts: with ``$`` and without any name of SISR 1.0."""
-    if not any("$" in code for code in codes):
+    everything = [*codes, *globals]
+    if not any("$" in code for code in codes) or _used(everything) & _OWN:
         return False
-    everything = [script_names(code) for code in (*codes, *globals)]
-    used = {name for names in everything for name in (*names.read, *names.written)}
-    if used & _OWN:
-        return False
-    declared = {name for names in everything for name in names.declared}
-    signs = {
-        name
-        for code in codes
-        for names in (script_names(code),)
-        for name in (*names.read, *names.written)
-        if name.startswith("$")
-    }
-    return not signs <= declared
+    declared = {name for code in everything for name in script_names(code).declared}
+    return not {name for name in _used(codes) if name.startswith("$")} <= declared
+
+
+def _used(codes: Iterable[str]) -> set[str]:
+    """Names that are read or given values."""
+    names = [script_names(code) for code in codes]
+    return {name for one in names for name in (*one.read, *one.written)}
 
 
 def _guess(document: Document, codes: list[str]) -> str:
@@ -96,7 +93,7 @@ def _is_sisr(code: Code, node: Node) -> bool:
 
 
 def _signs(code: str) -> list[tuple[int, int, str]]:
-    """Where the drafts' variables stand in code: offsets and names."""
+    """The drafts' variables in code: offsets and names."""
     parsed = parse_script(code) if "$" in code else None
     found = []
     for node in parsed.walk() if parsed is not None else ():
@@ -136,7 +133,6 @@ def translate(code: str) -> str:
 
 def _from_dollars(code: str) -> str:
     """``$`` is the rule's variable, ``$$`` the last rule's value, ``$name`` that of a rule."""
-
     pieces, at = [], 0
     for start, end, name in _signs(code):
         value = {"$": "out", "$$": "rules.latest()"}.get(name, f"rules.{name[1:]}")
@@ -150,7 +146,7 @@ def _from_dollars(code: str) -> str:
 
 
 def _slots(code: str) -> list[tuple[str, str]]:
-    """The slots that a tag fills, with what; none if it is no list of assignments."""
+    """The slots that a tag fills, with what; none if it is not a list of assignments."""
     if _ALL_GSL.fullmatch(code):
         return [(match[1], match[2]) for match in _GSL.finditer(code)]
     if "=" not in code:

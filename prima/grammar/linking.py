@@ -15,10 +15,10 @@ from prima.grammar.errors import (
     Where,
     refuse,
 )
-from prima.grammar.leads import index_choices
 from prima.grammar.legacy import FORMATS, settle
 from prima.grammar.media import check_form, media_type
 from prima.grammar.model import Document, Reference, Rule
+from prima.grammar.prefixes import index_choices
 from prima.markup.uris import join
 
 MOST_DOCUMENTS = 64
@@ -27,7 +27,7 @@ MOST_BYTES = 20_000_000
 
 Fetch = Callable[[str], bytes]
 Refusal = Callable[[str, str], str]
-"""Tells why one grammar may not refer to another, by their URIs; nothing if it may."""
+"""Gives the reason why one grammar may not refer to another, by their URIs; empty if it may."""
 Read = Callable[["Library", str, bytes, str], Document]
 """Reads the bytes of a URI, of a media type if it is told, into a document."""
 FAILURES = (OSError, LookupError, ValueError, PrimaError)
@@ -64,7 +64,7 @@ class Library:
                     return
                 rule = self._resolve(document, reference)
                 if rule is not None:
-                    reference.lead_to(rule)
+                    reference.resolve(rule)
         if not self.problems.found:
             index_choices(self._linked)
 
@@ -202,7 +202,7 @@ def joined(base: str, uri: str, where: Where) -> str:
     """A URI as it is meant at a base.
 
     Raises:
-        GrammarError: one of them is no URI.
+        GrammarError: one of them is not a URI.
     """
     try:
         urlsplit(uri)

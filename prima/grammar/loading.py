@@ -9,19 +9,14 @@ from urllib.parse import urldefrag
 
 from prima.errors import DocumentError, Place, did_you_mean
 from prima.grammar.builtin import TYPES, Conflict, built_in
-from prima.grammar.errors import (
-    GrammarError,
-    UnsupportedBuiltIn,
-    UnsupportedLanguage,
-    refuse,
-)
+from prima.grammar.errors import GrammarError, UnsupportedBuiltIn, UnsupportedLanguage, refuse
 from prima.grammar.grammar import Grammar
 from prima.grammar.linking import Fetch, Library, Refusal, joined
 from prima.grammar.media import ABNF_TYPES, check_form, check_known, check_no_text, media_type
 from prima.grammar.model import Document, Mode, Rule
 from prima.grammar.xmlform import read_xml
-from prima.markup.limits import LIMITS
-from prima.markup.reader import parse, too_large
+from prima.markup.limits import LIMITS, too_large
+from prima.markup.reader import parse
 from prima.markup.tree import Inner, Node, Source
 
 _NAMED = re.compile(rf"(?:builtin:.*|(?:{'|'.join(TYPES)})(?:\?.*)?)", re.DOTALL)
@@ -49,10 +44,10 @@ def load(
         source: a ``<grammar>`` element inside a document, the text or bytes of a whole file in
             either form of SRGS 1.0, a ``builtin:`` URI, or the name of a built-in type.
         base: where the file is from, or the document that holds the element.
-        lang: the language of an element or a built-in type that does not tell its own.
-        mode: the mode of an element or a built-in type that does not tell its own.
+        lang: the language of an element or a built-in type that does not declare its own.
+        mode: the mode of an element or a built-in type that does not declare its own.
         fetch: gives the bytes of a grammar that is referred to; without it there are none.
-        refusal: tells why one grammar may not refer to another, by their URIs; nothing if it may.
+        refusal: gives the reason why one grammar may not refer to another, by their URIs; empty if it may.
         type: the media type, where it is known.
         rule: the rule to match in place of the root.
         languages: whether a language is taken; without it every one is.
@@ -64,7 +59,7 @@ def load(
         UnsupportedFormat: the media type, or the format of the tags, is not known.
         UnsupportedLanguage: ``languages`` does not take the grammar's language.
         UnsupportedBuiltIn: there is no such built-in type.
-        GrammarError: the grammar is no legal one.
+        GrammarError: the grammar is not legal.
     """
     library = Library(fetch, partial(_document, lang, lenient), refusal)
     if isinstance(source, str) and _NAMED.fullmatch(source.strip()):
@@ -135,7 +130,7 @@ def _element(
         base = joined(base, node.get("xml:base"), partial(node.attribute_place, "xml:base"))
     if "src" in node.attributes:
         return _external(library, node, base, media, rule)
-    where = partial(_place, node)
+    where = partial(node.place_of, "")
     document = Document(base, where, mode or "voice", node.get("xml:lang", lang))
     check_known(media, where(), node.own_text)
     if not node.nodes and (media in ABNF_TYPES or node.own_text.lstrip().startswith("#ABNF")):
@@ -190,7 +185,7 @@ def _external(
 def _bytes(text: str) -> bytes:
     """A whole file's text as the bytes of one; whatever encoding it declares, it has none."""
     if text.startswith("#ABNF"):
-        from prima.grammar.abnf import as_unicode
+        from prima.grammar.abnfheader import as_unicode
 
         return as_unicode(text)
     if "encoding" in text[:200]:
@@ -210,7 +205,8 @@ def _document(
     check_known(media, Place(file), begin)
     document = Document(uri, partial(Place, file))
     if begin.startswith("#ABNF") or (media in ABNF_TYPES and not begin.startswith("<")):
-        from prima.grammar.abnf import decode_abnf, read_abnf
+        from prima.grammar.abnf import read_abnf
+        from prima.grammar.abnfheader import decode_abnf
 
         source = Source(file, decode_abnf(file, data))
         document.form = "ABNF"
@@ -221,7 +217,7 @@ def _document(
         node = parse(file, data)
     except DocumentError as error:
         raise GrammarError(error.problems) from None
-    document.where = partial(_place, node)
+    document.where = partial(node.place_of, "")
     document.lang = lang if lenient else document.lang
     read_xml(node, document, library.problems, inline=False, lenient=lenient)
     return document
@@ -233,7 +229,3 @@ def _beginning(data: bytes) -> str:
     if data[:2] in (b"#\0", b"\0#"):
         return data[:200].replace(b"\0", b"").decode("latin-1")
     return data[:200].decode("utf-8-sig", errors="replace").lstrip()
-
-
-def _place(node: Node) -> Place:
-    return node.place

@@ -13,16 +13,16 @@ XML_TYPES = frozenset(
     ["application/srgs+xml", "application/grammar+xml", "application/grammar-xml"]
 )
 LOOSE_TYPE = "application/abnf"
-"""A type that is in use for the ABNF form, though it is none of SRGS's."""
+"""A type that is in use for the ABNF form, although SRGS does not define it."""
 ABNF_TYPES = frozenset(["application/srgs", "application/grammar", LOOSE_TYPE])
 OPEN_TYPES = frozenset(
     ["", "text/xml", "application/xml", "text/plain", "application/octet-stream", "text/html"]
 )
-"""Types that say nothing of the form; the content does."""
+"""Types that do not imply a form; the content shows it."""
 OTHERS = {"#JSGF": "JSGF", ";GSL": "GSL", "#GSL": "GSL"}
 """How formats that are not SRGS begin."""
 UNTYPED = "jsgf"
-"""Stands for the type of a grammar that has none in VoiceXML 1.0, where its form is JSGF's."""
+"""The type assumed for a grammar without one in VoiceXML 1.0, whose form is JSGF."""
 RIGHT_TYPES: dict[Form, str] = {"XML": "application/srgs+xml", "ABNF": "application/srgs"}
 NO_HEADER = "The header of the ABNF form is missing."
 FIRST_LINE = 'Begin with "#ABNF 1.0 UTF-8;" in the first line.'
@@ -90,5 +90,5 @@ def check_form(problems: Problems, media: str, form: Form, file: str, where: Whe
         message = f'The type "{media}" contradicts {what}, which is in the {form} form.'
         problems.note(where, "format", message, f"Write {right}, or leave the type out.")
     elif media == LOOSE_TYPE:
-        message = f'The type "{media}" is none of SRGS; it is read as {right}.'
+        message = f'The type "{media}" is not one of SRGS; it is read as {right}.'
         problems.warn(where, "format", message, f"Write {right}.")

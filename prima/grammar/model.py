@@ -38,7 +38,7 @@ class Choice:
 
     parts: list[Part]
     costs: list[float]
-    index: LeadIndex
+    index: PrefixIndex
 
 
 @dataclass(slots=True, eq=False)
@@ -75,8 +75,8 @@ class Reference:
         """The rule, once it was found."""
         return self.home.rules.get(self.name) if self.home is not None else None
 
-    def lead_to(self, rule: Rule) -> None:
-        """The rule has been found."""
+    def resolve(self, rule: Rule) -> None:
+        """Take the rule that was found."""
         self.home, self.name = rule.document, rule.name
 
 
@@ -110,15 +110,15 @@ Part = Words | Sequence | Choice | Repeat | Reference | Special | Tag | BuiltIn
 
 
 @dataclass(slots=True)
-class LeadIndex:
+class PrefixIndex:
     """The alternatives of a choice by the words that they begin with, each under all of its own."""
 
-    by_lead: dict[str, list[int]]
+    by_prefix: dict[str, list[int]]
     lengths: list[int]
     others: list[int]
     """Those that begin with something else."""
     ordered: list[str] = field(default_factory=list)
-    """What is looked up in ``by_lead``, sorted."""
+    """What is looked up in ``by_prefix``, sorted."""
 
     def goes_on(self, text: str) -> bool:
         """Whether some words that alternatives begin with begin with a text, and are longer."""
@@ -157,7 +157,7 @@ class Document:
     dialect: str = ""
     """How tags are read: ``script``, ``literals``, ``legacy``, or ``last`` (PRIMA's own language)."""
     faults: dict[str, str] = field(default_factory=dict)
-    """Scripts of tags that were needed, and why each is none by itself; empty if it is one."""
+    """Scripts of tags that were needed, and why each is not well-formed by itself; empty if it is."""
     form: Form = "XML"
     merges: bool = False
     """Whether slots that referenced rules fill are those of the rule that refers."""

@@ -17,6 +17,22 @@ TENS = {
     )
 }
 SCALES = {"thousand": 10**3, "million": 10**6, "billion": 10**9, "trillion": 10**12}
+_VALUES = ONES | TENS | {"a": 1}
+_KINDS = (
+    {word: "digit" if 1 <= value <= 9 else "teen" for word, value in ONES.items()}
+    | dict.fromkeys(TENS, "tens") | dict.fromkeys(SCALES, "scale")
+    | {word: word for word in ("a", "and", "hundred")}
+)  # fmt: skip
+_BEFORE = {
+    "a": ("start",),
+    "and": ("hundred", "scale"),
+    "digit": ("start", "hundred", "scale", "and", "tens"),
+    "teen": ("start", "hundred", "scale", "and"),
+    "tens": ("start", "hundred", "scale", "and"),
+    "hundred": ("digit", "teen", "a", "tens"),
+    "scale": ("digit", "teen", "a", "tens", "hundred"),
+}
+"""What kind of word may come before one of each kind."""
 DIGITS = {word: str(value) for word, value in ONES.items() if value < 10}
 DIGITS |= dict.fromkeys(("oh", "o", "nought", "naught"), "0")
 TIMES = {"double": 2, "triple": 3, "quadruple": 4}
@@ -39,10 +55,12 @@ _ONE_DIGIT = re.compile(
     )
 )
 MOST_FIGURES = 100
-"""A longer number is none."""
+"""Figures that a number may have."""
 _FIGURES = re.compile(r"[0-9]{1,3}(?:,[0-9]{3})+|[0-9]+")
 _DECIMAL = re.compile(r"([0-9]{1,3}(?:,[0-9]{3})+|[0-9]*)\.([0-9]+)|([0-9]+),(?![0-9]{3}$)([0-9]+)")
 """A decimal point, or a decimal comma where it divides no thousands."""
+_POINT = re.compile(r"(?:(.*?) )?point (.*)|([^点]*)点(.*)")
+"""What is before and after a spoken decimal point."""
 _JAPANESE = re.compile(f"[0-9{''.join([*KANJI, *_SMALL, *_LARGE])}]+")
 
 
@@ -104,31 +122,25 @@ def cardinal(text: str) -> int | None:
 
 def _english(words: list[str]) -> int | None:
     """``two hundred and five``; or None."""
-    total, group, last = 0, 0, 0
-    scale = 10**15
-    state = "start"  # what was read last
-    for position, word in enumerate(words):
-        if word == "and" and state in ("hundred", "scale") and position + 1 < len(words):
-            state = "and"
-        elif word == "a" and state == "start" and words[position + 1 : position + 2] != []:
-            group, state = 1, "a"
-        elif word in ONES and state in ("start", "hundred", "scale", "and", "tens"):
-            value = ONES[word]
-            if state == "tens" and not 1 <= value <= 9:
-                return None
-            group, state = group + value, "ones"
-        elif word in TENS and state in ("start", "hundred", "scale", "and"):
-            group, state = group + TENS[word], "tens"
-        elif word == "hundred" and state in ("ones", "a", "tens") and 1 <= group < 100:
-            group, state = group * 100, "hundred"
-        elif word in SCALES and state in ("ones", "a", "tens", "hundred"):
-            last = SCALES[word]
-            if last >= scale or not group:
-                return None
-            total, group, scale, state = total + group * last, 0, last, "scale"
-        else:
+    total, group, scale = 0, 0, 10**15
+    before = "start"
+    for word in words:
+        kind = _KINDS.get(word, "")
+        if before not in _BEFORE.get(kind, ()):
             return None
-    return total + group if state not in ("start", "a", "and") else None
+        if word in _VALUES:
+            group += _VALUES[word]
+        elif kind == "hundred":
+            if group >= 100:
+                return None
+            group *= 100
+        elif kind == "scale":
+            if SCALES[word] >= scale or not group:
+                return None
+            scale = SCALES[word]
+            total, group = total + group * scale, 0
+        before = kind
+    return total + group if before not in ("start", "a", "and") else None
 
 
 def _japanese(text: str) -> int | None:
@@ -175,20 +187,18 @@ def _sign(text: str) -> tuple[str, str]:
 
 
 def _fraction(text: str) -> tuple[str, str | None]:
-    """What stands before and after the decimal point; None after it if that is no digits."""
-    match = _DECIMAL.fullmatch(text)
-    if match:
+    """What is before and after the decimal point; None for anything but digits after it."""
+    if match := _DECIMAL.fullmatch(text):
         return (match[1], match[2]) if match[2] else (match[3], match[4])
-    before, point, after = text.partition(" point ")
-    if not point and text.startswith("point "):
-        before, point, after = "", "point", text[6:]
-    if not point and "点" in text:
-        before, point, after = text.partition("点")
-    if not point and text.endswith(" and a half"):
-        return text.removesuffix(" and a half"), "5"
-    if point and digits(after) is None and 10 <= (tens := cardinal(after) or 0) <= 99:
-        return before.strip(), str(tens)
-    return before.strip(), (digits(after) if point else "")
+    match = _POINT.fullmatch(text)
+    if match is None:
+        half = text.endswith(" and a half")
+        return text.removesuffix(" and a half").strip(), "5" if half else ""
+    before, after = (match[1] or match[3] or "").strip(), match[2] or match[4] or ""
+    found = digits(after)
+    if found is None and 10 <= (tens := cardinal(after) or 0) <= 99:
+        return before, str(tens)
+    return before, found
 
 
 def ordinal(word: str) -> int | None:

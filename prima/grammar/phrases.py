@@ -1,4 +1,4 @@
-"""Some of what a question takes, to be offered to somebody who types, or looked for in what is heard."""
+"""Some answers that a question takes, to offer to users who type, or to look for in what is heard."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class _Phrases:
                 yield words
             case BuiltIn(name):
                 yield from TYPES.get(name, ())
-            case Tag() | Special("NULL"):
+            case Tag() | Special("NULL") | Repeat(high=0):
                 yield ""
             case Reference(rule=rule) if rule is not None:
                 yield from self.of(rule.body, depth + 1)
@@ -63,9 +63,8 @@ class _Phrases:
                     yield from islice(self.of(one, depth + 1), self._most)
             case Sequence(parts):
                 yield from self._joined(parts, depth + 1)
-            case Repeat(inner, low, high):
-                if high != 0:
-                    yield from self.of(inner, depth + 1)
+            case Repeat(inner, low):
+                yield from self.of(inner, depth + 1)
                 if not low:
                     yield ""
 

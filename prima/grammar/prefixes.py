@@ -1,23 +1,36 @@
-"""What the parts of a grammar begin with: so that of many alternatives only few are tried.
+"""What the expansions of a grammar begin with: so that of many alternatives only few are tried.
 
-The grammars of both languages are indexed so. An alternative that an index leaves out cannot
-match; one that it gives may.
+An alternative that an index leaves out cannot match; one that it gives may.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Generic, NamedTuple, TypeVar
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
-MOST_LEADS = 16
-"""How many beginnings of one part are told apart."""
+from prima.grammar.model import (
+    Choice,
+    Document,
+    Part,
+    PrefixIndex,
+    Reference,
+    Repeat,
+    Sequence,
+    Special,
+    Tag,
+    Words,
+)
+from prima.grammar.text import join
+
+MOST_PREFIXES = 16
+"""Beginnings of one part that are distinguished."""
 MOST_LETTERS = 200
-"""How long a beginning is that is still looked beyond."""
+"""Characters of a beginning up to which what follows is added to it."""
 MAX_DEPTH = 40
-"""How deep in parts and rules beginnings are looked for."""
+"""Depth of parts and rules to which beginnings are looked for."""
 
 
-class Lead(NamedTuple):
+class Prefix(NamedTuple):
     """One way in which a part begins."""
 
     text: str
@@ -26,87 +39,122 @@ class Lead(NamedTuple):
     """Whether the text is the whole match."""
 
 
-Leads = tuple[Lead, ...]
-NOTHING: Leads = (Lead("", True),)
-UNKNOWN: Leads = (Lead("", False),)
-Part = TypeVar("Part")
+Prefixes = tuple[Prefix, ...]
+NOTHING: Prefixes = (Prefix("", True),)
+UNKNOWN: Prefixes = (Prefix("", False),)
 
 
-class Finder(Generic[Part]):
+def index_choices(documents: Iterable[Document]) -> None:
+    """Index the alternatives of all rules of some documents, whose references are resolved."""
+    for document in documents:
+        finder = _Finder(document.mode == "dtmf")
+        for rule in document.rules.values():
+            for one in _choices(rule.body):
+                one.index = finder.index(one.parts)
+
+
+def _choices(body: Part) -> Iterator[Choice]:
+    """All choices in an expansion."""
+    todo = [body]
+    while todo:
+        part = todo.pop()
+        if isinstance(part, Choice):
+            yield part
+        if isinstance(part, Choice | Sequence):
+            todo += part.parts
+        elif isinstance(part, Repeat):
+            todo.append(part.part)
+
+
+class _Finder:
     """Finds the beginnings of parts, each once."""
 
-    def __init__(self) -> None:
-        self._known: dict[int, Leads] = {}
+    def __init__(self, keys: bool) -> None:
+        self._keys = keys
+        self._known: dict[int, Prefixes] = {}
 
-    def simple(self, part: Part) -> Leads | None:
-        """How a part begins that holds no others; None of one that does."""
-        raise NotImplementedError
-
-    def composed(self, part: Part, depth: int) -> Leads:
-        """How a part begins by what it holds."""
-        raise NotImplementedError
-
-    def join(self, one: str, two: str) -> str:
-        """A beginning with what comes after it."""
-        raise NotImplementedError
-
-    def table(self, parts: Sequence[Part]) -> tuple[dict[str, list[int]], list[int]]:
-        """Alternatives, by number, under their beginnings; and those that may begin with anything."""
-        by_lead: dict[str, list[int]] = {}
+    def index(self, parts: list[Part]) -> PrefixIndex:
+        """Alternatives by their beginnings."""
+        by_prefix: dict[str, list[int]] = {}
         others: list[int] = []
         for number, part in enumerate(parts):
-            texts = {lead.text for lead in self.leads(part, 0)}
+            texts = {one.text for one in self._prefixes(part, 0)}
             if "" in texts:
                 others.append(number)
                 continue
             for text in texts:
-                by_lead.setdefault(text, []).append(number)
-        return by_lead, others
+                by_prefix.setdefault(text, []).append(number)
+        lengths = sorted({len(text) for text in by_prefix})
+        return PrefixIndex(by_prefix, lengths, others, sorted(by_prefix))
 
-    def leads(self, part: Part, depth: int) -> Leads:
+    def _prefixes(self, part: Part, depth: int) -> Prefixes:
         """In which ways a part begins; none at all if nothing matches it."""
-        simple = self.simple(part)
-        if simple is not None:
-            return simple
+        match part:
+            case Words(folded):
+                return (Prefix(folded, True),)
+            case Tag() | Special("NULL"):
+                return NOTHING
+            case Special("VOID"):
+                return ()
         known = self._known.get(id(part))
         if known is None:
             self._known[id(part)] = UNKNOWN  # while it is looked for: it may refer to itself
-            found = UNKNOWN if depth >= MAX_DEPTH else self.composed(part, depth + 1)
+            found = UNKNOWN if depth >= MAX_DEPTH else self._composed(part, depth + 1)
             known = self._known[id(part)] = found
         return known
 
-    def any_of(self, parts: Sequence[Part], depth: int) -> Leads:
+    def _composed(self, part: Part, depth: int) -> Prefixes:
+        """How a part begins that holds others."""
+        match part:
+            case Sequence(parts):
+                return self._in_turn(parts, depth)
+            case Choice(parts):
+                return self._any_of(parts, depth)
+            case Repeat(_, _, 0):
+                return NOTHING
+            case Repeat(inner, low, high):
+                once = self._prefixes(inner, depth)
+                if high != 1:
+                    once = tuple(Prefix(one.text, False) for one in once)
+                return once if low else (*NOTHING, *once)
+            case Reference(rule=rule) if rule is not None:
+                return self._prefixes(rule.body, depth)
+        return UNKNOWN
+
+    def _any_of(self, parts: list[Part], depth: int) -> Prefixes:
         """The beginnings of alternatives."""
-        found: set[Lead] = set()
+        found: set[Prefix] = set()
         for part in parts:
-            found.update(self.leads(part, depth))
-            if len(found) > MOST_LEADS:
+            found.update(self._prefixes(part, depth))
+            if len(found) > MOST_PREFIXES:
                 return UNKNOWN
         return tuple(sorted(found))
 
-    def in_turn(self, parts: Sequence[Part], depth: int) -> Leads:
+    def _in_turn(self, parts: list[Part], depth: int) -> Prefixes:
         """The beginnings of parts one after another."""
-        found: set[Lead] = set(NOTHING)
+        found: set[Prefix] = set(NOTHING)
         for part in parts:
-            leads = self.leads(part, depth)
-            if leads == NOTHING:
+            then = self._prefixes(part, depth)
+            if then == NOTHING:
                 continue
-            begun = [lead for lead in found if lead.whole]
-            if not begun:
+            if not any(one.whole for one in found):
                 break
-            longer = {lead for lead in found if not lead.whole}
-            for then in leads:
-                for one in begun:
-                    text = self.join(one.text, then.text)
-                    longer.add(Lead(text, then.whole and len(text) < MOST_LETTERS))
-            if len(longer) > MOST_LEADS:
-                return tuple(sorted({Lead(lead.text, False) for lead in found}))
+            longer = self._extended(found, then)
+            if len(longer) > MOST_PREFIXES:
+                return tuple(sorted({Prefix(one.text, False) for one in found}))
             found = longer
         return tuple(sorted(found))
 
-    @staticmethod
-    def repeated(once: Leads, low: int, more: bool) -> Leads:
-        """The beginnings of what comes once or ``more`` than once, or if ``low`` is 0 not at all."""
-        if more:
-            once = tuple(Lead(lead.text, False) for lead in once)
-        return once if low else (*NOTHING, *once)
+    def _extended(self, found: set[Prefix], then: Prefixes) -> set[Prefix]:
+        """Beginnings of parts, with those of the next part behind whole matches."""
+        longer = {one for one in found if not one.whole}
+        for one in found - longer:
+            for two in then:
+                text = self._joined(one.text, two.text)
+                longer.add(Prefix(text, two.whole and len(text) < MOST_LETTERS))
+        return longer
+
+    def _joined(self, one: str, two: str) -> str:
+        if self._keys or not one or not two:
+            return one + two
+        return join((one, two))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from heapq import heapify, heappop, heappush
+from heapq import heappop, heappush
 from typing import TYPE_CHECKING, NamedTuple
 
 from prima.grammar.chart import Cell, Way
@@ -67,8 +67,9 @@ def best(top: Cell, most: int) -> list[Analysis]:
     return known[top.number]
 
 
-Candidate = tuple[int, float, int, int, int, int, int]
-"""Words lost, cost, rank of the way and where its last part begins; which analyses of its parts; which way."""
+Candidate = tuple[int, float, int, int, int, int, int, Analysis]
+"""Words lost, cost, rank of the way and where its last part begins; which analyses of its parts; which
+way; the analysis."""
 
 
 def _best(
@@ -79,35 +80,39 @@ def _best(
     What follows a candidate, the next analysis of one of its parts, is never better.
     """
     parts = [(_known(known, way.left), _known(known, way.right)) for way in ways]
-
-    def candidate(number: int, i: int, j: int) -> Candidate | None:
-        lefts, rights = parts[number]
-        if i >= len(lefts) or j >= len(rights):
-            return None
-        way, left, right = ways[number], lefts[i], rights[j]
-        lost = way.lost + (left.lost if left else 0) + (right.lost if right else 0)
-        cost = way.cost + (left.cost if left else 0) + (right.cost if right else 0)
-        return lost, round(cost, 9), way.rank, -(way.left.end if way.left else 0), i, j, number
-
-    first = [one for number in range(len(ways)) if (one := candidate(number, 0, 0))]
-    heapify(first)
-    found: list[Analysis] = []
+    waiting: list[Candidate] = []
     seen: set[tuple[int, int, int]] = set()
-    while first and len(found) < most:
-        lost, *_, i, j, number = heappop(first)
-        if (number, i, j) in seen:
-            continue
+
+    def add(number: int, i: int, j: int) -> None:
+        lefts, rights = parts[number]
+        if i >= len(lefts) or j >= len(rights) or (number, i, j) in seen:
+            return
         seen.add((number, i, j))
-        left, right = parts[number][0][i], parts[number][1][j]
-        size = 1 + (left.size if left else 0) + (right.size if right else 0)
-        if size <= MOST_CELLS:
-            cost = ways[number].cost + (left.cost if left else 0) + (right.cost if right else 0)
-            found.append(Analysis(lost, cost, cell, left, right, size))
+        way = ways[number]
+        made = _joined(cell, way, lefts[i], rights[j])
+        begin = way.left.end if way.left else 0
+        heappush(waiting, (made.lost, round(made.cost, 9), way.rank, -begin, i, j, number, made))
+
+    for number in range(len(ways)):
+        add(number, 0, 0)
+    found: list[Analysis] = []
+    while waiting and len(found) < most:
+        *_, i, j, number, made = heappop(waiting)
+        if made.size <= MOST_CELLS:
+            found.append(made)
         if most > 1:
-            for one in (candidate(number, i + 1, j), candidate(number, i, j + 1)):
-                if one is not None:
-                    heappush(first, one)
+            add(number, i + 1, j)
+            add(number, i, j + 1)
     return found
+
+
+def _joined(cell: Cell, way: Way, left: Analysis | None, right: Analysis | None) -> Analysis:
+    """An analysis of a cell by a way and the analyses of its parts."""
+    lost, cost, size = way.lost, way.cost, 1
+    for part in (left, right):
+        if part is not None:
+            lost, cost, size = lost + part.lost, cost + part.cost, size + part.size
+    return Analysis(lost, cost, cell, left, right, size)
 
 
 def _known(known: dict[int, list[Analysis]], cell: Cell | None) -> Sequence[Analysis | None]:

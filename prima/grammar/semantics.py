@@ -67,7 +67,7 @@ class Interpreter:
         """Whether a built-in type has given a value."""
         self.last: Tag | None = None
         """The last tag on the way, of whatever rule."""
-        self._sandboxes: dict[int, Any] = {}
+        self._engines: dict[int, Any] = {}
         self._results: dict[int, _Result] = {}
 
     def interpret(self, top: Frame) -> Json:
@@ -127,12 +127,10 @@ class Interpreter:
         if not values:
             result.value = self.text(result)
             return
-        if result.document.merges:
-            rules = [self._results[id(event)] for event in values if isinstance(event, Frame)]
-            slots = [plain for one in rules if isinstance(plain := self._plain(one), dict)]
-            if slots:
-                result.value = {name: value for one in slots for name, value in one.items()}
-                return
+        slots = self._slots(values) if result.document.merges else None
+        if slots is not None:
+            result.value = slots
+            return
         last = values[-1]
         if isinstance(last, Value):
             result.value = last.value
@@ -140,14 +138,20 @@ class Interpreter:
             inner = self._results[id(last)]
             result.value, result.box, result.home = inner.value, inner.box, inner.home
 
+    def _slots(self, values: list[Frame | Value]) -> dict[str, Json] | None:
+        """The slots that rules have filled, later ones over earlier ones; None if there are none."""
+        rules = [self._results[id(one)] for one in values if isinstance(one, Frame)]
+        slots = [plain for one in rules if isinstance(plain := self._plain(one), dict)]
+        return {name: value for one in slots for name, value in one.items()} if slots else None
+
     def _plain(self, result: _Result) -> Json:
         return result.value if result.box is None else self._given(result, "json")
 
     def _given(self, result: _Result, way: Literal["json", "carry"]) -> Any:
         """What a value in an engine is outside of it."""
-        sandbox = self._sandbox(result.home)
+        engine = self._engine(result.home)
         try:
-            return sandbox.json(result.box) if way == "json" else sandbox.carry(result.box)
+            return engine.json(result.box) if way == "json" else engine.carry(result.box)
         except EngineLost as error:
             raise EngineLost(f"{result.home.where()}: {error}") from None
         except ScriptError as error:
@@ -156,52 +160,50 @@ class Interpreter:
 
     def _script(self, frame: Frame, result: _Result) -> None:
         """Run the tags of a rule with the values of the rules that it refers to."""
-        sandbox = self._sandbox(result.document)
+        engine = self._engine(result.document)
         legacy = result.document.dialect == "legacy"
         pieces: list[str] = []
         tags = [event for event in frame.events if isinstance(event, Tag)]
         codes = [translate(tag.code) if legacy else tag.code for tag in tags]
         numbered = enumerate(codes)
         told = list(zip(tags, codes, strict=True))
-        _check(told, result.document, sandbox)
+        _check(told, result.document, engine)
         environment: Any = None
         try:
-            environment = sandbox.environment(self.text(result), result.document.merges)
+            environment = engine.environment(self.text(result), result.document.merges)
             for event in frame.events:
                 if isinstance(event, Tag):
                     number, code = next(numbered)
                     pieces.append(f"$next.at = {number};\n{code}\n;")
                 elif isinstance(event, Frame):
                     inner = self._results[id(event)]
-                    sandbox.add(environment, event.name, self._box(inner, result), self.text(inner))
+                    engine.add(environment, event.name, self._box(inner, result), self.text(inner))
                     pieces.append("$next(out);")
                 elif isinstance(event, Value):
-                    sandbox.add(environment, "builtin", sandbox.box(event.value), event.text)
+                    engine.add(environment, "builtin", engine.box(event.value), event.text)
                     pieces.append("$next(out);")
-            result.box = sandbox.rule("\n".join(pieces), environment)
+            result.box = engine.rule("\n".join(pieces), environment)
         except EngineLost as error:
             raise EngineLost(f"{tags[0].where()}: {error}") from None
         except ScriptError as error:
-            reached = sandbox.reached(environment) if environment is not None else 0
+            reached = engine.reached(environment) if environment is not None else 0
             raise _failure(tags[min(reached, len(tags) - 1)], str(error)) from None
 
     def _box(self, inner: _Result, result: _Result) -> Any:
-        sandbox = self._sandbox(result.document)
+        engine = self._engine(result.document)
         if inner.box is None:
-            return sandbox.box(inner.value)
+            return engine.box(inner.value)
         if inner.home is result.document:
             return inner.box
-        return sandbox.take(self._given(inner, "carry"))
+        return engine.take(self._given(inner, "carry"))
 
-    def _sandbox(self, document: Document) -> Any:
+    def _engine(self, document: Document) -> Any:
         """The engine of a document, in which its global tags have run (SISR 1.0: once)."""
-        found = self._sandboxes.get(id(document))
+        found = self._engines.get(id(document))
         if found is None:
-            from prima.script.isolated import IsolatedSandbox
+            from prima.script.shared import IsolatedTagEngine
 
-            found = self._sandboxes[id(document)] = IsolatedSandbox(
-                self.budget, len(self._sandboxes)
-            )
+            found = self._engines[id(document)] = IsolatedTagEngine(self.budget, len(self._engines))
             _check([(tag, tag.code) for tag in document.globals], document, found)
             for tag in document.globals:
                 try:
@@ -218,18 +220,18 @@ def _result(frame: Frame, first: int) -> _Result:
     return _Result(document, document, first)
 
 
-def _check(tags: list[tuple[Tag, str]], document: Document, sandbox: Any) -> None:
-    """Each tag is a script by itself (SISR 1.0 section 3); whether it is one is asked once.
+def _check(tags: list[tuple[Tag, str]], document: Document, engine: Any) -> None:
+    """Check that each tag is a script by itself (SISR 1.0 section 3); each is checked once.
 
     Raises:
-        Failure: one is none.
+        Failure: one is not.
     """
     known = document.faults
     for tag, code in tags:
         fault = known.get(code)
         if fault is None:
-            fault = sandbox.fault(code)
-            if not fault or fault.startswith("SyntaxError"):  # all else is want of room
+            fault = engine.fault(code)
+            if not fault or fault.startswith("SyntaxError"):  # anything else is lack of memory
                 known[code] = fault
         if fault:
             raise _failure(tag, fault)

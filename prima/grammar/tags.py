@@ -1,4 +1,4 @@
-"""What is wrong with the tags of a grammar, as far as their text tells."""
+"""Problems of a grammar's tags that their text shows."""
 
 from __future__ import annotations
 
@@ -8,16 +8,12 @@ from prima.errors import Problem, did_you_mean
 from prima.grammar.legacy import translate
 from prima.grammar.model import BuiltIn, Choice, Document, Part, Reference, Repeat, Sequence, Tag
 from prima.script.budget import Budget
-from prima.script.globals import GLOBALS
+from prima.script.globals import GLOBALS, VARIABLES
 from prima.script.names import script_names
 from prima.script.parse import parse_script
 
 SISR = frozenset(["out", "rules", "meta"])
 """Variables of every tag of a rule (SISR 1.0)."""
-ELSEWHERE = frozenset(
-    ["event", "_event", "_message", "session", "application", "document", "dialog", "sensor"]
-)
-"""Variables that applications have, and tags have not."""
 LOST = "what needs it is not taken"
 
 
@@ -25,15 +21,15 @@ def tag_warnings(document: Document) -> list[Problem]:
     """Tags that are no script, and names in them that nothing gives a value (SISR 1.0)."""
     if not (document.tags or document.globals) or document.dialect == "literals":
         return []
-    from prima.script.isolated import IsolatedSandbox
+    from prima.script.shared import IsolatedTagEngine
 
-    sandbox = IsolatedSandbox(Budget())
+    engine = IsolatedTagEngine(Budget())
     found: list[Problem] = []
     sound: dict[int, str] = {}
     """Tags that are scripts, by the identity of the tag."""
     for tag in (*document.globals, *document.tags):
         code = _script(document, tag)
-        if sandbox.fault(code):
+        if engine.fault(code):
             shown = " ".join(tag.code.split())[:60]
             message = f'"{shown}" is not ECMAScript: {LOST}.'
             found.append(Problem(tag.where(), "warning", "bad-expression", message))
@@ -63,9 +59,9 @@ def _unknown(document: Document, sound: dict[int, str]) -> Iterator[Problem]:
 
 def _names(tag: Tag, code: str, known: set[str]) -> Iterator[Problem]:
     names = script_names(code)
-    for name in sorted({*names.free, *(ELSEWHERE & names.read.keys())} - known):
+    for name in sorted({*names.free, *(VARIABLES & names.read.keys())} - known):
         message = f'The tag uses "{name}", which nothing in the grammar declares: {LOST}.'
-        remedy = did_you_mean(name, known | GLOBALS - ELSEWHERE)
+        remedy = did_you_mean(name, known | GLOBALS - VARIABLES)
         remedy = remedy or f"For the text itself write '{name}' in quotes."
         yield Problem(tag.where(), "warning", "undeclared-variable", message, remedy)
 

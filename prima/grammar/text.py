@@ -51,8 +51,8 @@ def wide(text: str) -> str:
 
 def _letter(letter: str) -> str:
     category = unicodedata.category(letter)
-    if category == "Cf" and letter != "\u200b":  # which may stand between words
-        return ""  # a soft hyphen, a joiner: it stands inside of a word
+    if category == "Cf" and letter != "\u200b":  # which may separate words
+        return ""  # a soft hyphen or joiner inside of a word
     return " " if category[0] in "PSZC" else letter
 
 

@@ -26,7 +26,7 @@ def _number(text: str) -> Json:
 
 
 def _date(text: str) -> Json:
-    """A whole date as ``2009-03-09``; half a date is none."""
+    """A whole date as ``2009-03-09``; None for a partial one."""
     return None if "?" in text else f"{text[:4]}-{text[4:6]}-{text[6:]}"
 
 

@@ -6,7 +6,7 @@ import math
 import re
 from typing import NamedTuple
 
-from prima.grammar.model import Choice, LeadIndex, Part, Sequence
+from prima.grammar.model import Choice, Part, PrefixIndex, Sequence
 
 LEAST = 1e-20
 """A weight of nought counts as this: it comes after everything else."""
@@ -54,7 +54,7 @@ def decimal(text: str, kind: str) -> float:
     """Read a weight: a number of nought or more, without exponent (SRGS 2.4.1).
 
     Raises:
-        ValueError: it is no such number.
+        ValueError: it is not such a number.
     """
     if _DECIMAL.fullmatch(text.strip()) is None or len(text) > 40:
         raise ValueError(f'{kind} "{text[:40]}" is not a number such as 0.5 or 3.')
@@ -65,7 +65,7 @@ def probability(text: str) -> float:
     """Read a repeat probability (SRGS 2.5.1).
 
     Raises:
-        ValueError: it is no number from 0 to 1.
+        ValueError: it is not a number from 0 to 1.
     """
     value = decimal(text, "repeat-prob")
     if value > 1:
@@ -86,7 +86,7 @@ def choice(parts: list[Part], weights: list[float | None]) -> Part:
     greatest = max(given, default=1.0)
     scale = greatest if greatest > 0 else 1.0
     costs = [0.0 if weight == greatest else cost(weight / scale) for weight in given]
-    return Choice(parts, costs, LeadIndex({}, [], list(range(len(parts)))))
+    return Choice(parts, costs, PrefixIndex({}, [], list(range(len(parts)))))
 
 
 def sequence(parts: list[Part]) -> Part:

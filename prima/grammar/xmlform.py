@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 
-from prima.errors import Hint, Place, suggestion
-from prima.grammar.errors import Problems, Where
+from prima.errors import suggestion
+from prima.grammar.errors import Problems
 from prima.grammar.model import Document, Part, Reference, Repeat, Rule, Special, Tag, Words
 from prima.grammar.text import fold, keys, tokens
 from prima.grammar.values import (
@@ -14,62 +14,36 @@ from prima.grammar.values import (
     choice,
     cost,
     decimal,
-    is_language,
     name_problem,
     probability,
     repeat,
     sequence,
 )
-from prima.markup.spans import attribute_span, name_spans, value_span
+from prima.grammar.xmlcheck import EXPANSION, HEADER, SRGS, VOICEXML, Checker
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
-SRGS = "http://www.w3.org/2001/06/grammar"
 MAX_DEPTH = 100
-HEADER = {"meta", "metadata", "lexicon", "tag"}
-EXPANSION = {"token", "ruleref", "item", "one-of", "tag"}
-ATTRIBUTES: dict[str, set[str]] = {
-    "grammar": {"version", "mode", "root", "tag-format"},
-    "meta": {"name", "http-equiv", "content"},
-    "metadata": set(),
-    "lexicon": {"uri", "type"},
-    "rule": {"id", "scope"},
-    "example": set(),
-    "token": set(),
-    "item": {"repeat", "repeat-prob", "weight"},
-    "one-of": set(),
-    "ruleref": {"uri", "type", "special"},
-    "tag": set(),
-}
-"""The elements of SRGS and what they may say, beside ``xml:lang`` and the like."""
-VOICEXML = {"scope", "src", "srcexpr", "type", "weight", "fetchhint", "fetchtimeout", "maxage"}
-VOICEXML |= {"maxstale", "accept"}
-"""What VoiceXML adds to <grammar> (VoiceXML 2.0 section 3.1.1.4)."""
 
 
 def read_xml(
     node: Node, document: Document, problems: Problems, inline: bool, lenient: bool = False
 ) -> None:
-    """Read a <grammar> element into a document; ``inline`` where it stands in another one.
+    """Read a <grammar> element into a document; ``inline`` if it is part of another one.
 
     ``lenient`` takes a file without a namespace for SRGS.
     """
     _Reader(document, problems, inline, lenient).grammar(node)
 
 
-class _Reader:
+class _Reader(Checker):
     """Reads one grammar; notes what is wrong and goes on."""
 
     def __init__(self, document: Document, problems: Problems, inline: bool, lenient: bool) -> None:
+        super().__init__(problems)
         self.document = document
-        self.problems = problems
         self.inline = inline
         self.lenient = lenient
-        self.space = SRGS
-
-    def note(
-        self, node: Node, code: str, message: str, remedy: str | Hint = "", attribute: str = ""
-    ) -> None:
-        self.problems.note(_where(node, attribute), code, message, remedy)
 
     # Header (section 4)
 
@@ -77,14 +51,16 @@ class _Reader:
         spaces = (SRGS, "") if self.lenient else (SRGS,)
         if node.tag != "grammar" or (not self.inline and node.namespace not in spaces):
             remedy = f'Begin with <grammar xmlns="{SRGS}" version="1.0" ...>.'
-            self.note(node, "wrong-root", f"<{node.tag}> is no grammar of SRGS.", remedy)
+            self.note(node, "wrong-root", f"<{node.tag}> is not a grammar of SRGS.", remedy)
             return
         self.space = node.namespace
-        self._attributes(node, VOICEXML if self.inline else {"scope"})
+        self.attributes(node, VOICEXML if self.inline else {"scope"})
         if not self.inline and "scope" in node.attributes:
             message = "scope says nothing in a grammar's file."
             remedy = "Write it where VoiceXML names the file."
-            self.problems.warn(_where(node, "scope"), "unknown-attribute", message, remedy)
+            self.problems.warn(
+                partial(node.place_of, "scope"), "unknown-attribute", message, remedy
+            )
         self._version(node)
         self._mode(node)
         self._language(node)
@@ -123,10 +99,10 @@ class _Reader:
             self.document.lang = lang
 
     def _children(self, node: Node) -> None:
-        self._no_text(node)
+        self.no_text(node)
         seen_rule = False
         for child in node.nodes:
-            if not self._known(child, node):
+            if not self.known(child, node):
                 continue
             if child.tag == "rule":
                 seen_rule = True
@@ -142,22 +118,24 @@ class _Reader:
 
     def _header(self, node: Node) -> None:
         if node.tag != "metadata":
-            self._no_elements(node)
+            self.no_elements(node)
         if node.tag in ("meta", "lexicon") and node.text:
             self.note(node, "stray-text", f"<{node.tag}> holds nothing.", "Remove the text.")
         if node.tag == "tag":
-            tag = Tag(node.own_text, _where(node))
-            self.document.globals.append(tag)
+            self.document.globals.append(Tag(node.own_text, partial(node.place_of, "")))
         elif node.tag == "lexicon":
             if not node.get("uri"):
                 self.note(node, "missing-attribute", "<lexicon> needs a uri.")
             self.document.lexicons.append(node.get("uri"))
         elif node.tag == "meta":
-            given = [name for name in ("name", "http-equiv") if name in node.attributes]
-            if len(given) != 1 or "content" not in node.attributes:
-                message = "<meta> has content, and either a name or http-equiv."
-                self.note(node, "missing-attribute", message)
-            self.document.meta[node.get("name") or node.get("http-equiv")] = node.get("content")
+            self._meta(node)
+
+    def _meta(self, node: Node) -> None:
+        given = [name for name in ("name", "http-equiv") if name in node.attributes]
+        if len(given) != 1 or "content" not in node.attributes:
+            message = "<meta> has content, and either a name or http-equiv."
+            self.note(node, "missing-attribute", message)
+        self.document.meta[node.get("name") or node.get("http-equiv")] = node.get("content")
 
     # Rules (section 3)
 
@@ -194,7 +172,7 @@ class _Reader:
             if isinstance(item, str):
                 if item.strip() and (words := self._words(node, item)):
                     parts.append(words)
-            elif self._known(item, node):
+            elif self.known(item, node):
                 if item.tag in EXPANSION:
                     parts += self._part(item, depth)
                 elif item.tag == "example" and node.tag == "rule":
@@ -208,7 +186,7 @@ class _Reader:
         if not first:
             message = "<example> stands after what the rule takes."
             self.note(node, "misplaced-element", message, "Put it first in the <rule>.")
-        self._no_elements(node)
+        self.no_elements(node)
 
     def _part(self, node: Node, depth: int) -> list[Part]:
         match node.tag:
@@ -219,8 +197,8 @@ class _Reader:
             case "one-of":
                 return self._one_of(node, depth)
             case "tag":
-                self._no_elements(node)
-                tag = Tag(node.own_text, _where(node))
+                self.no_elements(node)
+                tag = Tag(node.own_text, partial(node.place_of, ""))
                 self.document.tags.append(tag)
                 return [tag]
             case _:
@@ -242,7 +220,7 @@ class _Reader:
         return self._said(node, found)
 
     def _token(self, node: Node) -> list[Part]:
-        self._no_elements(node)
+        self.no_elements(node)
         text = node.text
         if not text or '"' in text:
             message = "<token> holds one token, without quotes."
@@ -282,16 +260,16 @@ class _Reader:
                 )
                 self.note(node, "bad-value", message, remedy, "special")
             return [Special(special)]
-        found = Reference(uri, _where(node, "uri"), node.get("type"))
+        found = Reference(uri, partial(node.place_of, "uri"), node.get("type"))
         self.document.references.append(found)
         return [found]
 
     def _one_of(self, node: Node, depth: int) -> list[Part]:
-        self._no_text(node)
+        self.no_text(node)
         parts: list[Part] = []
         weights: list[float | None] = []
         for child in node.nodes:
-            if not self._known(child, node):
+            if not self.known(child, node):
                 continue
             if child.tag != "item":
                 message = f"<{child.tag}> cannot stand in <one-of>."
@@ -328,58 +306,3 @@ class _Reader:
         except ValueError as error:
             self.note(node, "bad-value", str(error), 'Write one such as "0.5".', name)
             return None
-
-    # What any element must keep to
-
-    def _known(self, node: Node, parent: Node) -> bool:
-        """Whether it is an element of SRGS; those of other languages are passed over."""
-        if node.namespace != self.space:
-            if node.namespace in ("", SRGS):
-                message = f"<{node.tag}> is in another namespace than <{parent.tag}>."
-                self.note(node, "wrong-namespace", message, f'Declare xmlns="{self.space}".')
-            return False
-        if node.tag not in ATTRIBUTES:
-            hint = suggestion(node.tag, ATTRIBUTES, *name_spans(node))
-            self.note(node, "unknown-element", f"SRGS has no element <{node.tag}>.", hint)
-            return False
-        self._attributes(node, set())
-        return True
-
-    def _attributes(self, node: Node, more: set[str]) -> None:
-        if not node.attributes:
-            return
-        known = ATTRIBUTES[node.tag] | more
-        for name in node.attributes:
-            if name not in known and ":" not in name and not name.startswith("{"):
-                message = f"<{node.tag}> has no attribute {name}."
-                hint = suggestion(name, known, attribute_span(node, name))
-                self.note(node, "unknown-attribute", message, hint, name)
-        lang = node.attributes.get("xml:lang")
-        if lang is not None and not is_language(lang):
-            message = f'"{lang[:40]}" names no language.'
-            self.note(node, "bad-value", message, 'Write one such as "en-US".', "xml:lang")
-
-    def _no_text(self, node: Node) -> None:
-        if node.text:
-            remedy = "Put it in an <item>."
-            if node.tag == "grammar":
-                remedy = "Put it in a <rule>."
-                if not node.nodes:
-                    remedy = 'Write it in SRGS: rules in XML, or "#ABNF 1.0;" before the text.'
-            message = f"Text cannot stand in <{node.tag}>."
-            self.problems.note(partial(node.text_place, node.text), "stray-text", message, remedy)
-
-    def _no_elements(self, node: Node) -> None:
-        for child in node.nodes:
-            message = f"<{child.tag}> cannot stand in <{node.tag}>."
-            self.note(child, "misplaced-element", message)
-
-
-def _where(node: Node, attribute: str = "") -> Where:
-    if attribute in node.attributes:
-        return partial(node.attribute_place, attribute)
-    return partial(_place, node)
-
-
-def _place(node: Node) -> Place:
-    return node.place

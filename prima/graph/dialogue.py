@@ -17,33 +17,35 @@ from prima.graph.labels import (
 )
 from prima.graph.model import Graph, Node, clean, settle
 from prima.graph.throws import Taker, Throws, chosen
-from prima.interpreter.elements import (
+from prima.interpreter.acts import (
     Act,
-    Block,
     CommandTemplate,
-    Document,
     Exit,
     Expression,
-    Field,
-    Filled,
     Foreach,
-    Form,
     Goto,
     GroupTemplate,
     Handler,
     If,
-    Item,
-    Link,
     Return,
     Run,
     SendOut,
-    Subdialog,
     Text,
     Throw,
-    Unit,
     all_acts,
-    all_items,
     run_commands,
+)
+from prima.interpreter.elements import (
+    Block,
+    Document,
+    Field,
+    Filled,
+    Form,
+    Item,
+    Link,
+    Subdialog,
+    Unit,
+    all_items,
 )
 from prima.interpreter.events import DEFAULTS
 from prima.interpreter.selection import takes

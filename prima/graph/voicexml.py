@@ -24,7 +24,8 @@ from prima.interpreter.selection import takes
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.voicexml.arranging import is_unit, parts_of
-from prima.voicexml.document import FetchError, Page, VoiceDocument, read_page
+from prima.voicexml.document import FetchError, Page, VoiceDocument
+from prima.voicexml.reading import read_page
 from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE, WORDED
 
 MOST_PAGES = 100

@@ -10,13 +10,13 @@ from prima.language.values import moment
 from prima.markup.tree import Node
 from prima.messages import Action, Json, Quit, Say
 from prima.script.evaluation import MAX_RUN_SECONDS, MAX_SCRIPT_SECONDS, MAX_SHARE, EngineLost
-from prima.script.prelude import START
+from prima.script.sandbox import START
 
 if TYPE_CHECKING:
-    from prima.interpreter.plain import PlainEngine
+    from prima.interpreter.pyengine import PythonEngine
     from prima.script.isolated import AnyEngine
 
-Evaluator = TypeVar("Evaluator", bound="AnyEngine | PlainEngine")
+Evaluator = TypeVar("Evaluator", bound="AnyEngine | PythonEngine")
 """What evaluates an application's code."""
 MAX_STEPS = 20_000
 """Pieces of content that an application may go through in one instant."""
@@ -72,7 +72,7 @@ class Bounds(Generic[Evaluator]):
         self.steps = 0
         """Pieces of content gone through in this instant."""
         self.hurried = -1
-        """An instant that is none of its own: of an event sent without delay just before."""
+        """An instant that continues the previous step count: an event was sent without delay just before."""
         self._short = 0
         """How much longer (ms) the waits so far should have lasted."""
         self._waits = 0

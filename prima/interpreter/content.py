@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NoReturn
 
-from prima.interpreter.elements import (
+from prima.interpreter.acts import (
     Act,
     Assign,
     Clear,
@@ -18,21 +18,18 @@ from prima.interpreter.elements import (
     GroupTemplate,
     If,
     Log,
-    Pause,
     Reprompt,
     Return,
     Run,
     Script,
     SendOut,
     StepTemplate,
-    Text,
     Throw,
-    all_items,
 )
+from prima.interpreter.elements import all_items
+from prima.interpreter.expressions import Evaluator
 from prima.interpreter.frame import Abandoned, Content, Fiber, GoForm
-from prima.interpreter.owner import Owner
 from prima.interpreter.places import source, where
-from prima.interpreter.plain import PlainEngine
 from prima.interpreter.transfers import (
     GoBack,
     GoItem,
@@ -45,128 +42,17 @@ from prima.interpreter.transfers import (
 )
 from prima.language.values import quoted, read_value, shown
 from prima.markup.tree import Node
-from prima.messages import Command, Cue, Group, Json, Notice, Say, Step
-from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
+from prima.messages import Command, Group, Json, Notice, Say, Step
+from prima.script.evaluation import RESULT_LIMIT, ScriptError
 
-MAX_TEXT = 4000
-"""Characters that a Command may say."""
 MAX_NAME = 200
 """Characters of an event's name that count."""
 MAX_REPEATS = 10_000
 """Elements that a foreach goes through."""
 
 
-class Executor:
+class Executor(Evaluator):
     """Runs content for one application."""
-
-    def __init__(self, owner: Owner) -> None:
-        self.owner = owner
-        self.engine = owner.engine
-
-    def scopes(self, fiber: Fiber) -> tuple[Scope, ...]:
-        """The scopes that content sees, outermost first."""
-        frame, local = fiber.frame, fiber.local
-        if self.owner.untold:
-            self.owner.handling.tell_sensors()
-        if local is None:  # nothing has been declared in it
-            local = self.engine.nothing
-        return (self.owner.application, frame.document, frame.dialog, local)
-
-    def local(self, fiber: Fiber) -> Scope:
-        """The innermost scope of a piece of content."""
-        if fiber.local is None:
-            fiber.local = self.engine.scope()
-        return fiber.local
-
-    # Expressions --------------------------------------------------------------
-
-    def evaluate(self, expr: Expression, fiber: Fiber) -> Json:
-        """An expression's value as plain data."""
-        try:
-            return self.engine.value(expr.code, self.scopes(fiber))
-        except ScriptError as error:
-            raise failure(error, expr.code, where(expr, error)) from None
-
-    def condition(self, expr: Expression, fiber: Fiber) -> bool:
-        """An expression as a condition."""
-        try:
-            holds = self.engine.condition(expr.code, self.scopes(fiber))
-        except ScriptError as error:
-            raise failure(error, expr.code, where(expr, error)) from None
-        self.owner.note(expr.node, "true" if holds else "false")
-        return holds
-
-    def speech(self, parts: Text, fiber: Fiber, after: str = "") -> tuple[str, tuple[Cue, ...]]:
-        """What is said behind other text, with its values filled in, and its pauses as cues."""
-        said = after
-        cues: list[Cue] = []
-        piece: list[str | Expression] = []
-        for part in (*parts, None):
-            if part is not None and not isinstance(part, Pause):
-                piece.append(part)
-                continue
-            said = " ".join(filter(None, (said, self.text(piece, fiber))))
-            if len(said) > MAX_TEXT:
-                break
-            if part is not None:
-                cues.append(Cue(len(said), "pause", part.lasts))
-            piece = []
-        return said[:MAX_TEXT], tuple(cues)
-
-    def text(
-        self, parts: Iterable[str | Expression | Pause], fiber: Fiber, most: int = MAX_TEXT
-    ) -> str:
-        """Text with its values filled in, of ``most`` characters; without its pauses."""
-        said, length = [], 0
-        for part in parts:
-            text = self.said(part, fiber) if isinstance(part, Expression) else part
-            text = text if isinstance(text, str) else " "
-            said.append(text)
-            length += len(text)
-            if length > RESULT_LIMIT:
-                break  # far more than is ever said
-        return " ".join("".join(said).split())[:most]
-
-    def said(self, expr: Expression, fiber: Fiber) -> str:
-        """An expression's value as text."""
-        try:
-            return self.engine.text(expr.code, self.scopes(fiber))
-        except ScriptError as error:
-            raise failure(error, expr.code, where(expr, error)) from None
-
-    def plain(self, value: Json | Expression, fiber: Fiber) -> Json:
-        """A value, or the value of an expression."""
-        return self.evaluate(value, fiber) if isinstance(value, Expression) else value
-
-    def named(
-        self, params: Sequence[tuple[str, str | Expression]], fiber: Fiber, node: Node
-    ) -> dict[str, Json]:
-        """Params as plain data by name; each is counted before the next is made."""
-        found: dict[str, Json] = {}
-        for name, value in params:
-            found[name] = self.plain(value, fiber)
-            self.owner.count_value(found[name], node)
-        return found
-
-    def declare(self, act: Declare, scope: Scope, fiber: Fiber) -> None:
-        """Declare a variable in a scope (VoiceXML 5.3.1)."""
-        if act.expr is None:
-            self.engine.unset(scope, act.name)
-            return
-        try:
-            self.engine.assign(scope, act.name, act.expr.code, self.scopes(fiber))
-        except ScriptError as error:
-            raise failure(error, act.expr.code, where(act.expr, error)) from None
-
-    def script(self, act: Script, scope: Scope, fiber: Fiber) -> None:
-        """Run a script; what it declares belongs to the scope."""
-        assert not isinstance(self.engine, PlainEngine), "a document with a script has an engine"
-        try:
-            self.engine.script(act.code.code, scope, self.scopes(fiber))
-        except ScriptError as error:
-            raise failure(error, act.code.code, where(act.code, error)) from None
-
-    # Content ------------------------------------------------------------------
 
     def run(self, content: Sequence[Act], fiber: Fiber) -> Content:
         """Run content in document order; waits where Commands have to end (O4)."""
@@ -184,19 +70,21 @@ class Executor:
                     yield from self.run(part, fiber)
 
     def run_at_once(self, content: Sequence[Act], fiber: Fiber) -> Transfer | None:
-        """Run content in which no Command stands; gives the transfer of control that ends it."""
+        """Run content without Commands; gives the transfer of control that ends it."""
         if content:
             self.owner.count_step(content[0].node, len(content))
         for act in content:
             simple = SIMPLE.get(type(act))
-            transfer = None
-            if simple is not None:
-                transfer = simple(self, act, fiber)
-            else:
-                for part in self.parts(act, fiber):
-                    transfer = self.run_at_once(part, fiber)
-                    if transfer is not None:
-                        break
+            transfer = (
+                simple(self, act, fiber) if simple is not None else self._run_held(act, fiber)
+            )
+            if transfer is not None:
+                return transfer
+        return None
+
+    def _run_held(self, act: Act, fiber: Fiber) -> Transfer | None:
+        for part in self.parts(act, fiber):
+            transfer = self.run_at_once(part, fiber)
             if transfer is not None:
                 return transfer
         return None

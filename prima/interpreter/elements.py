@@ -1,4 +1,4 @@
-"""A document as values: what an interpreter runs, each with the place it was written at."""
+"""A document as values, each with the element that it was written in."""
 
 from __future__ import annotations
 
@@ -7,222 +7,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from prima.grammar.answers import Answers
+from prima.interpreter.acts import Act, Declare, Expression, Handler, Run, Script, Text, all_acts
 from prima.markup.tree import Node
 
 if TYPE_CHECKING:
     from prima.messages import Json
-
-Text = tuple["str | Expression | Pause", ...]
-"""Text with expressions and pauses in it, in order."""
-
-
-@dataclass(frozen=True, slots=True)
-class Pause:
-    """A silence inside of what is said, in ms."""
-
-    lasts: int
-
-
-def pauses_in(text: Text | None) -> int:
-    """How long all pauses of a text last together, in ms."""
-    return sum(part.lasts for part in text or () if isinstance(part, Pause))
-
-
-@dataclass(slots=True, eq=False)
-class Expression:
-    """ECMAScript, and the element and attribute that hold it."""
-
-    code: str
-    node: Node
-    attribute: str = "expr"
-
-
-@dataclass(slots=True, eq=False)
-class CommandTemplate:
-    """A Command element; arguments are values or expressions."""
-
-    type: str
-    args: dict[str, Json | Expression]
-    text: Text | None
-    now: bool
-    extra: tuple[tuple[str, str | Expression], ...]
-    handlers: tuple[Handler, ...]
-    node: Node
-    lang: str = ""
-    restartable: bool = False
-
-
-@dataclass(slots=True, eq=False)
-class GroupTemplate:
-    """A unit around Commands (U4)."""
-
-    steps: tuple[StepTemplate, ...]
-    longest: int
-    node: Node
-    restartable: bool = False
-
-
-@dataclass(slots=True, eq=False)
-class StepTemplate:
-    """A node of the tree that a run of Commands becomes (U3)."""
-
-    what: CommandTemplate | GroupTemplate
-    after: tuple[int, ...]
-
-
-@dataclass(slots=True, eq=False)
-class Run:
-    """Commands that follow one another: requested at once (O4)."""
-
-    steps: tuple[StepTemplate, ...]
-    node: Node
-
-
-@dataclass(slots=True, eq=False)
-class Declare:
-    """A var."""
-
-    name: str
-    expr: Expression | None
-    node: Node
-
-
-@dataclass(slots=True, eq=False)
-class Script:
-    """A script."""
-
-    code: Expression
-    node: Node
-
-
-@dataclass(slots=True, eq=False)
-class Assign:
-    """An assign."""
-
-    name: str
-    expr: Expression
-    node: Node
-
-
-@dataclass(slots=True, eq=False)
-class Clear:
-    """A clear; no names means all form items."""
-
-    names: tuple[str, ...]
-    node: Node
-
-
-@dataclass(slots=True, eq=False)
-class If:
-    """Conditions with their content; the last may have none (else)."""
-
-    branches: tuple[tuple[Expression | None, tuple[Act, ...]], ...]
-    node: Node
-
-
-@dataclass(slots=True, eq=False)
-class Foreach:
-    """A foreach."""
-
-    item: str
-    array: Expression
-    content: tuple[Act, ...]
-    node: Node
-
-
-@dataclass(slots=True, eq=False)
-class Log:
-    """A log."""
-
-    label: str
-    text: Text
-    node: Node
-
-
-@dataclass(slots=True, eq=False)
-class Throw:
-    """A throw."""
-
-    event: str | Expression
-    message: str | Expression
-    node: Node
-
-
-@dataclass(slots=True, eq=False)
-class Goto:
-    """A goto: to a form, or to an item of this one."""
-
-    form: str | Expression | None
-    item: str | Expression | None
-    node: Node
-
-
-@dataclass(slots=True, eq=False)
-class Return:
-    """A return."""
-
-    names: tuple[str, ...]
-    event: str
-    node: Node
-
-
-@dataclass(slots=True, eq=False)
-class Exit:
-    """An exit."""
-
-    node: Node
-
-
-@dataclass(slots=True, eq=False)
-class Reprompt:
-    """A reprompt."""
-
-    node: Node
-
-
-@dataclass(slots=True, eq=False)
-class SendOut:
-    """A send: to a service, or an event to this application itself after a delay."""
-
-    service: str | Expression
-    event: str
-    delay: int | Expression
-    params: tuple[tuple[str, str | Expression], ...]
-    node: Node
-
-
-Act = (
-    Run
-    | Declare
-    | Script
-    | Assign
-    | Clear
-    | If
-    | Foreach
-    | Log
-    | Throw
-    | Goto
-    | Return
-    | Exit
-    | Reprompt
-    | SendOut
-)
-
-
-@dataclass(slots=True, eq=False)
-class Handler:
-    """A handler of events, by their names or prefixes of them (VoiceXML 5.2.2)."""
-
-    events: tuple[str, ...]
-    cond: Expression | None
-    count: int
-    reactive: bool | None
-    content: tuple[Act, ...]
-    node: Node
-    waits: bool = False
-    """Whether there is a Command in it, whose end is waited for."""
-    fresh: int | None = None
-    """For how long (ms) the reaction is worth starting (X8)."""
 
 
 @dataclass(slots=True, eq=False)
@@ -336,7 +125,7 @@ class Form:
     words: str = ""
     """What is said when its stream resumes after others have spoken (X9)."""
     takers: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
-    """The handlers that take an event in it, as far as it has happened: by the event's name, or by
+    """The handlers that take an event in it, for events that have happened: by the event's name, or by
     the name of the item that was being visited and the event's."""
     bare: bool = False
     """Whether there is nothing to do when it is entered but to wait for events."""
@@ -372,12 +161,12 @@ class Document:
     """Whether there is a script, or something is assigned to a part of a variable."""
     counting: bool = False
     """Whether any handler looks at how often its event has occurred."""
-    plain: bool | None = None
-    """Whether all its code can be evaluated without an engine; None until somebody has looked."""
+    python: bool | None = None
+    """Whether Python can evaluate all its code; None until it is asked for."""
     curious: bool = False
     """Whether any code may look at the event that is being handled."""
     sensors: tuple[frozenset[str] | None] | None = None
-    """Which sensors any code may look at; None until somebody has looked: see :mod:`prima.interpreter.sensors`."""
+    """Which sensors any code may look at; None until it is asked for: see :mod:`prima.interpreter.sensors`."""
     _holders: tuple[list[Form | None], list[Holder]] | None = field(
         default=None, repr=False, compare=False
     )
@@ -389,7 +178,7 @@ class Document:
         return ((form, one.content, one.node) for form, one in zip(*self._holders, strict=True))
 
     def _gather(self) -> tuple[list[Form | None], list[Holder]]:
-        """What holds content, and beside it the forms in which it stands."""
+        """What holds content, and beside it the forms that it is in."""
         holders: list[Holder] = [*self.handlers]
         forms: list[Form | None] = [None] * len(holders)
         for form in self.forms.values():
@@ -409,7 +198,7 @@ Kind = TypeVar("Kind", bound=Act)
 
 
 class Acts:
-    """The executable content of a document by kinds, gathered once; with the forms it stands in."""
+    """The executable content of a document by kinds, gathered once, with the forms that it is in."""
 
     def __init__(self, document: Document) -> None:
         self._document = document
@@ -426,7 +215,7 @@ class Acts:
                 acts.append(act)
 
     def of(self, kind: type[Kind]) -> Iterator[tuple[Form | None, Kind]]:
-        """All of a kind in document order, each with its form; None stands for the document."""
+        """All of a kind in document order, each with its form; None for the document's own."""
         return zip(*self._found.get(kind, ((), ())), strict=True)
 
     def among(self, *kinds: type[Act]) -> list[Act]:
@@ -449,35 +238,7 @@ def all_items(items: Sequence[Item]) -> Sequence[Item]:
     return found
 
 
-def all_acts(content: Sequence[Act]) -> list[Act]:
-    """Executable content with all that it holds, in document order."""
-    if HOLDING.isdisjoint(map(type, content)):
-        return list(content)
-    found: list[Act] = []
-    for act in content:
-        found.append(act)
-        if isinstance(act, If):
-            for _, branch in act.branches:
-                found += all_acts(branch)
-        elif isinstance(act, Foreach):
-            found += all_acts(act.content)
-        elif isinstance(act, Run):
-            for command in run_commands(act.steps):
-                for handler in command.handlers:
-                    found += all_acts(handler.content)
-    return found
-
-
-HOLDING = frozenset([If, Foreach, Run])
-"""What holds other content."""
-
-
-def run_commands(steps: Sequence[StepTemplate]) -> list[CommandTemplate]:
-    """The Commands of a run, those inside units included."""
-    found: list[CommandTemplate] = []
-    for step in steps:
-        if isinstance(step.what, GroupTemplate):
-            found += run_commands(step.what.steps)
-        else:
-            found.append(step.what)
-    return found
+def runs_of(document: Document) -> Iterator[Run]:
+    """All runs of Commands of a document, in document order."""
+    for _, content, _ in document.contents():
+        yield from (act for act in all_acts(content) if isinstance(act, Run))

@@ -7,23 +7,15 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from prima.interpreter.acts import Act, Exit, Expression, Goto, Handler, If, Return, Throw, all_acts
 from prima.interpreter.elements import (
-    Act,
     Block,
     Document,
-    Exit,
-    Expression,
     Field,
     Filled,
     Form,
-    Goto,
-    Handler,
-    If,
     Item,
-    Return,
     Subdialog,
-    Throw,
-    all_acts,
     all_items,
 )
 from prima.interpreter.events import beginnings
@@ -49,7 +41,7 @@ class Source:
 
     document: Document
     foreign: Callable[[str], bool]
-    """Whether an event that a handler names may come from outside, and is no answer to it."""
+    """Whether an event that a handler names may come from outside, other than as an answer."""
     leads: Callable[[Goto | Subdialog], list[Target]]
     """The forms that a goto or the call of a subdialog leads to."""
     queues: bool = False
@@ -59,6 +51,11 @@ class Source:
     def target(self, form: Form) -> Target:
         """One of its forms, by its full name."""
         return Target(f"{self.document.file}#{form.id}")
+
+
+def forms_of(sources: Iterable[Source]) -> Iterator[tuple[Source, Form]]:
+    """All forms of some documents, each with its document."""
+    return ((source, form) for source in sources for form in source.document.forms.values())
 
 
 class Contents:
@@ -109,6 +106,10 @@ class Contents:
         items = self.items(form)
         return [items[name] for name in _named(act) if name in items]
 
+    def gone(self, acts: Iterable[Act], form: Form) -> list[Item]:
+        """The items of a form that acts certainly go to."""
+        return [one for act in acts if isinstance(act, Goto) for one in self.named(act, form)]
+
 
 @dataclass(slots=True)
 class _Entry:
@@ -124,7 +125,7 @@ class _Entry:
     returned: set[str] = field(default_factory=set)
     leads: dict[Target, None] = field(default_factory=dict)
     waiting: dict[str, list[tuple[set[str], Filled]]] | None = None
-    """What the form does with answers, by the names of the items, once somebody has looked."""
+    """What the form does with answers, by the names of the items; computed on demand."""
 
     @property
     def name(self) -> Target:
@@ -142,9 +143,7 @@ class Entering:
     def __init__(self, sources: Sequence[Source], contents: Contents) -> None:
         self._contents = contents
         self._entries = [
-            _Entry(source, form, [*reversed(form.items)])
-            for source in sources
-            for form in source.document.forms.values()
+            _Entry(source, form, [*reversed(form.items)]) for source, form in forms_of(sources)
         ]
         self._firsts = {f"{one.source.document.file}#": one for one in reversed(self._entries)}
         """The first forms of documents."""
@@ -216,13 +215,8 @@ class Entering:
         contents = [item.content] if isinstance(item, Block) else [*self._answered(entry, item)]
         scope = entry.scope(item)
         acts = [act for content in contents for act in self._contents.acts(content, scope)]
-        left = item.cond is None and any(is_left(content) for content in contents)
-        gone = [
-            one
-            for act in acts
-            if isinstance(act, Goto)
-            for one in self._contents.named(act, entry.form)
-        ]
+        left = item.cond is None and any(map(is_left, contents))
+        gone = self._contents.gone(acts, entry.form)
         self._take(entry, acts)
         if left and not gone:
             entry.todo.clear()

@@ -1,4 +1,4 @@
-"""Events by name: which a document may hear of, which nobody raises, which nobody hears."""
+"""Events by name: those that a document may get, those never raised, those never handled."""
 
 from __future__ import annotations
 
@@ -7,21 +7,17 @@ from dataclasses import dataclass
 
 from prima.errors import Place, Problem, Span, guessable, meant
 from prima.errors.diagnoses.names import UNHEARD_EVENT, UNKNOWN_EVENT
-from prima.interpreter.elements import (
-    Acts,
+from prima.interpreter.acts import (
     CommandTemplate,
-    Document,
     Expression,
-    Field,
     Handler,
-    Item,
     Return,
     Run,
     SendOut,
     Throw,
-    all_items,
     run_commands,
 )
+from prima.interpreter.elements import Acts, Document, Field, Item, all_items
 from prima.interpreter.selection import takes
 from prima.language.commands import DEVICES
 from prima.markup.spans import value_span
@@ -64,7 +60,7 @@ DEFAULTS = frozenset(["noinput", "nomatch", "help"])
 MOST_PARTS = 20
 """Dots of an event's name that are looked at."""
 MOST_GUESSES = 200
-"""So many handlers of one document are looked at for slips: each guess takes time."""
+"""Handlers of one document that are checked for misspelt names: each guess takes time."""
 NEAR = 0.8
 """How alike names are of which one is taken for a slip of the other."""
 FIRST = frozenset(name.partition(".")[0] for name in STANDARD)
@@ -74,7 +70,7 @@ OWN = ("end", "cancel", "interrupted", "expired")
 
 
 @dataclass(slots=True)
-class Raised:
+class RaisedEvent:
     """An event that a document raises itself: its name, and the attribute that names it."""
 
     name: str
@@ -119,8 +115,7 @@ def handlers_of(document: Document, acts: Acts | None = None) -> Iterator[Handle
     yield from document.handlers
     for form in document.forms.values():
         yield from form.handlers
-        for item in all_items(form.items):
-            yield from item.handlers
+        yield from (one for item in all_items(form.items) for one in item.handlers)
     for command in _commands(acts or Acts(document)):
         yield from command.handlers
 
@@ -130,17 +125,36 @@ def _commands(acts: Acts) -> Iterator[CommandTemplate]:
         yield from run_commands(run.steps)
 
 
-def raised_by(document: Document, acts: Acts) -> Iterator[Raised]:
+def items_of(document: Document) -> Iterator[Item]:
+    """The items of all forms of a document."""
+    return (item for form in document.forms.values() for item in all_items(form.items))
+
+
+def _asked(acts: Acts) -> Iterator[tuple[Node, str]]:
+    """The services that are asked by their names, and where."""
+    for _, sent in acts.of(SendOut):
+        if sent.service and isinstance(sent.service, str):
+            yield sent.node, sent.service
+
+
+def _is_dynamic(acts: Acts) -> bool:
+    """Whether a service or an event is named by an expression."""
+    named = [sent.service for _, sent in acts.of(SendOut)]
+    named += [throw.event for _, throw in acts.of(Throw)]
+    return any(isinstance(one, Expression) for one in named)
+
+
+def raised_by(document: Document, acts: Acts) -> Iterator[RaisedEvent]:
     """The events that a document raises itself, where their names are written out."""
     for act in acts.among(Throw, SendOut, Return):
         if isinstance(act, Throw | SendOut | Return) and isinstance(act.event, str) and act.event:
-            yield Raised(act.event, act.node, "event", not isinstance(act, SendOut))
+            yield RaisedEvent(act.event, act.node, "event", not isinstance(act, SendOut))
     forms = document.forms.values()
     for link in [*document.links, *(one for form in forms for one in form.links)]:
         if link.event:
-            yield Raised(link.event, link.node, "event", False)
+            yield RaisedEvent(link.event, link.node, "event", False)
     for watch in [*document.watches, *(one for form in forms for one in form.watches)]:
-        yield Raised(watch.name, watch.node, "name", False)
+        yield RaisedEvent(watch.name, watch.node, "name", False)
 
 
 class Events:
@@ -152,20 +166,12 @@ class Events:
         self.heard = {name for handler in self.handlers for name in handler.events}
         self.raised = list(raised_by(document, acts))
         self.commands = {command.type for command in _commands(acts)}
-        items = [item for form in document.forms.values() for item in all_items(form.items)]
-        if any(isinstance(item, Field) for item in items):
+        if any(isinstance(item, Field) for item in items_of(document)):
             self.commands.add("q-and-a")
-        self.asked: list[tuple[Node, str]] = []
+        self.asked = [*_asked(acts)]
         """The services that are asked by their names, and where."""
-        self.dynamic = False
+        self.dynamic = _is_dynamic(acts)
         """Whether a service or an event is named by an expression."""
-        for _, sent in acts.of(SendOut):
-            if isinstance(sent.service, Expression):
-                self.dynamic = True
-            elif sent.service:
-                self.asked.append((sent.node, sent.service))
-        for _, throw in acts.of(Throw):
-            self.dynamic = self.dynamic or isinstance(throw.event, Expression)
         self.services = {name for _, name in self.asked}
         self._own = {one.name for one in self.raised}
         self._known = {name for one in (*STANDARD, *self._own) for name in beginnings(one)}
@@ -175,7 +181,7 @@ class Events:
         """What has been found out for a name: guesses take time, and names come again."""
 
     def problems(self) -> list[Problem]:
-        """Handlers of events that nobody raises, and events that no handler takes."""
+        """Handlers of events that are never raised, and events that no handler takes."""
         found: list[Problem] = []
         wanted: set[str] = set()
         for handler in self.handlers:
@@ -202,24 +208,27 @@ class Events:
     def _guess(self, name: str) -> tuple[str, str] | None:
         first, _, rest = name.partition(".")
         if first in OWN:
-            if any(takes(rest, one) for one in self.commands):
-                return None
-            message = f'"{name}" is never raised: no Command "{rest}" is asked for here.'
-            nearest = near(rest, self.commands)
-            return message, f"{first}.{nearest}" if nearest else ""
+            wrong = f'no Command "{rest}" is asked for here'
+            return self._missing(name, rest, self.commands, wrong)
         service = name.removeprefix("error.service.").removeprefix("reply.")
         if service != name:
-            if self.dynamic or any(takes(service, one) for one in self.services):
-                return None
-            message = f'"{name}" is never raised: nothing is sent to "{service}" here.'
-            nearest = near(service, self.services)
-            return message, name.removesuffix(service) + nearest if nearest else ""
+            wrong = f'nothing is sent to "{service}" here'
+            return None if self.dynamic else self._missing(name, service, self.services, wrong)
         if first == "touch" or name.startswith(("error.unsupported.", "error.badfetch.")):
             return None
         nearest = HABITS.get(name, "") or slip_of(name, {*STANDARD, *self._own})
         return (f'Nothing raises an event "{name}".', nearest) if nearest else None
 
-    def _unheard(self, one: Raised, wanted: set[str]) -> Problem | None:
+    @staticmethod
+    def _missing(name: str, end: str, known: Iterable[str], wrong: str) -> tuple[str, str] | None:
+        """What is wrong with a name that ends with that of a Command or service, unless it is known."""
+        if any(takes(end, one) for one in known):
+            return None
+        nearest = near(end, known)
+        right = name.removesuffix(end) + nearest if nearest else ""
+        return f'"{name}" is never raised: {wrong}.', right
+
+    def _unheard(self, one: RaisedEvent, wanted: set[str]) -> Problem | None:
         heard = any(name in self.heard or name in DEFAULTS for name in beginnings(one.name))
         if one.name in wanted or heard:
             return None

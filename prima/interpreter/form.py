@@ -20,14 +20,7 @@ from prima.interpreter.frame import Content, Fiber, Frame, GoForm
 from prima.interpreter.owner import FORM_STEPS, Owner
 from prima.interpreter.places import source
 from prima.interpreter.selection import satisfied, select_item, select_prompts
-from prima.interpreter.transfers import (
-    GoBack,
-    GoItem,
-    Thrown,
-    Transfer,
-    check_depth,
-    thrown_of,
-)
+from prima.interpreter.transfers import GoBack, GoItem, Thrown, Transfer, check_depth, thrown_of
 from prima.interpreter.vocabulary import USUAL_CONFIDENCE
 from prima.messages import CloseUnit, Command, Cue, Json, Notice, OpenUnit, Step
 from prima.script.evaluation import ScriptError
@@ -170,7 +163,7 @@ class Algorithm:
         return Command("q-and-a", args, text or None, lang=field.lang, source=place, cues=cues)
 
     def _prompts(self, frame: Frame, fiber: Fiber, field: Field) -> list[Prompt]:
-        """What a field says before it listens, if it is not to be quiet after an event (4.1.6)."""
+        """What a field says before it listens, unless it has to be quiet after an event (4.1.6)."""
         speaks, frame.reprompt = frame.reprompt, True
         if not speaks:
             return []

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 
-from prima.interpreter.elements import Form, Handler, Item, Subdialog, Unit
+from prima.interpreter.acts import Handler
+from prima.interpreter.elements import Form, Item, Subdialog, Unit
 from prima.interpreter.selection import Counters
 from prima.interpreter.transfers import Transfer
 from prima.messages import Notice

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from prima.interpreter.elements import Handler, Item, Watch
+from prima.interpreter.acts import Handler
+from prima.interpreter.elements import Item, Watch
 from prima.interpreter.frame import Content, Fiber, Frame
 from prima.interpreter.owner import Owner
 from prima.interpreter.selection import Candidate, prefixes, select_handler, taking
@@ -18,7 +19,7 @@ MAX_FIBERS = 64
 MOST_KEPT = 1_000
 """Names of events for which a form keeps its handlers."""
 REPROMPTED = frozenset({"noinput", "nomatch", "help"})
-"""Events after which a field asks again where nobody handles them (VoiceXML 5.2.5)."""
+"""Events after which a field asks again unless they are handled (VoiceXML 5.2.5)."""
 
 
 Taking = list[Candidate[Handler]]
@@ -27,7 +28,7 @@ Key = str | tuple[str, str]
 
 
 def key_of(item: Item | None, event: str) -> Key:
-    """By what a form keeps what an event does in it."""
+    """The key under which a form keeps the handlers of an event."""
     return event if item is None else (item.name, event)
 
 
@@ -46,9 +47,9 @@ class Handling:
 
     def __init__(self, owner: Owner) -> None:
         self.owner = owner
-        self._armed: dict[int, Armed] = {}
+        self._armed: dict[int, WatchState] = {}
         self._hidden: bool | None = None
-        """Whether the document declares what conditions take for granted; None if nobody asked."""
+        """Whether the document declares what conditions take for granted; None until it is asked for."""
 
     def handle_thrown(
         self, frame: Frame, fiber: Fiber, item: Item | None, thrown: Thrown, depth: int
@@ -296,7 +297,7 @@ class Handling:
         assert frame is not None
         fiber = Fiber(frame)
         for watch in watches:
-            told = self._armed.setdefault(id(watch), Armed())
+            told = self._armed.setdefault(id(watch), WatchState())
             looked_at = self._sensors_of(watch) if told.report >= 0 else None
             if looked_at is not None and all(
                 self.owner.reported.get(name, 0) <= told.report for name in looked_at
@@ -316,7 +317,7 @@ class Handling:
         return None if self._hidden else sensors_of(watch.when.code)
 
 
-class Armed:
+class WatchState:
     """What a watch's condition was when it was last looked at."""
 
     true = False

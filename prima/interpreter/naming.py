@@ -1,4 +1,4 @@
-"""The events that an expression may name, as far as its document tells."""
+"""The events that an expression may name, according to its document."""
 
 from __future__ import annotations
 

@@ -12,16 +12,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Literal, NoReturn, Protocol
 
-from prima.interpreter.elements import (
-    Act,
-    Document,
-    Expression,
-    Form,
-    Item,
-    SendOut,
-    Text,
-    Unit,
-)
+from prima.interpreter.acts import Act, Expression, SendOut, Text
+from prima.interpreter.elements import Document, Form, Item, Unit
 from prima.interpreter.frame import Content, Fiber, Frame
 from prima.interpreter.transfers import GoItem, Thrown, Transfer
 from prima.markup.tree import Node
@@ -29,11 +21,11 @@ from prima.messages import Action, Cue, Data, Json, Notice, Step
 from prima.script.evaluation import Scope
 
 if TYPE_CHECKING:
-    from prima.interpreter.plain import PlainEngine
+    from prima.interpreter.pyengine import PythonEngine
     from prima.script.isolated import AnyEngine
 
 FORM_STEPS = 3
-"""As many pieces of content is the work of beginning a form's own content, or a form item."""
+"""The work of beginning a form's own content, or a form item, in pieces of content."""
 
 
 class Contents(Protocol):
@@ -101,7 +93,7 @@ class Owner(Protocol):
         """Finds its handlers."""
 
     @property
-    def engine(self) -> AnyEngine | PlainEngine:
+    def engine(self) -> AnyEngine | PythonEngine:
         """Evaluates its code."""
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from prima.errors import Place
-from prima.interpreter.elements import Expression
+from prima.interpreter.acts import Expression
 from prima.markup.tree import Node
 from prima.script.evaluation import ScriptError
 

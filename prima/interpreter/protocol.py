@@ -62,7 +62,7 @@ class App(Bounds[Evaluator], ABC):
 
     @abstractmethod
     def event(self, now: int, event: Event) -> None:
-        """Something happened that every application is told of, or this one alone."""
+        """Something happened that concerns every application, or this one alone."""
 
     @abstractmethod
     def notice(self, now: int, notice: Notice) -> None:

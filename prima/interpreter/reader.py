@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from prima.interpreter.grammars import Fetch
 
 WHOLE = ("dead-end", "endless", "unknown-event", "unheard-event", "no-noinput")
-"""Codes of what a whole document lacks, which may stand in an element that is not understood."""
+"""Codes of what a whole document lacks, which may be in an element that is not understood."""
 
 
 MOST_KEPT, MOST_KEPT_BYTES = 64, 2_000_000
@@ -68,7 +68,7 @@ def read_document(
 
 
 def _keep(file: str, read: _Read) -> None:
-    """Keep a document for the next time, and let go of those that nobody asked for longest."""
+    """Keep a document, and drop those least recently asked for."""
     if len(read.data) > MOST_KEPT_BYTES:
         return
     _kept[file] = read

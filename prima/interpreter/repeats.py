@@ -9,29 +9,20 @@ from posixpath import basename
 
 from prima.errors import Hint, Problem
 from prima.errors.diagnoses.behaviour import TOLD_TWICE
+from prima.interpreter.acts import Expression, Goto, Handler, SendOut, Throw
 from prima.interpreter.elements import (
-    Act,
-    Assign,
+    Acts,
     Block,
-    Clear,
     Document,
-    Expression,
     Field,
     Form,
-    Goto,
-    Handler,
     Item,
-    Run,
-    SendOut,
     Subdialog,
-    Throw,
-    Unit,
-    all_acts,
     all_items,
-    run_commands,
 )
-from prima.interpreter.entering import Source, Target, is_left, is_open
+from prima.interpreter.entering import Source, Target, forms_of, is_open
 from prima.interpreter.events import beginnings
+from prima.interpreter.leaving import Leaving, brings_news, cleared_by, goes_by, said_first
 from prima.interpreter.returning import callers_of, calls_again, returns_of, told_again
 from prima.interpreter.ways import Ways
 from prima.markup.tree import Node
@@ -47,7 +38,7 @@ OWN = (
 )
 """What begins an event that comes of what the application itself does, or ends everything."""
 MOST_FOUND = 5_000
-"""Of which something may be told: a list of problems ends long before."""
+"""Repetitions that are looked for: a list of problems ends long before."""
 STEPS_OF_AN_ITEM = 20
 """Steps for which it counts to look at an item."""
 REMEDY = "Leave out the <goto>: what is said goes on then. Or give what is said a cond."
@@ -56,7 +47,7 @@ GUESSED = " If it never leads there, name its targets in the expression: x ? '{0
 
 @dataclass(frozen=True, slots=True)
 class _Back:
-    """How something is told twice: by an event that comes meanwhile, and a goto that leads back."""
+    """How something is said twice: an event comes meanwhile, and a goto leads back."""
 
     form: Form
     said: Node
@@ -103,12 +94,13 @@ def told_twice(sources: Sequence[Source], remedy: str = REMEDY) -> Iterator[Prob
 def _returning(sources: Sequence[Source]) -> Iterator[Problem]:
     """Warn of handlers that end a subdialog while it speaks, when it will be called again."""
     callers = callers_of(sources)
-    for source in sources if callers else ():
-        for form in source.document.forms.values():
-            said, calls = said_first(form), callers.get(source.target(form), ())
-            for event, way in returns_of(form, source) if said is not None and calls else ():
-                if said is not None and any(calls_again(*one, way.event) for one in calls):
-                    yield told_again(event, said[0].place.line, said[1], way)
+    for source, form in forms_of(sources) if callers else ():
+        said, calls = said_first(form), callers.get(source.target(form), ())
+        if said is None or not calls:
+            continue
+        for event, way in returns_of(form, source):
+            if any(calls_again(*one, way.event) for one in calls):
+                yield told_again(event, said[0].place.line, said[1], way)
 
 
 class _Leavings:
@@ -122,14 +114,14 @@ class _Leavings:
         """The document's own."""
         self._to_any = [one for one in self._handlers if any(way.item for way in one.gotos)]
         """Those that go to items, of whatever form."""
-        self._shared: dict[Target, list[tuple[_Leaving, Goto, bool]]] = {}
+        self._shared: dict[Target, list[tuple[Leaving, Goto, bool]]] = {}
         """Where these lead back to, by the forms."""
         for one in self._handlers:
             for form, way in self._led(one).items():
                 self._shared.setdefault(form, []).append((one, *way))
 
     def back(self) -> Iterator[_Back]:
-        """All that is told twice."""
+        """Everything that is said twice."""
         speaking = (form for form in self._source.document.forms.values() if form.items)
         for form in speaking:
             own = [*self._own(form)]
@@ -143,7 +135,7 @@ class _Leavings:
                 if not leaving.hidden(form):
                     yield from self._to_items(form, leaving)
 
-    def _own(self, form: Form) -> Iterator[_Leaving]:
+    def _own(self, form: Form) -> Iterator[Leaving]:
         """The leaving handlers of a form and its items."""
         scope = [*form.handlers, *self._source.document.handlers]
         yield from self._leaving(form.handlers, scope)
@@ -152,19 +144,19 @@ class _Leavings:
 
     def _leaving(
         self, handlers: Iterable[Handler], scope: Sequence[Handler], item: Item | None = None
-    ) -> Iterator[_Leaving]:
+    ) -> Iterator[Leaving]:
         for handler in handlers:
             event = next(filter(self._source.foreign, handler.events), "")
-            if not event or _brings_news(handler):
+            if not event or brings_news(handler):
                 continue
             acts = self._ways.contents.acts(handler.content, lambda: scope)
             gotos = [act for act in acts if isinstance(act, Goto)]
             if gotos:
-                yield _Leaving(event, handler.count, gotos, _cleared(acts), item)
+                yield Leaving(event, handler.count, gotos, cleared_by(acts), item)
 
     # Back to a form's beginning -----------------------------------------------------------
 
-    def _led(self, leaving: _Leaving) -> dict[Target, tuple[Goto, bool]]:
+    def _led(self, leaving: Leaving) -> dict[Target, tuple[Goto, bool]]:
         """The forms to which a document's handler leads, by which goto, and whether certainly."""
         found: dict[Target, tuple[Goto, bool]] = {}
         for certain in (True, False):
@@ -176,7 +168,7 @@ class _Leavings:
                     found |= {one: (way, certain) for one in forms if one not in found}
         return found
 
-    def _to_form(self, form: Form, own: list[_Leaving]) -> Iterator[tuple[_Leaving, Goto, bool]]:
+    def _to_form(self, form: Form, own: list[Leaving]) -> Iterator[tuple[Leaving, Goto, bool]]:
         """The handlers that may run while a form says something, and the gotos back to it."""
         goal = self._source.target(form)
         yield from (one for one in self._shared.get(goal, ()) if not one[0].hidden(form))
@@ -193,7 +185,7 @@ class _Leavings:
 
     # Back to an item ------------------------------------------------------------------------
 
-    def _to_items(self, form: Form, leaving: _Leaving) -> Iterator[_Back]:
+    def _to_items(self, form: Form, leaving: Leaving) -> Iterator[_Back]:
         """What a handler makes a form tell twice by going to one of its items."""
         for way in leaving.gotos:
             self._ways.contents.left -= STEPS_OF_AN_ITEM
@@ -206,19 +198,19 @@ class _Leavings:
                     return
 
     def _said_again(
-        self, form: Form, way: Goto, leaving: _Leaving, certain: bool
+        self, form: Form, way: Goto, leaving: Leaving, certain: bool
     ) -> tuple[Node, bool] | None:
-        """What is told twice by a goto to an item: to one that it names, or perhaps to any."""
+        """What a goto to an item makes the form say twice: an item that it names, or perhaps any."""
         if certain:
             named = self._ways.contents.named(way, form)
             return next(filter(None, (self._again(form, one, leaving) for one in named)), None)
         items = self._ways.contents.items(form).values()
         return next(filter(None, (self._visited_again(one, leaving) for one in items)), None)
 
-    def _again(self, form: Form, item: Item, leaving: _Leaving) -> tuple[Node, bool] | None:
-        """What is told twice where a handler goes to an item: by that, or by those behind it."""
+    def _again(self, form: Form, item: Item, leaving: Leaving) -> tuple[Node, bool] | None:
+        """What is said twice where a handler goes to an item: by that item, or by those after it."""
         said = self._visited_again(item, leaving)
-        if said is not None or not _goes_by(item):
+        if said is not None or not goes_by(item):
             return said
         for one in self._behind(form, leaving):
             self._ways.contents.left -= STEPS_OF_AN_ITEM
@@ -226,11 +218,11 @@ class _Leavings:
                 continue
             if one.cond is None and one.expr is None and self._heard(one, leaving):
                 said = leaving.repeated(one)
-            if said is not None or not _goes_by(one) or self._ways.contents.left < 0:
+            if said is not None or not goes_by(one) or self._ways.contents.left < 0:
                 return said
         return None
 
-    def _behind(self, form: Form, leaving: _Leaving) -> Iterable[Item]:
+    def _behind(self, form: Form, leaving: Leaving) -> Iterable[Item]:
         """What is visited after the item that a handler goes to: what was asked, and what it clears."""
         items = self._ways.contents.items(form)
         if leaving.cleared is None:
@@ -241,60 +233,15 @@ class _Leavings:
             found.append(asked)
         return sorted(found, key=lambda one: one.node.index)
 
-    def _visited_again(self, item: Item, leaving: _Leaving) -> tuple[Node, bool] | None:
+    def _visited_again(self, item: Item, leaving: Leaving) -> tuple[Node, bool] | None:
         """What an item says when a handler goes to it while it says that."""
         quiet = self._source.queues and isinstance(item, Field)
         return leaving.repeated(item) if not quiet and self._heard(item, leaving) else None
 
-    def _heard(self, item: Item, leaving: _Leaving) -> bool:
+    def _heard(self, item: Item, leaving: Leaving) -> bool:
         """Whether a handler takes events while an item speaks: its own, or that of a form."""
         queued = self._source.queues and isinstance(item, Block)
         return leaving.item is None or leaving.item is item or queued
-
-
-@dataclass(frozen=True, slots=True)
-class _Leaving:
-    """A handler of an event from outside that leaves, or goes to an item of its form."""
-
-    event: str
-    count: int
-    gotos: list[Goto]
-    cleared: dict[str, None] | None
-    """The names of items that are visited again then; None for all."""
-    item: Item | None
-    """The item whose handler it is, if it is one's."""
-
-    def hidden(self, form: Form) -> bool:
-        """Whether a form has a handler of its own that takes the event in its stead."""
-        names = set(beginnings(self.event)) if form.handlers and self.count <= 1 else set[str]()
-        return any(
-            one.cond is None and one.count <= 1 and not names.isdisjoint(one.events)
-            for one in form.handlers
-        )
-
-    def repeated(self, item: Item) -> tuple[Node, bool] | None:
-        """What an item says first, and again when it is visited once more."""
-        cleared = self.cleared is None or item.name in self.cleared
-        counts = {one.count for one in item.prompts} if isinstance(item, Field) else set[int]()
-        return _said_by(item) if cleared or 2 not in counts else None  # it has other words then
-
-
-def _cleared(acts: Iterable[Act]) -> dict[str, None] | None:
-    cleared = [act.names for act in acts if isinstance(act, Clear)]
-    if not all(cleared):
-        return None
-    return dict.fromkeys(name for names in cleared for name in names)
-
-
-def _goes_by(item: Item) -> bool:
-    """Whether an item neither waits for anything nor leaves the form."""
-    return isinstance(item, Block) and not is_left(item.content)
-
-
-def _brings_news(handler: Handler) -> bool:
-    """Whether a handler keeps what the event tells: then it is something else that is told."""
-    assigned = [act for act in all_acts(handler.content) if isinstance(act, Assign)]
-    return any("event." in act.expr.code for act in assigned)
 
 
 def _problem(back: _Back, remedy: str) -> Problem:
@@ -326,30 +273,6 @@ def _why(back: _Back) -> str:
     return "which item is next depends on an expression, and may be this one."
 
 
-def said_first(form: Form) -> tuple[Node, bool] | None:
-    """The first thing that a form says whenever it is entered, and whether it asks that."""
-    for item in form.items:
-        if item.cond is not None or item.expr is not None:
-            continue
-        said = _said_by(item)
-        if said is not None:
-            return said
-    return None
-
-
-def _said_by(item: Item) -> tuple[Node, bool] | None:
-    if isinstance(item, Unit):
-        return next((said for one in item.items if (said := _said_by(one))), None)
-    if isinstance(item, Field):
-        asked = (one.node for one in item.prompts if not one.cond and one.count <= 1 and one.text)
-        return next(((node, True) for node in asked), None)
-    for act in item.content if isinstance(item, Block) else ():
-        for command in run_commands(act.steps) if isinstance(act, Run) else ():
-            if command.text:
-                return command.node, False
-    return None
-
-
 def _foreign(document: Document) -> Callable[[str], bool]:
     """Tells which events may come from outside, and are no answer to the application."""
     chosen = _chosen(document)
@@ -359,9 +282,8 @@ def _foreign(document: Document) -> Callable[[str], bool]:
 def _chosen(document: Document) -> set[str]:
     """Events that the application brings about itself, or that the user says by a link."""
     found = set(OWN)
-    for _, content, _ in document.contents():
-        for act in all_acts(content):
-            if isinstance(act, SendOut | Throw) and isinstance(act.event, str) and act.event:
-                found.add(act.event)
+    for act in Acts(document).among(SendOut, Throw):
+        if isinstance(act, SendOut | Throw) and isinstance(act.event, str) and act.event:
+            found.add(act.event)
     links = [*document.links, *(one for form in document.forms.values() for one in form.links)]
     return found | {link.event for link in links if link.event}

@@ -10,8 +10,9 @@ from collections.abc import Iterator, Sequence
 
 from prima.errors import Problem
 from prima.errors.diagnoses.behaviour import TOLD_TWICE
-from prima.interpreter.elements import Assign, Form, Handler, Return, Subdialog, all_acts, all_items
-from prima.interpreter.entering import Source, Target, is_left
+from prima.interpreter.acts import Assign, Handler, Return, all_acts
+from prima.interpreter.elements import Form, Subdialog, all_items
+from prima.interpreter.entering import Source, Target, forms_of, is_left
 from prima.interpreter.events import beginnings
 
 REMEDY = "Handle the event here without <return>: what is said goes on then. Or give what is said a cond."
@@ -28,12 +29,12 @@ CALLED_AGAIN = TOLD_TWICE.says(
 def callers_of(sources: Sequence[Source]) -> Callers:
     """The items by which each form is called as a subdialog."""
     found: Callers = defaultdict(list)
-    for source in sources:
-        for form in source.document.forms.values():
-            for item in all_items(form.items):
-                if isinstance(item, Subdialog) and item.expr is None:
-                    for target in source.leads(item):
-                        found[target].append((source, form, item))
+    for source, form in forms_of(sources):
+        for item in all_items(form.items):
+            if not isinstance(item, Subdialog) or item.expr is not None:
+                continue
+            for target in source.leads(item):
+                found[target].append((source, form, item))
     return found
 
 

@@ -6,12 +6,10 @@ from collections.abc import Callable, Iterator, Sequence
 
 from prima.errors import Problem
 from prima.errors.diagnoses.behaviour import ENDLESS
-from prima.interpreter.elements import (
+from prima.interpreter.acts import (
     Act,
     Assign,
     CommandTemplate,
-    Document,
-    Form,
     Handler,
     Log,
     Run,
@@ -19,8 +17,8 @@ from prima.interpreter.elements import (
     StepTemplate,
     Throw,
     all_acts,
-    all_items,
 )
+from prima.interpreter.elements import Document, Form, all_items
 from prima.interpreter.selection import takes
 
 AGAIN = ENDLESS.says(

@@ -1,4 +1,4 @@
-"""Which sensors a document looks at: by the first part of their names, as ``position``."""
+"""The sensors that a document reads, by the first part of their names, as ``position``."""
 
 from __future__ import annotations
 
@@ -6,12 +6,11 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from prima.interpreter.elements import Document
-from prima.script.ecmascript import CONSTANTS
-from prima.script.globals import STRANGE
+from prima.script.globals import CONSTANTS, STRANGE
 from prima.script.names import Names, expression_names, script_names
 from prima.script.parse import Code, Node, parse_expression, parse_script
 
-TAKEN = CONSTANTS.keys() | {"sensor"}
+TAKEN = CONSTANTS | {"sensor"}
 """Names that conditions take for granted."""
 NOTHING_READ: frozenset[str] = frozenset()
 """What :func:`sensors_read` gives for a document that depends on no sensor."""
@@ -57,12 +56,7 @@ def sensors_read(document: Document) -> frozenset[str] | None:
 
 
 def _sensors_read(document: Document) -> frozenset[str] | None:
-    inner = [watch for form in document.forms.values() for watch in form.watches]
-    if inner and any(node.tag == "subdialog" for node in document.node.walk()):
-        return None
-    if (inner or document.watches) and hides_sensors(document):
-        return None
-    if any(sensors_of(watch.when.code) is None for watch in (*document.watches, *inner)):
+    if not _watches_are_clear(document):
         return None
     read: set[str] = set()
     for parsed in _codes(document):
@@ -73,26 +67,41 @@ def _sensors_read(document: Document) -> frozenset[str] | None:
     return frozenset(read)
 
 
+def _watches_are_clear(document: Document) -> bool:
+    """Whether the sensors that watches look at can be told, and are looked at in time."""
+    inner = [watch for form in document.forms.values() for watch in form.watches]
+    watches = [*document.watches, *inner]
+    if inner and any(node.tag == "subdialog" for node in document.node.walk()):
+        return False
+    if watches and hides_sensors(document):
+        return False
+    return all(sensors_of(watch.when.code) is not None for watch in watches)
+
+
 def _looked_at(code: Code | None) -> frozenset[str] | None:
     """The sensors that code looks at; None where it may look at others without saying so."""
     if code is None or not code.sound:
         return None
     read = set()
     for node in code.walk():
-        if node.type not in NAMED:
-            continue
-        text = code.of(node)
-        if node.type == "this" or text == "eval" or STRANGE in text or "\\" in text:
+        found = _sensor(code, node) if node.type in NAMED else ""
+        if found is None:
             return None
-        if text == "application" and _member(code, node) in ("", "valueOf"):
-            return None
-        if text == "sensor":
-            whole = node.parent if node.type == "property_identifier" else node
-            part = _member(code, whole)
-            if not part:
-                return None
-            read.add(part)
-    return frozenset(read)
+        read.add(found)
+    return frozenset(read - {""})
+
+
+def _sensor(code: Code, node: Node) -> str | None:
+    """The sensor that a name looks at; empty if it is another name, None if it may be any."""
+    text = code.of(node)
+    if node.type == "this" or text == "eval" or STRANGE in text or "\\" in text:
+        return None
+    if text == "application" and _member(code, node) in ("", "valueOf"):
+        return None
+    if text != "sensor":
+        return ""
+    whole = node.parent if node.type == "property_identifier" else node
+    return _member(code, whole) or None
 
 
 NAMED = frozenset(
@@ -108,7 +117,7 @@ NAMED = frozenset(
 
 
 def _member(code: Code, node: Node | None) -> str:
-    """The member of a node's value that is looked at; empty if it is none, or a method."""
+    """The member of a node's value that is read; empty if none is, or a method."""
     parent = node.parent if node is not None else None
     if parent is None or parent.type != "member_expression" or parent.children[0] != node:
         return ""

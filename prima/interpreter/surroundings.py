@@ -8,17 +8,8 @@ from dataclasses import dataclass
 from prima.errors import Hint, Problem, Span, one_of, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_NAME
 from prima.grammar.text import fold
-from prima.interpreter.elements import (
-    CommandTemplate,
-    Document,
-    Field,
-    Pause,
-    Run,
-    Text,
-    all_acts,
-    all_items,
-    run_commands,
-)
+from prima.interpreter.acts import CommandTemplate, Pause, Run, Text, all_acts, run_commands
+from prima.interpreter.elements import Document, Field, all_items
 from prima.interpreter.events import event_place, handlers_of
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
@@ -30,7 +21,7 @@ NOT_THERE = NO_SUCH_NAME.says('{whose} no {what} "{name}".', severity="warning")
 PLACED = {"to": "place", "toward": "place or thing", "name": "gesture"}
 """Arguments of Commands that name something of the surroundings."""
 FEW = 8
-"""So many names are listed where no guess can be made."""
+"""Names that are listed where no guess can be made."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +90,7 @@ def check_name(node: Node, name: str, value: str, names: Surroundings) -> list[P
 
 
 def nearest(word: str, known: Collection[str], *spans: Span) -> Hint:
-    """What was probably meant, or what there is; a fix writes it into some spans."""
+    """The name probably meant, or all names; a fix writes it into some spans."""
     if hint := suggestion(word, known, *spans):
         return hint
     few = 0 < len(known) <= FEW

@@ -19,7 +19,7 @@ class Thrown(Exception):
     """An event thrown in the application (VoiceXML 5.2.1)."""
 
     sought = False
-    """Whether its handlers have been looked for, and there is none."""
+    """Whether its handlers have been looked for in vain."""
     shared = False
     """Whether it is of the robot or its surroundings, for every application: in VoiceXML only
     handlers that name it take it, as that knows no such events (5.2)."""

@@ -13,26 +13,28 @@ from typing import NamedTuple
 
 from prima.errors import Problem
 from prima.errors.diagnoses.behaviour import LONG_UNIT, NOT_IN_UNIT, NOW_INSIDE
-from prima.interpreter.elements import (
+from prima.interpreter.acts import (
     Act,
-    Block,
     CommandTemplate,
-    Document,
     Expression,
+    Handler,
+    Run,
+    Text,
+    Throw,
+    all_acts,
+    pauses_in,
+    run_commands,
+)
+from prima.interpreter.elements import (
+    Block,
+    Document,
     Field,
     Filled,
     Form,
-    Handler,
     Item,
-    Run,
     Subdialog,
-    Text,
-    Throw,
     Unit,
-    all_acts,
     all_items,
-    pauses_in,
-    run_commands,
 )
 from prima.interpreter.naming import events_named
 from prima.interpreter.selection import takes
@@ -95,7 +97,7 @@ class Reach:
 
     @property
     def types(self) -> tuple[str, ...]:
-        """The types of its Commands, by name; a question is none of them."""
+        """The types of its Commands, by name, questions excluded."""
         return tuple(sorted({one.command.type for one in self.commands}))
 
 
@@ -176,7 +178,7 @@ def unit_problem(
 
 
 def now_inside(node: Node, prefix: str = "") -> Problem:
-    """A Command wanted now that stands behind others in a unit, or beside them (O2)."""
+    """A Command wanted now that comes after others in a unit, or beside them (O2)."""
     return NOW_BEHIND_OTHERS.at(node.place, p=prefix, tag=node.tag)
 
 
@@ -319,7 +321,7 @@ class Finder:
 
 
 def _taking(handlers: Iterable[Handler], event: str | None) -> list[Handler]:
-    """The handlers that take an event; all of them where nobody knows its name."""
+    """The handlers that take an event; all if its name is unknown."""
     if event is None:
         return [handler for handler in handlers if handler.events]
     return [one for one in handlers if any(takes(name, event) for name in one.events)]

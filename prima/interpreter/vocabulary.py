@@ -85,7 +85,7 @@ _STREAM = (
 _CHANNEL = attribute(
     "channel",
     "text",
-    "connect: the robot turns to the user before its first word, if it does not see him"
+    "connect: the robot turns to the user before its first word, if it does not see them"
     " (extension x4)",
     choices=("connect",),
 )
@@ -171,7 +171,7 @@ ELEMENTS = (
     ),
     Element(
         "var",
-        "Declares a variable of the document, the form or the content it stands in.",
+        "Declares a variable of the document, the form or the content that it is in.",
         (attribute("name", "variable", "its name", "required"), _EXPR),
         source="VoiceXML 5.3.1",
     ),
@@ -183,7 +183,7 @@ ELEMENTS = (
     ),
     Element(
         "property",
-        f"A setting for what stands in the same element: {', '.join(PROPERTIES)}.",
+        f"A setting for the same element: {', '.join(PROPERTIES)}.",
         (
             attribute("name", "text", "which", "required", choices=tuple(PROPERTIES)),
             attribute("value", "text", "its value", "required"),
@@ -204,7 +204,7 @@ ELEMENTS = (
     Element(
         "block",
         "Content that runs once, in document order. Commands that follow one another are one"
-        " tree; what stands after them runs when they have ended.",
+        " tree; what follows them runs when they have ended.",
         (_NAME, _START, _COND, *_STREAM),
         CONTENT,
         source="VoiceXML 2.3.2; rule O4",
@@ -567,8 +567,8 @@ HINTS: dict[str, str | Instead] = {
     "select": "Write a <field> with an <option> for each answer.",
     "button": 'Write <option> in a <field>, or <on event="touch">.',
     "title": 'Write <meta name="title" content="..."/>.',
-    "head": "Leave it out: facts about the document stand in <meta>.",
-    "body": "Leave it out: forms stand in <prima>.",
+    "head": "Leave it out: facts about the document belong in <meta>.",
+    "body": "Leave it out: forms belong in <prima>.",
     "html": "Begin with <prima>.",
     **dict.fromkeys(
         ("delay", "silence", "sleep", "wait"),

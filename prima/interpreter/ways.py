@@ -128,7 +128,7 @@ class Ranks:
         return node
 
     def _next(self, node: Target) -> Target | None:
-        """What a node leads to and nobody has come to."""
+        """Nodes that a node leads to and that have not been visited."""
         for to in self._edges[node]:
             if to not in self._entered:
                 return to

@@ -7,14 +7,12 @@ copy of it (thesis 5.3 (6)).
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal
 
-from prima.errors import did_you_mean, one_of
-from prima.language.values import BadValue, Value, outside, quoted, read_value, within
+from prima.language.values import Value
 
 DEVICES = (
     "human-detection",
@@ -28,8 +26,8 @@ DEVICES = (
 """The devices every robot profile may name (Table 4.2); a profile adds its own."""
 
 EFFECTS = frozenset({"position", "direction", "human", "follow", "head"})
-"""Where the robot stands, where it looks on the map, that it looks at the human, that it stands
-wherever the human went, and how its head is turned."""
+"""Where the robot is, its heading on the map, that it faces the human, that it is where the human
+went, and how its head is turned."""
 
 ABSENCE_MS = 20_000
 """After how long without being seen, heard or felt the user is absent (rule K1), unless the
@@ -37,14 +35,12 @@ profile says otherwise."""
 LONGEST_TURN_MS = 600_000
 """How long one utterance, or one question, may keep the speaker (rule E3)."""
 LETTER_MS = 50
-"""How long a letter counts in that: less than it takes, so that what is refused is surely too long."""
+"""How long a letter counts in that: less than it takes, so that whatever is refused is too long."""
 PATIENCE_MS = 60_000
 """How long an application may keep another from the speaker (rule E6), unless the run says
 otherwise."""
 LATE_MS = 2_000
 """How long after a question's timeout the user may begin to answer it still (rule X10)."""
-LOOP_MS = 500
-"""How long one loop of a feedback Command lasts unless the profile says otherwise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,7 +237,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 "pause",
                 "Pause",
                 "",
-                "Does nothing for a while; what stands behind it waits.",
+                "Does nothing for a while; what follows it waits.",
                 time=Argument("duration", "for how long", 1, 60000, required=True),
             ),
             _row(
@@ -303,110 +299,13 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
         )
     }
 )
-"""The 17 Command types by name, and Pause, which is none of the thesis's and needs no device."""
-
-
-_A_KIND = {
-    "number": "a number",
-    "duration": "a time: a number of seconds, or a text with its unit",
-    "boolean": "true or false",
-    "id": "a name",
-    "text": "a text",
-}
-
-
-def check_argument(name: str, argument: Argument, value: object) -> Value:
-    """Give ``value`` as the argument's Python value.
-
-    Text is read as an attribute would be; a number given for a time counts
-    seconds.
-
-    Raises:
-        BadValue: with a sentence about the argument, for the author.
-    """
-    said = f"{name} {quoted(value)}"
-    wrong = f"{said} is not {_A_KIND[argument.kind]}."
-    if isinstance(value, str):
-        try:
-            result = read_value(argument.kind, value)
-        except BadValue as error:
-            raise BadValue(f"{said} {error.wrong}", error.remedy, right=error.right) from None
-    elif argument.kind == "boolean" and isinstance(value, bool):
-        result = value
-    elif isinstance(value, bool) or not isinstance(value, int | float):
-        raise BadValue(wrong)
-    elif argument.kind == "duration" and math.isfinite(value):
-        result = round(value * 1000) if abs(value) < 1e9 else -1
-    elif argument.kind == "number" and math.isfinite(value):
-        result = float(value)
-    elif argument.kind == "id" and math.isfinite(value) and value == int(value):
-        result = str(int(value))
-    else:
-        raise BadValue(wrong)
-    number = isinstance(result, int | float) and not isinstance(result, bool)
-    if number and not within(float(result), argument.low, argument.high):
-        wrong = f"{said} {outside(argument.kind, argument.low, argument.high)}"
-        raise BadValue(wrong, beyond=True)
-    return result
-
-
-def check_arguments(
-    row: CommandType, text: str | None, given: Mapping[str, object]
-) -> dict[str, Value]:
-    """Give all arguments of a Command with defaults filled in (rule E3).
-
-    Raises:
-        ValueError: unknown, missing, contradicting or out-of-range arguments, or
-            a text missing or too much.
-    """
-    if row.text == "required" and not text:
-        raise ValueError(f"{row.name} has nothing to say.")
-    if row.text == "none" and text:
-        raise ValueError(f"{row.name} cannot say anything.")
-    values: dict[str, Value] = {}
-    for name, value in given.items():
-        argument = row.arguments.get(name)
-        if argument is None:
-            hint = did_you_mean(name, row.arguments)
-            raise ValueError(f'{row.name} has no argument "{name}". {hint}'.rstrip())
-        values[name] = check_argument(name, argument, value)
-    problem = missing_argument(row, values) or excluding_arguments(row, values)
-    if problem:
-        raise ValueError(problem)
-    for name, argument in row.arguments.items():
-        if name not in values and argument.default is not None:
-            values[name] = argument.default
-    return values
+"""The 17 Command types of the thesis by name, and Pause, which needs no device."""
 
 
 def too_long(letters: int, silence: float) -> str:
-    """What is wrong with an utterance or question of so many letters and ms of silence, if anything."""
+    """Why an utterance or question of so many letters and ms of silence is too long; empty if it is not."""
     lasts = letters * LETTER_MS + silence
     if lasts <= LONGEST_TURN_MS:
         return ""
     most = LONGEST_TURN_MS // 1000
     return f"It keeps the speaker for at least {lasts / 1000:.0f} s; {most} s are the most."
-
-
-def missing_argument(row: CommandType, given: Iterable[str]) -> str:
-    """Say which argument ``row`` still needs."""
-    names = set(given)
-    for name, argument in row.arguments.items():
-        if argument.required and name not in names:
-            return f'{row.name} needs "{name}".'
-    choices = _choices(row)
-    if choices and not choices & names:
-        return f"{row.name} needs one of {one_of(choices)}."
-    return ""
-
-
-def excluding_arguments(row: CommandType, given: Iterable[str]) -> str:
-    """Say which arguments of ``row`` exclude each other, where several of them are given."""
-    choices = _choices(row)
-    if len(choices & set(given)) > 1:
-        return f"{row.name} needs only one of {one_of(choices)}."
-    return ""
-
-
-def _choices(row: CommandType) -> set[str]:
-    return {name for name, argument in row.arguments.items() if argument.choice}

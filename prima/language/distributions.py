@@ -36,9 +36,9 @@ Quantile = Callable[[float], float]
 
 
 def share(seed: int, path: str) -> float:
-    """A number from 0 to 1 of a seed and the path of what is drawn.
+    """A number from 0 to 1, determined by a seed and the path of the value to draw.
 
-    Each path has a stream of its own: what else is drawn does not change it.
+    Each path has its own stream: other draws do not change it.
     """
     return Random(f"{seed}/{path}").random()
 
@@ -183,22 +183,17 @@ class Distributions:
         Bare numbers are seconds where times are wanted.
         """
         rows = self._rows(name)
-        place = 0
-        if column:
-            head = rows[0][1] if rows else []
-            if column not in head:
-                hint = did_you_mean(column, head)
-                raise ValueError(f'{name} has no column "{column}". {hint}'.rstrip())
-            place = head.index(column)
-        if column or (rows and not re.match(r"[-+.\d]", rows[0][1][0])):
-            rows = rows[1:]
-        unit = "s" if self.kind == "duration" else ""
-        texts = [(line, row[place].strip()) for line, row in rows if place < len(row)]
-        return [
-            (line, f"{one}{unit}" if re.fullmatch(r"[\d.]+", one) else one)
-            for line, one in texts
-            if one
-        ]
+        head = rows[0][1] if rows else []
+        if column and column not in head:
+            hint = did_you_mean(column, head)
+            raise ValueError(f'{name} has no column "{column}". {hint}'.rstrip())
+        place = head.index(column) if column else 0
+        titled = column or (head and not re.match(r"[-+.\d]", head[0]))
+        texts = [(at, row[place].strip()) for at, row in rows[bool(titled) :] if place < len(row)]
+        return [(at, self._with_unit(one)) for at, one in texts if one]
+
+    def _with_unit(self, text: str) -> str:
+        return f"{text}s" if self.kind == "duration" and re.fullmatch(r"[\d.]+", text) else text
 
     def _rows(self, name: str) -> list[tuple[int, list[str]]]:
         """The rows of a CSV file that are not empty, with their lines."""

@@ -19,7 +19,7 @@ Value = str | int | float | bool
 
 
 class BadValue(ValueError):
-    """A text is not of a kind: what is wrong continues a sentence that begins with the text.
+    """A text is not of a kind; ``wrong`` continues a sentence that begins with the text.
 
     ``right`` is the text that was most likely meant, or nothing; ``beyond`` says that a number is
     out of its bounds.
@@ -41,7 +41,7 @@ _START = (
 )
 """Characters that begin a name, as in XML 1.0; ``\\i`` without the colon in XML Schema."""
 _REST = f"{_START}0-9\u00b7\u0300-\u036f\u203f\u2040"
-"""Characters that go on with one, dot and hyphen apart; ``\\c`` in XML Schema."""
+"""Characters that continue one, dot and hyphen apart; ``\\c`` in XML Schema."""
 
 DURATION = re.compile(r"\+?([0-9]+(?:\.[0-9]*)?|\.[0-9]+)(ms|s)")
 NAME = rf"[{_START}][{_REST}.\-]*"
@@ -54,28 +54,13 @@ LONGEST_NAME = 500
 """Letters that a name may have."""
 XML_SPACE = " \t\r\n"
 VARIABLE_REMEDY = "Use letters, digits and _, not first a digit."
+EVENT_REMEDY = 'Write one such as "touch.head".'
 
 _XSD_NAME = r"[\i-[:]][\c-[:]]*"
 _XSD_WORD = r"[\i$-[:]][\c$-[:.\-]]*"
 _XSD_VARIABLE = rf"{_XSD_WORD}(\.{_XSD_WORD})*"
 _XSD_EVENT = r"[\c-[:.]]+(\.[\c-[:.]]+)*\.?"
 LONGEST_MS = 24 * 3600 * 1000
-
-
-def well_formed(text: str) -> str:
-    """Text with U+FFFD in the place of halves of surrogate pairs: UTF-8 has none."""
-    if text.isascii():
-        return text
-    return text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
-
-
-HALF_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\ud[89a-f][0-9a-f]{2}")
-"""Half a surrogate pair in JSON of ECMAScript: an escape there; whole pairs are letters."""
-
-
-def well_formed_json(text: str) -> str:
-    """The same for the texts in JSON that ECMAScript has written."""
-    return HALF_PAIR.sub(r"\1\\ufffd", text) if "\\ud" in text else text
 
 
 def _fits(form: str, text: str) -> bool:
@@ -138,28 +123,20 @@ def _target(text: str) -> str:
     return text
 
 
-def _event_list(text: str) -> str:
-    if not text:
-        raise BadValue("names no event.", 'Write one such as "touch.head".')
-    for name in re.split(f"[{XML_SPACE}]+", text):
-        if "," in name:
-            raise BadValue("holds a comma.", "Separate the names by spaces.")
-        if not _fits(EVENT, name):
-            raise BadValue(
-                f'holds "{name}", which is not an event name.', 'Write one such as "touch.head".'
-            )
-    return re.sub(f"[{XML_SPACE}]+", " ", text)
+def _list(pattern: str, what: str, none: str, remedy: str) -> Callable[[str], str]:
+    """Reads names that are separated by spaces."""
 
+    def read(text: str) -> str:
+        if not text:
+            raise BadValue(f"names no {what.split()[-1]}.", none)
+        for name in re.split(f"[{XML_SPACE}]+", text):
+            if "," in name:
+                raise BadValue("holds a comma.", "Separate the names by spaces.")
+            if not _fits(pattern, name):
+                raise BadValue(f'holds "{name}", which is not {what} name.', remedy)
+        return re.sub(f"[{XML_SPACE}]+", " ", text)
 
-def _name_list(text: str) -> str:
-    if not text:
-        raise BadValue("names no variable.", "Write its name.")
-    for name in re.split(f"[{XML_SPACE}]+", text):
-        if "," in name:
-            raise BadValue("holds a comma.", "Separate the names by spaces.")
-        if not _fits(VARIABLE, name):
-            raise BadValue(f'holds "{name}", which is not a variable name.', VARIABLE_REMEDY)
-    return re.sub(f"[{XML_SPACE}]+", " ", text)
+    return read
 
 
 def _date(text: str) -> str:
@@ -180,7 +157,7 @@ def moment(date: str) -> int:
     """A date as ``2005-03-01T10:00:00`` (UTC) in ms since 1970.
 
     Raises:
-        ValueError: it is no date.
+        ValueError: it is not a date.
     """
     from datetime import UTC, datetime, timedelta
 
@@ -209,7 +186,7 @@ DRAWABLE = {"delay": "duration", "quantity": "number"}
 
 
 def _drawable(plain: Callable[[str], Value], pattern: str, doc: str) -> Kind:
-    """The kind of what is either plain or a distribution: of that the text, as bounds count too.
+    """The kind of a plain value or a distribution, which stays text, as its bounds count too.
 
     :class:`prima.language.distributions.Distributions` reads it.
     """
@@ -256,19 +233,19 @@ KINDS: dict[str, Kind] = {
         "the name of a variable",
     ),
     "variables": Kind(
-        _name_list,
+        _list(VARIABLE, "a variable", "Write its name.", VARIABLE_REMEDY),
         "xs:string",
         rf"{_XSD_VARIABLE}( {_XSD_VARIABLE})*",
         "names of variables, separated by spaces",
     ),
     "event": Kind(
-        _pattern(EVENT, "an event name", 'Write one such as "touch.head".'),
+        _pattern(EVENT, "an event name", EVENT_REMEDY),
         "xs:string",
         _XSD_EVENT,
         "an event name: words joined by dots",
     ),
     "events": Kind(
-        _event_list,
+        _list(EVENT, "an event", EVENT_REMEDY, EVENT_REMEDY),
         "xs:string",
         rf"{_XSD_EVENT}( {_XSD_EVENT})*",
         "event names, separated by spaces",
@@ -307,7 +284,7 @@ def read_value(kind: str, text: str) -> Value:
 
 
 def milliseconds(text: str, default: int) -> int:
-    """A time such as ``5s`` or ``500ms`` in ms, or the default where it is none."""
+    """A time such as ``5s`` or ``500ms`` in ms, or the default for any other text."""
     try:
         return int(read_value("duration", text.strip())) if text.strip() else default
     except ValueError:
@@ -336,7 +313,6 @@ def quoted(value: object) -> str:
 
 def outside(kind: str, low: float | None, high: float | None) -> str:
     """Say that a number is beyond its bounds, these in the unit that an author writes."""
-
     if low is not None and high is not None:
         return f"is out of range: from {_written(kind, low)} to {_written(kind, high)}."
     if low is not None:

@@ -37,6 +37,7 @@ from prima.devices.goals import (
 from prima.devices.profile import Profile
 from prima.devices.settings import Limits
 from prima.grammar.answers import Answers
+from prima.live.carried import lacking, route
 from prima.live.driver import Driver
 from prima.live.journal import Known
 from prima.messages import (
@@ -366,12 +367,11 @@ class LiveDevices:
                 self.make_safe()
 
     def _begin(self, goal: Begin) -> None:
-        driver = self.route(goal)
+        driver = route(self.drivers, goal)
         now, device = self._now(), min(goal.devices, default="none")
         if driver is None:
-            lacks = goal.kind == RECORD
-            reason = "no driver records" if lacks else "no driver carries it out"
-            self.conductor.report(now, Broke(goal.key, device, reason, lacks))
+            reason = lacking(self.drivers, goal)
+            self.conductor.report(now, Broke(goal.key, device, reason, goal.kind == RECORD))
             return
         self._routes[goal.key] = driver
         try:
@@ -380,16 +380,9 @@ class LiveDevices:
             reason = f"the driver {driver.kind} has failed: {error}"
             self.conductor.report(now, Broke(goal.key, device, reason))
 
-    def route(self, goal: Begin) -> Driver | None:
-        """The driver of a goal: the one that says how, or else the first with one of its devices."""
-        there = [one for one in self.drivers if one.settings.devices & goal.devices]
-        how = (one for one in there if one.does(goal) is not None)
-        able = (one for one in there if not one.mapped or goal.kind in one.own)
-        return next(how, None) or next(able, None)
-
     def limits(self, goal: Begin) -> Limits:
         """How long a goal's driver may take: as the document says, else as suits the goal."""
-        driver = self.route(goal)
+        driver = route(self.drivers, goal)
         if driver is None:
             return Limits()
         does = driver.does(goal)

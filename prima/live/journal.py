@@ -7,11 +7,16 @@ the world has not seen, but for what came in at the very last instant.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+import re
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from re import Pattern
 
 from prima.errors import RunError, UsageError
+from prima.grammar.answers import Answers
+from prima.grammar.text import fold
 from prima.journal import replay_instants
 from prima.messages import Emergency, Inbound, Json, Narrated, Order, Record
 from prima.session import Session
@@ -19,6 +24,10 @@ from prima.transcript.lines import check_head, finished, line, read_lines
 
 REDACTED = "[redacted]"
 """What stands for what a user has said."""
+MOST_FREE = 1000
+"""How many of the latest utterances that no grammar took are looked for."""
+LONG_ENOUGH = 8
+"""Letters of an utterance that nobody took; a shorter one comes back by chance."""
 CHANGED = (
     "the documents do not give this record again: lines are missing above it or were changed,"
     " or another version of PRIMA has written them."
@@ -27,20 +36,61 @@ SPOKEN = ("utterance", "alternatives", "recorded", "text")
 """Where the data of records have what a user has said."""
 
 
-def redacted(record: Record) -> Record:
-    """A record without what users say: its time, and what grammars made of it, stay.
+class Redactor:
+    """Leaves out of records what users say: its time, and what grammars made of it, stay.
 
-    Such a journal can be shown and measured; it cannot be run again, nor gone on with.
+    What no grammar took is left out wherever it comes back word for word: as a field's value, in
+    what is sent to services, in what the robot says. Such a journal can be shown and measured; it
+    cannot be run again, nor gone on with.
+
+    Args:
+        listening: gives what is listened for now.
     """
-    if record["phase"] == "run":
-        return {**record, "data": {**record["data"], "redacted": True}}
-    data = record.get("data")
-    if isinstance(data, dict) and any(name in data for name in SPOKEN):
-        kept = {name: value for name, value in data.items() if name not in SPOKEN}
-        record = {**record, "data": kept or None}
-    if record["phase"] == "event" and record["event"] == "speech":
-        record = {**record, "text": REDACTED}
-    return record
+
+    def __init__(self, listening: Callable[[], Sequence[Answers]]) -> None:
+        self._listening = listening
+        self._takes: Sequence[Answers] = ()
+        self._free: deque[Pattern[str]] = deque(maxlen=MOST_FREE)
+        """Finds what users have said in their own words."""
+
+    def __call__(self, records: list[Record]) -> list[Record]:
+        """The records of an instant without it."""
+        made = [self._redacted(record) for record in records]
+        self._takes = self._listening()
+        return made
+
+    def _redacted(self, record: Record) -> Record:
+        if record["phase"] == "run":
+            return {**record, "data": {**record["data"], "redacted": True}}
+        data = record.get("data")
+        if record["phase"] == "event" and record["event"] == "speech":
+            self._note(record.get("text") or "")
+            record = {**record, "text": REDACTED}
+        elif record.get("text"):
+            record = {**record, "text": self._without(record["text"])}
+        if isinstance(data, dict):
+            kept = {name: value for name, value in data.items() if name not in SPOKEN}
+            record = {**record, "data": self._without(kept) or None}
+        return record
+
+    def _note(self, said: str) -> None:
+        """Keep what was said freely; a short word only where a question takes any text."""
+        taken = any(one.type == "text" for one in self._takes)
+        if len(fold(said)) < (1 if taken else LONG_ENOUGH):
+            return
+        if not any(one.in_grammar(said) for one in self._takes):
+            words = r"\W+".join(re.findall(r"\w+", said))
+            self._free.append(re.compile(rf"(?<![a-z0-9]){words}(?![a-z0-9])", re.I))
+
+    def _without(self, value: Json) -> Json:
+        """A value without what users have said in their own words."""
+        if isinstance(value, str):
+            for said in self._free:
+                value = said.sub(REDACTED, value)
+            return value
+        if isinstance(value, dict):
+            return {name: self._without(one) for name, one in value.items()}
+        return [self._without(one) for one in value] if isinstance(value, list) else value
 
 
 class Journal:

@@ -52,5 +52,8 @@ def prepared(chosen: Chosen, settings: Settings, output: str | None, resume: str
     """
     check_usage(chosen, output, resume)
     if resume is not None:
+        if settings.redact:
+            message = "--redact is for a new journal: this one has what users have said."
+            raise UsageError(f"{resume}: {message}")
         return go_on(read_broken(resume), settings)
     return begin(chosen, settings, output)

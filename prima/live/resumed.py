@@ -25,7 +25,7 @@ from prima.loading import Loaded
 from prima.loading.heads import chosen_policy
 from prima.messages import Record
 from prima.scheduler.policy import Policy
-from prima.script.prelude import START
+from prima.script.sandbox import START
 
 PATIENCE_S = PATIENCE_MS / 1000
 

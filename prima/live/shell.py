@@ -146,16 +146,22 @@ class Shell:
                 raise problem
 
     async def _close(self) -> None:
-        for task in list(self._tasks):
+        """Make all robots safe at once, whatever still runs; then give the connections back."""
+        tasks = list(self._tasks)
+        for task in tasks:
             task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
-        for driver in self._drivers:
-            for end in (driver.safe, driver.close):
-                try:
-                    async with asyncio.timeout(SAFE_S):
-                        await end()
-                except Exception as error:
-                    self._warn(f"{driver.kind}: {end.__name__} has failed: {_why(error)}.")
+        await asyncio.gather(*(self._end(driver, driver.safe) for driver in self._drivers))
+        if tasks:
+            await asyncio.wait(tasks, timeout=SAFE_S)
+        await asyncio.gather(*(self._end(driver, driver.close) for driver in self._drivers))
+
+    async def _end(self, driver: Driver, end: Callable[[], Coroutine[Any, Any, None]]) -> None:
+        """Let a driver end something; one that does not is told of."""
+        try:
+            async with asyncio.timeout(SAFE_S):
+                await end()
+        except Exception as error:
+            self._warn(f"{driver.kind}: {end.__name__} has failed: {_why(error)}.")
 
     def _spawn(self, what: Coroutine[Any, Any, None]) -> None:
         task = asyncio.ensure_future(what)
@@ -174,7 +180,7 @@ class Shell:
             return
         self._lost.add(driver)
         self._warn(f"{driver.kind}: the robot is lost; it is looked for.")
-        self._spawn(driver.safe())
+        self._spawn(self._end(driver, driver.safe))
         self._spawn(self._find(driver))
 
     async def _find(self, driver: Driver) -> None:
@@ -187,18 +193,10 @@ class Shell:
             except (Unreachable, UsageError):
                 continue
             self._lost.discard(driver)
-            await self._end_what_went_on(driver)
+            await self._end(driver, driver.safe)  # nobody has stopped it meanwhile
             self._warn(f"{driver.kind}: the robot is back.")
             driver.tell(Back(driver.settings.devices))
             return
-
-    async def _end_what_went_on(self, driver: Driver) -> None:
-        """Make a robot safe that was out of reach: nobody has stopped it meanwhile."""
-        try:
-            async with asyncio.timeout(SAFE_S):
-                await driver.safe()
-        except Exception as error:
-            self._warn(f"{driver.kind}: safe has failed: {_why(error)}.")
 
     async def _watch(self, driver: Driver) -> None:
         """Ask by the heartbeat whether the robot is still there."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import os
-import signal
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -15,14 +14,16 @@ from pathlib import Path
 from prima.devices.loop import Loop
 from prima.devices.profile import Profile
 from prima.errors import UsageError
+from prima.live.carried import uncarried
 from prima.live.clock import Clock
 from prima.live.devices import LiveDevices
 from prima.live.driver import Driver
 from prima.live.drivers import driver_class
-from prima.live.journal import Journal, redacted
+from prima.live.journal import Journal, Redactor
 from prima.live.recordings import Recordings
 from prima.live.services import LiveServices
 from prima.live.shell import LATE_MS, Shell
+from prima.live.signals import heeding_signals
 from prima.loading import Loaded, load_scenario, load_services, stage
 from prima.loading.files import Contents, in_place_of_files, read_file
 from prima.loading.heads import check_files, chosen_policy, run_record
@@ -214,9 +215,11 @@ class Visit:
             RunError: the journal cannot be written.
         """
 
+        redactor = Redactor(self.loop.session.listening) if self.settings.redact else None
+
         def keep(records: list[Record]) -> None:
-            if self.settings.redact:
-                records = [redacted(record) for record in records]
+            if redactor is not None:
+                records = redactor(records)
             if self.journal is not None:
                 self.journal.write(records)
             sink(records)
@@ -224,6 +227,9 @@ class Visit:
         self.loop.journal = keep
         try:
             asyncio.run(self._run(warn))
+        except KeyboardInterrupt as error:  # a driver blocked the run
+            self.stopped = True
+            warn(str(error) or "The run was broken off.")
         finally:
             self.loop.session.close()
             if self.journal is not None:
@@ -259,19 +265,17 @@ class Visit:
                 running.call_soon_threadsafe(shell.stop)
 
         self._stop = stop
-        for name in (signal.SIGINT, signal.SIGTERM):
-            with suppress(NotImplementedError, ValueError, RuntimeError):
-                running.add_signal_handler(name, self.stop)
-        if self.stopped:
-            return
-        # Not before: once there is a journal, a signal has to end the run as it should.
-        self.loop.journal(self.missed if self.resumed else [self.head])
-        try:
-            await shell.run()
-        finally:
-            self.latest = shell.latest
-            if not (shell.opened or self.resumed) and self.journal is not None:
-                self.journal.discard()  # nothing has happened: the same command may be given again
+        with heeding_signals(self.stop):
+            if self.stopped:
+                return
+            # Not before: once there is a journal, a signal has to end the run as it should.
+            self.loop.journal(self.missed if self.resumed else [self.head])
+            try:
+                await shell.run()
+            finally:
+                self.latest = shell.latest
+                if not (shell.opened or self.resumed) and self.journal is not None:
+                    self.journal.discard()  # nothing has happened: the command may be given again
 
 
 def begin(chosen: Chosen, settings: Settings, output: str | None) -> Visit:
@@ -294,6 +298,8 @@ def begin(chosen: Chosen, settings: Settings, output: str | None) -> Visit:
         loop = in_simulation(loaded, policy, settings)
     else:
         loop = on_robot(loaded, policy, settings, chosen.answering(settings.web))
+        assert isinstance(loop.devices, LiveDevices)
+        loaded.problems += uncarried(cast.robot, loop.devices.drivers, cast.documents)
     if settings.until is not None:
         loop.until = settings.until
     told = chosen.told(os.path.dirname(output or ""))
@@ -351,7 +357,7 @@ def make_drivers(robot: Profile, site: Map, files: Iterable[str]) -> list[Driver
     """
     if not robot.drivers:
         hint = 'Write <driver kind="..."/> in it, as docs/live.md shows.'
-        raise UsageError(f"The robot {robot.id} has no driver. {hint}")
+        raise UsageError(f"{robot.place}: The robot {robot.id} has no driver. {hint}")
     made = []
     for settings in robot.drivers:
         try:

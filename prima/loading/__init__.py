@@ -51,8 +51,8 @@ from prima.loading.diagnoses import (
 from prima.loading.files import Folder, path_of, read_file
 from prima.markup.check import check_root, kind_of
 from prima.markup.limits import LIMITS
-from prima.markup.opening import root_of
 from prima.markup.reader import parse
+from prima.markup.sniff import root_of
 from prima.markup.spans import value_span
 
 if TYPE_CHECKING:
@@ -100,7 +100,8 @@ def read_application(
 
             native = replace(native, kind=kind)  # others may run the same document as it is
         return native, problems
-    from prima.voicexml.document import VoiceDocument, read_page
+    from prima.voicexml.document import VoiceDocument
+    from prima.voicexml.reading import read_page
 
     file = path_of(path)
     page = read_page(site.name(site.uri) if site else file.name, path, data, site)
@@ -319,9 +320,10 @@ def _voicexml_problems(
     URIs that begin like one of ``answered`` are a service's.
     """
     from prima.voicexml.caught import check_caught
-    from prima.voicexml.document import FetchError, read_page
+    from prima.voicexml.document import FetchError
     from prima.voicexml.listening import check_listening
     from prima.voicexml.pages import Pages
+    from prima.voicexml.reading import read_page
     from prima.voicexml.sketched import check_sketched
     from prima.voicexml.variables import check_variables
 
@@ -573,7 +575,7 @@ def stage(
 
     demo = documents_folder()
     given = [(kind, path) for kind, paths in (("fa", fas), ("ea", eas)) for path in paths]
-    for _, path in given:
+    for path in (*(path for _, path in given), *filter(None, (robot, world))):
         read_file(path)  # what is not there is no fault of a document
     served = _served([path for _, path in given], maps)
     applications = [

@@ -10,8 +10,7 @@ from os.path import abspath, exists, getsize, isfile, join, normpath
 from typing import TYPE_CHECKING, Protocol
 
 from prima.errors import DocumentError, UsageError
-from prima.markup.limits import LIMITS
-from prima.markup.reader import too_large
+from prima.markup.limits import LIMITS, too_large
 
 if TYPE_CHECKING:
     from pathlib import Path

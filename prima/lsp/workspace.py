@@ -15,8 +15,8 @@ from prima.lsp.names import Mark, dialect, marks
 from prima.lsp.scan import Page
 from prima.lsp.tables import FILES, SHARED, resolve
 from prima.lsp.text import Lines
+from prima.markup.encodings import ENCODING, decode
 from prima.markup.limits import LIMITS
-from prima.markup.reader import ENCODING, decode
 
 MOST_FILES = 2_000
 """Maximum number of documents of a workspace."""

@@ -1,4 +1,4 @@
-"""Well-formed text as nodes, by expat: fast, and with no message of its own."""
+"""Well-formed text as nodes, by expat: fast, and without messages."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class TooMuch(Exception):
 
 
 class Unclear(Exception):
-    """What needs a parser that explains itself: a DOCTYPE, or text that is not well-formed.
+    """The text has a DOCTYPE, or is not well-formed: a parser with messages is needed.
 
     ``line`` and ``column`` count from 1.
     """
@@ -52,12 +52,12 @@ Start = Callable[[str, dict[str, str]], None]
 
 
 def _starter(source: Source, opened: list[Node]) -> Start:
-    """What makes nodes of start tags; ``opened`` are the elements that are open.
+    """Makes nodes of start tags; ``opened`` are the elements that are open.
 
     It is called for every element: hence the variables of this function.
     """
     names: dict[str, tuple[str, str]] = {}
-    plain: set[str] = set()  # attributes that are of no namespace
+    plain: set[str] = set()  # attributes without a namespace
     most, widest, deepest = LIMITS.elements, LIMITS.attributes, LIMITS.depth + 1
     count = 0
 

@@ -27,10 +27,10 @@ from prima.errors.diagnoses.structure import (
 )
 from prima.errors.diagnoses.values import BAD_VALUE
 from prima.language.values import KINDS, XML_SPACE, BadValue, read_value
-from prima.markup.slips import TEXTS, meant_value, misplaced_remedy, text_remedy
+from prima.markup.hints import TEXTS, meant_value, misplaced_remedy, text_remedy
 from prima.markup.spans import added, attribute_span, name_spans, renamed, value_span
 from prima.markup.tree import Node
-from prima.markup.vocabulary import Attribute, Element, Instead, Vocabulary
+from prima.markup.vocabulary import Attribute, Instead, Vocabulary
 
 EVERYWHERE = frozenset({"xml:lang", "xsi:schemaLocation", "xsi:noNamespaceSchemaLocation"})
 
@@ -64,31 +64,41 @@ def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
     """Find the vocabulary of a document by its root element's namespace.
 
     Raises:
-        DocumentError: it is none of them.
+        DocumentError: it belongs to no vocabulary of these.
     """
-    expected = [(v.elements[v.root].tag, v.namespace) for v in vocabularies]
-    for vocabulary, (tag, namespace) in zip(vocabularies, expected, strict=True):
-        if root.namespace == namespace:
-            if root.tag == tag:
+    for vocabulary in vocabularies:
+        if root.namespace == vocabulary.namespace:
+            if root.tag == vocabulary.root_tag:
                 return vocabulary
-            raise DocumentError([OTHER_ROOT.at(root.place, tag=root.tag, root=tag)])
+            problem = OTHER_ROOT.at(root.place, tag=root.tag, root=vocabulary.root_tag)
+            raise DocumentError([problem])
+    raise DocumentError([_other_document(root, vocabularies) or _no_document(root, vocabularies)])
+
+
+def _other_document(root: Node, vocabularies: Sequence[Vocabulary]) -> Problem | None:
+    """The problem of a document of another kind."""
     own = kind_of(root)
-    if own:
-        wanted = one_of(DOCUMENTS.get(name, VOICEXML) for _, name in expected)
-        runs = own in ("an application", VOICEXML) and wanted == "a scenario"
-        hint = Hint(_as_application(root) if runs else "")
-        raise DocumentError([OTHER_DOCUMENT.at(root.place, hint, own=own, wanted=wanted)])
+    if not own:
+        return None
+    wanted = one_of(DOCUMENTS.get(one.namespace, VOICEXML) for one in vocabularies)
+    runs = own in ("an application", VOICEXML) and wanted == "a scenario"
+    hint = Hint(_as_application(root) if runs else "")
+    return OTHER_DOCUMENT.at(root.place, hint, own=own, wanted=wanted)
+
+
+def _no_document(root: Node, vocabularies: Sequence[Vocabulary]) -> Problem:
+    """The problem of a root element whose namespace is unknown or missing."""
     found = f'namespace "{root.namespace}"' if root.namespace else "no namespace"
-    expected = [entry for entry in expected if entry[0] == root.tag] or expected
-    wanted = " or ".join(f'<{tag} xmlns="{namespace}">' for tag, namespace in expected)
-    spaces = [namespace for _, namespace in expected]
+    likely = [one for one in vocabularies if one.root_tag == root.tag] or vocabularies
+    wanted = " or ".join(f'<{one.root_tag} xmlns="{one.namespace}">' for one in likely)
+    spaces = [one.namespace for one in likely]
     near = suggestion(root.namespace, spaces, *value_span(root, "xmlns"))
     place = root.source.place(root.index, "xmlns", value=True)
-    raise DocumentError([ROOT_HAS.at(place, near, tag=root.tag, found=found, wanted=wanted)])
+    return ROOT_HAS.at(place, near, tag=root.tag, found=found, wanted=wanted)
 
 
 def kind_of(root: Node) -> str:
-    """What document an element is the root of, such as ``a world``; nothing where it is none."""
+    """The kind of document that an element is the root of, such as ``a world``; or nothing."""
     if root.tag == "vxml" and root.namespace in ("", "http://www.w3.org/2001/vxml"):
         return VOICEXML
     return DOCUMENTS.get(root.namespace, "")
@@ -105,7 +115,7 @@ def _as_application(root: Node) -> str:
 
 
 def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem]) -> None:
-    """Give every node its table key, and add what is wrong by the table of elements."""
+    """Give every node its table key, and add the problems that the table of elements shows."""
     namespace = vocabulary.namespace
     known: dict[str, _Rules] = {}
     read: dict[str, set[str]] = {}
@@ -134,16 +144,17 @@ def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem]) -> N
 
 
 class _Rules:
-    """What the table says of elements of one key, at hand for all of them in a document."""
+    """The table's rules for elements of one key, kept for all of them in a document."""
 
     def __init__(self, vocabulary: Vocabulary, key: str, read: dict[str, set[str]]) -> None:
         self.element = vocabulary.elements[key]
         self.known = vocabulary.attributes[key]
         self.children = vocabulary.children(key)
-        self.required = [item.name for item in self.element.attributes if item.required]
+        self.required = [item for item in self.element.attributes if item.required]
         self.values: dict[str, tuple[set[str], Callable[[str], object] | None]] = {}
-        """Values that are right, by attributes, and what reads others if there may be others;
-        those that have been read are kept by kinds in ``read``: most are written again and again."""
+        """Correct values by attributes, and what reads others, if others are allowed.
+
+        Values that have been read are kept by kinds in ``read``: most occur many times."""
         for name, (item, is_expression) in self.known.items():
             kind = "expression" if is_expression else item.kind
             if item.choices and not is_expression:
@@ -166,10 +177,15 @@ class _Rules:
                 except ValueError:
                     return False
                 right.add(text)
-        for name in self.required:
-            if name not in attributes and f"{name}-expr" not in attributes:
-                return False
-        return True
+        return not self.lacking(attributes)
+
+    def lacking(self, attributes: dict[str, str]) -> list[Attribute]:
+        """The attributes that an element with these still needs."""
+        return [
+            item
+            for item in self.required
+            if item.name not in attributes and f"{item.name}-expr" not in attributes
+        ]
 
 
 def _misplaced(child: Node, parent: Node, vocabulary: Vocabulary) -> Problem:
@@ -218,28 +234,21 @@ def _text_place(node: Node) -> Place:
 
 
 def _check_attributes(node: Node, rules: _Rules, root: bool, problems: list[Problem]) -> None:
-    element, known = rules.element, rules.known
     unknown: list[str] = []
     for name, text in node.attributes.items():
         if root and name in EVERYWHERE:
-            if name == "xml:lang" and text.strip(XML_SPACE):
-                problems += _language_problem(node, text)
-            continue
-        entry = known.get(name)
-        if entry is None:
+            language = name == "xml:lang" and text.strip(XML_SPACE)
+            bad = _not_of_kind("language", text) if language else None
+        elif name in rules.known:
+            bad = _value_problem(*rules.known[name], text)
+        else:
             unknown.append(name)
             continue
-        bad = _value_problem(*entry, text)
         if bad is not None:
             problems.append(_bad_value(node, name, bad))
-    missing: list[Attribute] = []
-    for item in element.attributes:
-        if not item.required or item.name in node.attributes:
-            continue
-        if f"{item.name}-expr" not in node.attributes:
-            missing.append(item)
+    missing = rules.lacking(node.attributes)
     for name in unknown:
-        problems.append(_unknown_attribute(node, name, element, list(known), missing))
+        problems.append(_unknown_attribute(node, name, rules, missing))
     for item in missing:
         value = item.choices[0] if len(item.choices) == 1 else "..."
         hint = added(f'Write {item.name}="{value}".', node, item)
@@ -254,61 +263,65 @@ def _bad_value(node: Node, name: str, bad: BadValue) -> Problem:
     return NOT_OF_ITS_KIND.at(place, hint, name=name, value=value, wrong=bad.wrong)
 
 
-def _language_problem(node: Node, text: str) -> list[Problem]:
-    try:
-        read_value("language", text)
-    except BadValue as error:
-        return [_bad_value(node, "xml:lang", error)]
-    return []
-
-
-def _unknown_attribute(
-    node: Node, name: str, element: Element, known: list[str], missing: list[Attribute]
-) -> Problem:
-    """An attribute that is not known, with what is missing and meant by it."""
-    hint = _attribute_instead(node, name, element, known, missing)
+def _unknown_attribute(node: Node, name: str, rules: _Rules, missing: list[Attribute]) -> Problem:
+    """The problem of an unknown attribute; a missing one that it means is no longer missing."""
+    known = list(rules.known)
+    hint = _other_attribute(node, name, rules) or _missing_attribute(node, name, known, missing)
+    if not hint and rules.element.text and name in TEXTS:
+        hint = Hint(f"Write the text inside: <{node.tag}>...</{node.tag}>.")
+    if not hint:
+        hint = suggestion(name, known, attribute_span(node, name))
     if not hint:
         hint = Hint(f"It may have {one_of(known)}." if known else "It has no attributes.")
     place = node.attribute_place(name, value=False)
     return NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
 
 
-def _attribute_instead(
-    node: Node, name: str, element: Element, known: list[str], missing: list[Attribute]
-) -> Hint:
-    """What to write instead of an unknown attribute; what it means is no longer missing."""
-    span = attribute_span(node, name)
+def _other_attribute(node: Node, name: str, rules: _Rules) -> Hint:
+    """What to write instead of an attribute as other languages have it."""
     if name == "xml:lang":
         return Hint("Only the root element may have it.")
     if name == "lang" and node.index == 0:
-        return replaced("Write xml:lang.", "xml:lang", span)
-    if name.endswith("expr") and (right := f"{name[:-4]}-expr") in known:
-        missing[:] = [item for item in missing if item.name != name[:-4]]
-        return replaced(f"Write {right}.", right, span)
-    if name == "next" and "goto" in element.children:
+        return replaced("Write xml:lang.", "xml:lang", attribute_span(node, name))
+    if name == "next" and "goto" in rules.element.children:
         return Hint(f'Put a goto inside: <goto next="{node.get(name)}"/>.')
-    if near := nearest_word(name, [item.name for item in missing]):
-        missing[:] = [item for item in missing if item.name != near]
-        return meant(near, span)
-    if missing:
-        item = missing.pop(0)
-        return Hint(f'Write {item.name}="...": {item.doc}.')
-    if element.text and name in TEXTS:
-        return Hint(f"Write the text inside: <{node.tag}>...</{node.tag}>.")
-    return suggestion(name, known, span)
+    return Hint()
+
+
+def _missing_attribute(node: Node, name: str, known: list[str], missing: list[Attribute]) -> Hint:
+    """The missing attribute that an unknown one means; it is taken from those that are missing."""
+    names = [item.name for item in missing]
+    right = f"{name[:-4]}-expr"
+    if name.endswith("expr") and right in known:
+        meant_name, hint = name[:-4], replaced(f"Write {right}.", right, attribute_span(node, name))
+    elif near := nearest_word(name, names):
+        meant_name, hint = near, meant(near, attribute_span(node, name))
+    elif missing:
+        meant_name, hint = names[0], Hint(f'Write {names[0]}="...": {missing[0].doc}.')
+    else:
+        return Hint()
+    missing[:] = [item for item in missing if item.name != meant_name]
+    return hint
 
 
 def _value_problem(item: Attribute, is_expression: bool, text: str) -> BadValue | None:
-    if item.choices and not is_expression:
+    if is_expression:
+        return _not_of_kind("expression", text)
+    if item.choices:
         if text in item.choices:
             return None
         near = nearest_word(text, item.choices)
         remedy = f'Did you mean "{near}"?' if near else f"Write {one_of(item.choices)}."
         only = item.choices[0] if len(item.choices) == 1 else ""
         return BadValue("is not allowed here.", remedy, right=near or only)
+    bad = _not_of_kind(item.kind, text)
+    right = meant_value(item.kind, text) if bad else ""
+    return BadValue(bad.wrong, f'Write "{right}".', right=right) if bad and right else bad
+
+
+def _not_of_kind(kind: str, text: str) -> BadValue | None:
     try:
-        read_value("expression" if is_expression else item.kind, text)
+        read_value(kind, text)
     except BadValue as error:
-        right = "" if is_expression else meant_value(item.kind, text)
-        return BadValue(error.wrong, f'Write "{right}".', right=right) if right else error
+        return error
     return None

@@ -1,4 +1,4 @@
-"""Changes to a document as it is written: values of attributes and texts of elements."""
+"""Edits of a document's text: values of attributes and texts of elements."""
 
 from __future__ import annotations
 

@@ -1,15 +1,15 @@
-"""How much of a stranger's document is read; whoever runs the program may raise it."""
+"""Limits on documents, which users may raise, and the errors of documents beyond them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from prima.errors import MOST_TOLD
+from prima.errors import MOST_TOLD, DocumentError, Hint, Place, Problem
 
 
 @dataclass(slots=True)
 class Limits:
-    """Limits on one document. Beyond one of them a document is refused."""
+    """Limits on one document. A document beyond one of them is refused."""
 
     bytes: int = 2_000_000
     elements: int = 200_000
@@ -22,6 +22,24 @@ class Limits:
 
 
 HIGHEST = Limits(1_000_000_000, 20_000_000, 10_000, 200, 20_000_000)
-"""As far as the limits can be raised: beyond, the machine itself gives in."""
+"""How far the limits can be raised: beyond, the machine itself gives in."""
 LIMITS = Limits()
 """The limits of this process."""
+
+
+def refusal(place: Place, code: str, message: str, remedy: str | Hint = "") -> DocumentError:
+    """The error for a document that is not read."""
+    return DocumentError([Problem(place, "error", code, message, remedy)])
+
+
+def too_large(file: str, size: int) -> DocumentError:
+    """The error for a file of too many bytes, which is not read."""
+    message = f"The file has {size:,} bytes; at most {LIMITS.bytes:,} are read."
+    remedy = f"Divide it, or raise the limit: --limit bytes={size}."
+    return refusal(Place(file), "too-large", message, remedy)
+
+
+def too_deep(place: Place) -> DocumentError:
+    """The error for elements that are nested too deep."""
+    message = f"Elements are nested more than {LIMITS.depth} deep."
+    return refusal(place, "too-deep", message, "Divide the document into smaller parts.")

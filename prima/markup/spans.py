@@ -1,4 +1,4 @@
-"""Pieces of a document's text that fixes change: values, names, places for what is missing."""
+"""Pieces of a document's text that fixes change: values, names, and where missing ones go."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def _likely(item: Attribute) -> str:
 
 
 def with_namespace(text: str, node: Node, namespace: str) -> Hint:
-    """A sentence, with a fix that puts an element and what is in it into a namespace."""
+    """A sentence, with a fix that puts an element and its content into a namespace."""
     edit = Edit(behind_name(node), f' xmlns="{namespace}"')
     return Hint(text, (Fix("Add the namespace", (edit,)),))
 

@@ -1,8 +1,9 @@
-"""A document as a tree of plain nodes that know where they stand."""
+"""A document as a tree of plain nodes that know their places."""
 
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -22,14 +23,14 @@ PIECE = re.compile(
 """A piece of text as written: it gives no character, several as they are, or one."""
 
 AS_IT_IS = re.compile(r"[^<&]+\Z")
-"""Text in which each character is written as it is."""
+"""Text without references and markup."""
 NEAR = 100
-"""How many characters of a text are looked through for one of them, as often as somebody asks."""
+"""Characters of a text up to which one of them is looked for anew each time."""
 
 
 @dataclass(slots=True)
 class Source:
-    """The text of a well-formed document; places are found only when somebody asks for one."""
+    """The text of a well-formed document; places are computed on demand."""
 
     file: str
     text: str
@@ -41,7 +42,7 @@ class Source:
     """The element whose attributes were looked for last: where each begins, and its value."""
     _closes: dict[int, int] | None = None
     _written: _Written | None = None
-    """The text or value in which a character was looked for last: often there are more to tell of."""
+    """The text or value in which a character was looked for last: problems often come in groups."""
 
     def tag(self, index: int) -> int:
         """Where the start tag of element number ``index`` begins in the text."""
@@ -54,29 +55,31 @@ class Source:
     def closes(self) -> dict[int, int]:
         """Where the name in each element's end tag begins; elements without one are not there."""
         if self._closes is None:
-            self._closes = {}
-            opened: list[int] = []
-            count = 0
-            for match in MARKUP.finditer(self.text):
-                if match["start"]:
-                    if not match[0].endswith("/>"):
-                        opened.append(count)
-                    count += 1
-                elif match[0].startswith("</") and opened:
-                    self._closes[opened.pop()] = match.start() + 2
+            self._closes = dict(self._end_tags())
         return self._closes
 
+    def _end_tags(self) -> Iterator[tuple[int, int]]:
+        opened: list[int] = []
+        count = 0
+        for match in MARKUP.finditer(self.text):
+            if match["start"]:
+                if not match[0].endswith("/>"):
+                    opened.append(count)
+                count += 1
+            elif match[0].startswith("</") and opened:
+                yield opened.pop(), match.start() + 2
+
     def span(self, start: int, end: int) -> Span:
-        """The places of two characters of the text, the second one behind what is meant."""
+        """A piece of the text between two of its characters, the second one excluded."""
         first, last = self.at(start), self.at(end)
         return Span(first.line, first.column, last.line, last.column)
 
     def place(self, index: int, attribute: str = "", value: bool = False) -> Place:
-        """Where element number ``index`` stands, or its attribute, or the attribute's value."""
+        """The place of element number ``index``, of its attribute, or of the attribute's value."""
         return self.at(self.offset(index, attribute, value))
 
     def offset(self, index: int, attribute: str = "", value: bool = False) -> int:
-        """Where in the text that is; where the element begins, if it has no such attribute."""
+        """The same as an offset in the text; the element's own if it has no such attribute."""
         start = self.tag(index)
         if not attribute:
             return start
@@ -109,14 +112,12 @@ class Source:
         """The place of a character of the text."""
         if self.lines is None:
             self.lines = [0, *(match.end() for match in re.finditer("\n", self.text))]
-        from bisect import bisect_right  # most documents have nothing to be told of
-
         line = bisect_right(self.lines, offset)
         return Place(self.file, line, offset - self.lines[line - 1] + 1)
 
 
 class _Written:
-    """A text as it is written, read as far as somebody asks for its characters."""
+    """A text as it is written, read as far as its characters are asked for."""
 
     def __init__(self, of: tuple[int, str], text: str, offset: int) -> None:
         self.of = of
@@ -124,15 +125,13 @@ class _Written:
         self._given = [0]
         """How many characters there are before each piece."""
         self._offsets = [offset]
-        """Where each piece's first character stands; the last ones are of what is not read yet."""
+        """The offset of each piece's first character; the last one is that of the unread text."""
         self._end = offset
 
     def offset(self, characters: int) -> int:
-        """Where a character stands in the document's text, or what follows the last one."""
+        """The offset of a character in the document's text, or of what follows the last one."""
         while self._given[-1] <= characters and (piece := PIECE.match(self._text, self._end)):
             self._take(piece)
-        from bisect import bisect_right  # most documents have nothing to be told of
-
         at = bisect_right(self._given, characters) - 1
         if at == len(self._given) - 1:
             return self._end
@@ -203,7 +202,7 @@ class Node:
         return self.source.place(self.index)
 
     def attribute_place(self, name: str, value: bool = True) -> Place:
-        """Where an attribute stands, or its value does."""
+        """The place of an attribute's value, or of its name."""
         return self.source.place(self.index, name, value)
 
     def place_of(self, attribute: str) -> Place:
@@ -224,7 +223,7 @@ class Node:
         return self.source.inside(self.index, attribute, min(characters, len(text)))
 
     def text_place(self, words: str) -> Place:
-        """Where the first of some words stands in the element, as far as that can be seen."""
+        """The place of the first of some words in the element, or else of the element."""
         first = next(iter(words.split()), "")
         written = re.compile(rf"(?<=[\s>]){re.escape(first)}(?=[\s<])")
         begin = MARKUP.match(self.source.text, self.source.tag(self.index))

@@ -7,7 +7,7 @@ from urllib.parse import quote, urljoin, urlsplit
 
 
 def legal(uri: str) -> str:
-    """A URI as it is; one that nothing can be found under, such as ``http://[``, made harmless."""
+    """A URI; an illegal one, such as ``http://[``, is made harmless."""
     try:
         urlsplit(uri)
     except ValueError:

@@ -1,8 +1,7 @@
 """Tables of elements: what a kind of document may hold, said once.
 
-A :class:`Vocabulary` generates the XML Schema that editors use
-(:mod:`prima.markup.schema`), drives validation (:mod:`prima.markup.check`), and
-fills the tables of the language reference; a test holds the three together.
+A :class:`Vocabulary` drives validation (:mod:`prima.markup.check`). Schemas for editors and
+the tables of the language reference are made from it; a test holds them together.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ class Attribute:
     """An attribute of an element.
 
     ``choices`` lists the allowed values where there are only few; ``dynamic``
-    says that ``NAME-expr`` may stand instead, with an expression.
+    says that ``NAME-expr`` may be written instead, with an expression.
     """
 
     name: str
@@ -46,7 +45,7 @@ class Instead(NamedTuple):
 class Element:
     """An element: its attributes, the children it may have, and whether it holds text.
 
-    ``key`` tells apart elements of one name that differ by where they stand;
+    ``key`` distinguishes elements of one name in different parents;
     ``children`` are keys.
     """
 
@@ -66,10 +65,10 @@ class Element:
 
 @dataclass(frozen=True, slots=True)
 class Guests:
-    """Elements of a foreign namespace that may stand among a vocabulary's own.
+    """Elements of a foreign namespace that are allowed among a vocabulary's own.
 
-    They hold each other and whatever else; of the vocabulary, if anything in particular, what
-    their children name.
+    They hold each other and anything else; of the vocabulary the elements that their
+    ``children`` name, if they name any.
     """
 
     namespace: str
@@ -95,10 +94,10 @@ class Vocabulary:
         self.root = root
         self.elements = {element.key: element for element in elements}
         self.hints = dict(hints or {})
-        """What to write instead of an element that authors expect but this language lacks."""
+        """What to write instead of elements that authors expect but this language lacks."""
         self.free = frozenset(free)
         """Keys of elements that may hold anything; where there are any, elements of foreign
-        namespaces may stand among others'."""
+        namespaces are allowed elsewhere, too."""
         self.guests = guests
         self._children = {
             key: {self.elements[child].tag: child for child in element.children}
@@ -109,8 +108,13 @@ class Vocabulary:
         """What :func:`attributes_by_name` gives, by key."""
 
     @property
+    def root_tag(self) -> str:
+        """The name of the root element as written in documents."""
+        return self.elements[self.root].tag
+
+    @property
     def open(self) -> bool:
-        """Whether elements of foreign namespaces may stand in elements that hold others."""
+        """Whether elements of foreign namespaces are allowed in elements that hold others."""
         return bool(self.free)
 
     def child(self, key: str, tag: str) -> str | None:
@@ -122,7 +126,7 @@ class Vocabulary:
         return self._children[key]
 
     def parents(self, tag: str) -> list[str]:
-        """The tags of the elements in which ``tag`` may stand."""
+        """The tags of the elements that may hold ``tag``."""
         return sorted(
             {self.elements[key].tag for key, tags in self._children.items() if tag in tags}
         )

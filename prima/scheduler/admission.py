@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from prima.errors import did_you_mean
-from prima.language.commands import TABLE_4_2, CommandType, check_arguments, too_long
+from prima.language.arguments import check_arguments
+from prima.language.commands import TABLE_4_2, CommandType, too_long
 from prima.messages import NO_DEVICES, Command, Group, OpenUnit, Request, Step
 from prima.scheduler.behavior import GONE, Application, Behavior, Inside, Run, Stream
 

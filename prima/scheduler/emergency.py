@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.scheduler.behavior import GONE, RUNNING, Behavior
+from prima.scheduler.behavior import GONE, RUNNING, Behavior, Inside
 from prima.scheduler.endings import delete, remove, settle, tell_cancelled
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.starvation import forget_waits
@@ -50,20 +50,24 @@ def _give_up(mediation: Mediation) -> None:
                 tell_cancelled(mediation, ab)
 
 
+def _halt_inner(mediation: Mediation, inside: Inside, given_up: bool) -> None:
+    """Stop what runs in a unit, which does not settle as done meanwhile."""
+    was_open, inside.open = inside.open, True
+    for inner in list(inside.members.values()):
+        if given_up:
+            delete(mediation, inner, "E5")
+        elif inner.state is RUNNING:
+            halt(mediation, inner)
+    inside.open = was_open
+
+
 def halt(mediation: Mediation, ab: Behavior) -> None:
     """Stop a running AB, which waits from here on to start again, unless nobody wants it."""
     inside = ab.inside
-    given_up = (
-        ab.silent or ab.last_loop or (inside is not None and inside.spans and not inside.open)
-    )
+    left = inside is not None and inside.spans and not inside.open
+    given_up = ab.silent or ab.last_loop or left
     if inside is not None:
-        was_open, inside.open = inside.open, True  # it does not settle as done meanwhile
-        for inner in list(inside.members.values()):
-            if given_up:
-                delete(mediation, inner, "E5")
-            elif inner.state is RUNNING:
-                halt(mediation, inner)
-        inside.open = was_open
+        _halt_inner(mediation, inside, given_up)
         if not (inside.members or inside.open or given_up):
             settle(mediation, ab)  # all that was left of it had been given up
             return

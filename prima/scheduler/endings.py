@@ -38,24 +38,28 @@ def question(memory: Memory) -> Behavior | None:
 def u2(mediation: Mediation, ab: Behavior, goal: bool, data: Data, inbound: bool) -> None:
     """U1, U2: an AB ends by itself, or one loop of a feedback Command does."""
     ending = goal or ab.last_loop or not ab.feedback
-    outcome = "done" if ending else "again"
-    if data and ending and "outcome" in data:
-        outcome = str(data["outcome"])
+    outcome = str(data.get("outcome", "done")) if ending else "again"
     mediation.recorder.end(ab, outcome, goal, data, inbound)
     if not goal:
         note_rolling(mediation, ab)
     if mediation.has("x1"):
         _note_effects(mediation, ab, data, ending)
-    if not inbound and ab.type is not None and "speech-recognition" in ab.type.devices:
-        ab.stream.answered = mediation.now
-        if outcome == "filled" and ab.unit is None:
-            mediation.memory.answered = ab.stream
+    if not inbound:
+        _note_answer(mediation, ab, outcome)
     if ending:
         _finish(mediation, ab, data)
     else:
         mediation.memory.release(ab)
         ab.freed = mediation.now
         mediation.memory.wait(ab)
+
+
+def _note_answer(mediation: Mediation, ab: Behavior, outcome: str) -> None:
+    """E6, X7: what the user has said ends a question."""
+    if ab.type is not None and "speech-recognition" in ab.type.devices:
+        ab.stream.answered = mediation.now
+        if outcome == "filled" and ab.unit is None:
+            mediation.memory.answered = ab.stream
 
 
 def note_rolling(mediation: Mediation, ab: Behavior) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from prima.messages import Notice
+from prima.messages import Command, Notice
 from prima.scheduler.behavior import RUNNING, Behavior
 from prima.scheduler.endings import (
     close_unit,
@@ -142,13 +142,14 @@ def allowance(ab: Behavior) -> int:
     """How long an AB may run (ms): the times among its arguments and :data:`HANG_MS`."""
     row, command = ab.type, ab.command
     assert row is not None and command is not None
-    letters = MS_A_LETTER * len(command.text or "")
-    stated = 0
-    for name, value in command.args.items():
-        argument = row.arguments.get(name)
-        if argument is not None and argument.kind == "duration":
-            stated += int(value)
+    durations = {name for name, one in row.arguments.items() if one.kind == "duration"}
+    stated = sum(int(value) for name, value in command.args.items() if name in durations)
+    return HANG_MS + stated + _saying_ms(command)
+
+
+def _saying_ms(command: Command) -> int:
+    """How long a text may take to say (ms): by its letters at its slowest rate, and its cues."""
     times = [cue.value for cue in command.cues if cue.kind != "rate"]
-    stated_ms = sum(value for value in times if isinstance(value, int | float))
     rates = [float(cue.value or 1) for cue in command.cues if cue.kind == "rate"]
-    return HANG_MS + stated + round(stated_ms + letters / min([1.0, *rates]))
+    letters = MS_A_LETTER * len(command.text or "") / min([1.0, *rates])
+    return round(sum(value for value in times if isinstance(value, int | float)) + letters)

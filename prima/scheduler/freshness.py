@@ -5,8 +5,10 @@ A reaction is a root that has not started, with all of its tree that waits for i
 
 from __future__ import annotations
 
+from typing import Literal
+
 from prima.messages import Command, Notice
-from prima.scheduler.behavior import LINKED, WAITING, Behavior
+from prima.scheduler.behavior import LINKED, WAITING, Behavior, Run
 from prima.scheduler.endings import delete
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.selection import able
@@ -73,15 +75,18 @@ def _tell(mediation: Mediation, lost: list[Behavior]) -> None:
         assert ab.run is not None
         ab.run.left -= 1
     for ab in told:
-        run = ab.run
-        assert run is not None
-        command = ab.command or Command("iu", hook=[])
-        whole = run.left == 0 and not run.begun
-        event = f"expired.{command.type}"
-        notices = [Notice("cancelled" if whole else "expired", run.number, command, event=event)]
-        if run.left == 0 and run.begun and ab is told[-1]:
-            notices.append(Notice("done", run.number, command))
-        mediation.tell(ab.app, None, *notices)
+        assert ab.run is not None
+        mediation.tell(ab.app, None, *_notices(ab, ab.run, last=ab is told[-1]))
+
+
+def _notices(ab: Behavior, run: Run, last: bool) -> list[Notice]:
+    """That an AB has expired; after the last one also that what it was asked for with is done."""
+    command = ab.command or Command("iu", hook=[])
+    fate: Literal["cancelled", "expired"] = "expired" if run.left or run.begun else "cancelled"
+    notices = [Notice(fate, run.number, command, event=f"expired.{command.type}")]
+    if last and run.left == 0 and run.begun:
+        notices.append(Notice("done", run.number, command))
+    return notices
 
 
 def offered(mediation: Mediation) -> Behavior | None:

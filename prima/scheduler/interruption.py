@@ -64,16 +64,20 @@ def _remember_parts(mediation: Mediation, unit: Behavior) -> None:
     if unit.group is None:
         return
     left = _parts(unit)
-    pending = {id(part.command) for part in left if part.command is not None}
-    pending |= {
-        id(one) for part in left if part.group and not part.inner for one in commands_of(part.group)
-    }
+    pending = {id(one) for part in left for one in _pending(part)}
     every = commands_of(unit.group)
     finished = [command for command in every if id(command) not in pending]
     running = [part for part in left if part.state is RUNNING and part.command is not None]
     told = min(running, key=_speaks_first, default=None)
     if told is not None:
         mediation.halted_units[told.name] = HaltedUnit(unit, finished, len(every))
+
+
+def _pending(part: Behavior) -> list[Command]:
+    """The Commands of a part of a unit that are not done; of one that has begun, its parts say."""
+    if part.command is not None:
+        return [part.command]
+    return commands_of(part.group) if part.group is not None and not part.inner else []
 
 
 def _speaks_first(part: Behavior) -> tuple[bool, int]:
@@ -113,10 +117,14 @@ def interrupted(mediation: Mediation, behavior: str, data: Data) -> None:
         inbound=True,
     )
     if halted is not None:
-        ab, data = halted.unit, whole(data, halted)
+        _tell(mediation, halted.unit, whole(data, halted))
     elif ab is not None:
         ab.since = {key: data[key] for key in ("mark", "passed") if key in data} or None
-    if ab is None or ab.run is None or ab.silent or ab.app.gone:
+        _tell(mediation, ab, data)
+
+
+def _tell(mediation: Mediation, ab: Behavior, data: Data) -> None:
+    if ab.run is None or ab.silent or ab.app.gone:
         return
     command = ab.command or Command("iu", hook=[])
     event = f"interrupted.{command.type}"

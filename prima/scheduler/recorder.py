@@ -80,13 +80,17 @@ class Recorder:
 
     def request(self, ab: Behavior, before: str | None = None) -> None:
         """Record a request with all that the rules ask of an AB; ``before`` what it was put in."""
-        command = ab.command
+        command, of = ab.command, ab.command or ab.group
+        fields: Record = {}
+        if command is not None:
+            fields["args"], fields["extra"] = command.args or None, command.extra or None
+            fields["cues"] = shown_cues(command.cues) if command.cues else None
+            fields["order"] = "now" if command.now else None
+        fields["source"] = line_of(of.source if of is not None else "")
+        fields |= self._asked_by_extensions(ab)
         self.behavior(
             "request",
             ab,
-            args=(command.args or None) if command else None,
-            extra=(command.extra or None) if command else None,
-            cues=shown_cues(command.cues) if command and command.cues else None,
             parent=ab.parent,
             parents=sorted(ab.waits_for) if len(ab.waits_for) > 1 else None,
             devices=[*ab.in_order],
@@ -96,19 +100,29 @@ class Recorder:
             feedback=ab.feedback or None,
             leaves=ab.leaves or None,
             engages=ab.engages or None,
-            order="now" if command and command.now else None,
             state=ab.document_state,
             inserted=ab.inserted or None,
             before=before,
-            restartable=ab.restartable or None if "x2" in self.extensions else None,
-            hold=ab.stream.hold / 1000 if ab.stream.hold and "x3" in self.extensions else None,
-            connect=ab.connect or None if "x4" in self.extensions else None,
-            spans=ab.spans or None if "x7" in self.extensions else None,
-            fresh=(ab.stale - self.now) / 1000 if ab.stale is not None else None,
-            words=ab.stream.words.text if ab.stream.words else None,
-            motion=ab.motion or None if "x5" in self.extensions else None,
-            source=line_of(command.source if command else ab.group.source if ab.group else ""),
+            **fields,
         )
+
+    def _asked_by_extensions(self, ab: Behavior) -> Record:
+        """What the extensions that are on ask of an AB (X2 to X5, X7 to X9)."""
+        marks: dict[str, tuple[str, Json]] = {
+            "x2": ("restartable", ab.restartable or None),
+            "x3": ("hold", ab.stream.hold / 1000 if ab.stream.hold else None),
+            "x4": ("connect", ab.connect or None),
+            "x5": ("motion", ab.motion or None),
+            "x7": ("spans", ab.spans or None),
+        }
+        found: Record = {
+            name: value for on, (name, value) in marks.items() if on in self.extensions
+        }
+        if ab.stale is not None:
+            found["fresh"] = (ab.stale - self.now) / 1000
+        if ab.stream.words is not None:
+            found["words"] = ab.stream.words.text
+        return found
 
     def stream(self, phase: str, stream: Stream, rule: str, **fields: Json) -> None:
         """Record what becomes of a stream."""

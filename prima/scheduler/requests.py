@@ -57,14 +57,19 @@ def u3(mediation: Mediation, app: Application, asked: Request) -> None:
         if not ab.waits_for:
             _root(mediation, ab, parent, reaction)
             ab.connect = asked.connect and unit is None
-            if asked.fresh is not None and ab.reaction is not None and mediation.has("x8"):
-                ab.stale = mediation.now + asked.fresh
+            x8(mediation, ab, asked)
         if unit is not None and unit.inside is not None:
             unit.inside.members[ab.name] = unit.inside.latest = ab
         mediation.memory.add(ab)
         mediation.recorder.request(ab)
     if unit is None:
         app.latest = made[-1]
+
+
+def x8(mediation: Mediation, ab: Behavior, asked: Request) -> None:
+    """X8: until when a reaction is worth starting."""
+    if asked.fresh is not None and ab.reaction is not None and mediation.has("x8"):
+        ab.stale = mediation.now + asked.fresh
 
 
 def e3(mediation: Mediation, app: Application, asked: Request, refused: Refused) -> None:

@@ -66,23 +66,23 @@ class Effects:
         """The Commands that bring back what a Command of ``own`` effects relies on."""
         if "position" in own or "follow" in own:
             return []
-        made: list[Command] = []
-        pose = body.pose
-        away = (
-            self.position is not None
-            and pose is not None
-            and math.dist(self.position, pose[:2]) > FAR
-        )
-        turned = not {"direction", "human"} & own
-        if away and self.position is not None:
-            made.append(_go(self.position, self.heading if turned else None))
-        elif turned and self._looks_elsewhere(pose):
-            made.append(Command("set-direction", {"heading": round(self.heading or 0.0, 1)}))
-        if turned and self.human and (away or self._turned_since(body)):
+        turns = not {"direction", "human"} & own
+        made = self._missing_place(turns, body.pose)
+        away = bool(made) and made[0].type != "set-direction"
+        if turns and self.human and (away or self._turned_since(body)):
             made.append(Command("face-human"))
         if "head" not in own and self.head is not None and _apart(self.head, body.head):
             made.append(Command("move-head", {"pan": self.head[0], "tilt": self.head[1]}))
         return made
+
+    def _missing_place(self, turns: bool, pose: Pose | None) -> list[Command]:
+        """The way back where the robot is elsewhere, else the turn if it looks elsewhere."""
+        where = self.position
+        if where is not None and pose is not None and math.dist(where, pose[:2]) > FAR:
+            return [_go(where, self.heading if turns else None)]
+        if turns and self._looks_elsewhere(pose):
+            return [Command("set-direction", {"heading": round(self.heading or 0.0, 1)})]
+        return []
 
     def _looks_elsewhere(self, pose: Pose | None) -> bool:
         return (

@@ -1,4 +1,4 @@
-"""How much work one utterance may make for an application, and what time it is for its tags."""
+"""The work that one utterance may cause for an application, and the time that its tags see."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Budget:
     """What one utterance has taken, in all documents, analyses and grammars of an application."""
 
     now: int = 0
-    """The time that tags are told (ms since 1970, UTC)."""
+    """The time that tags see (ms since 1970, UTC)."""
     spent: float = 0.0
     """Seconds of the processor that tags have taken."""
     steps: int = MOST_MATCHING

@@ -1,4 +1,4 @@
-"""The texts that an expression may give, as far as the expression itself says so."""
+"""The texts that an expression may give, as far as it contains them."""
 
 from __future__ import annotations
 

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
-from prima.script.ecmascript import (
-    CONSTANTS,
-    UNDEFINED,
+from prima.script.ecmascript import UNDEFINED, Scopes, index_of, kind_of, number_text, truth
+from prima.script.globals import BUILT_IN, INHERITED, METHODS, RESERVED
+from prima.script.literals import WORDS, Beyond, literal, number, string
+from prima.script.operations import (
     Operation,
-    Scopes,
     add,
     at_least,
     at_most,
@@ -23,20 +22,15 @@ from prima.script.ecmascript import (
     equal,
     found,
     identical,
-    index_of,
-    kind_of,
     less,
     member,
     more,
     multiply,
-    number_text,
     numeric,
     remaining,
     sought,
     subtract,
-    truth,
 )
-from prima.script.globals import GLOBALS, RESERVED
 from prima.script.parse import Code, Node, inner, parse_bracketed
 
 Function = Callable[[Scopes], Any]
@@ -46,125 +40,11 @@ MOST_CODE = 1_000
 MOST_PIECES = 200
 """Pieces of code beyond which an expression is left to the engine."""
 DEEPEST = 100
-"""Operators, members and brackets that may stand inside each other."""
+"""Depth of operators, members and brackets."""
 AS_LONG = 200
 """Characters of kept code that is beyond all this which count for one piece more."""
 MOST_KEPT = 100_000
 """Pieces of code of all expressions that are kept compiled; each is some hundred bytes then."""
-VARIABLES = frozenset(
-    ["event", "_event", "_message", "session", "application", "document", "dialog", "sensor"]
-)
-"""Variables that the language itself declares."""
-WORDS = {"true": True, "false": False, "null": None}
-INHERITED = frozenset(
-    [
-        "constructor",
-        "toString",
-        "toLocaleString",
-        "valueOf",
-        "hasOwnProperty",
-        "isPrototypeOf",
-        "propertyIsEnumerable",
-        "__proto__",
-        "__defineGetter__",
-        "__defineSetter__",
-        "__lookupGetter__",
-        "__lookupSetter__",
-    ]
-)
-"""Names that every object has from its prototype, scopes included."""
-METHODS = frozenset(
-    [
-        "at",
-        "concat",
-        "copyWithin",
-        "fill",
-        "find",
-        "findIndex",
-        "findLast",
-        "findLastIndex",
-        "lastIndexOf",
-        "pop",
-        "push",
-        "reverse",
-        "shift",
-        "unshift",
-        "slice",
-        "sort",
-        "splice",
-        "includes",
-        "indexOf",
-        "join",
-        "keys",
-        "entries",
-        "values",
-        "forEach",
-        "filter",
-        "flat",
-        "flatMap",
-        "map",
-        "every",
-        "some",
-        "reduce",
-        "reduceRight",
-        "toReversed",
-        "toSorted",
-        "toSpliced",
-        "with",
-        "charCodeAt",
-        "charAt",
-        "codePointAt",
-        "endsWith",
-        "isWellFormed",
-        "toWellFormed",
-        "localeCompare",
-        "match",
-        "matchAll",
-        "normalize",
-        "padEnd",
-        "padStart",
-        "repeat",
-        "replace",
-        "replaceAll",
-        "search",
-        "split",
-        "startsWith",
-        "substr",
-        "substring",
-        "toLowerCase",
-        "toLocaleLowerCase",
-        "toUpperCase",
-        "toLocaleUpperCase",
-        "trim",
-        "trimEnd",
-        "trimStart",
-        "trimLeft",
-        "trimRight",
-        "anchor",
-        "big",
-        "blink",
-        "bold",
-        "fixed",
-        "fontcolor",
-        "fontsize",
-        "italics",
-        "link",
-        "small",
-        "strike",
-        "sub",
-        "sup",
-        "toExponential",
-        "toFixed",
-        "toPrecision",
-    ]
-)
-"""Members that texts, numbers and arrays have from theirs."""
-BUILT_IN = (GLOBALS - VARIABLES - CONSTANTS.keys()) | {
-    *("AsyncDisposableStack", "DisposableStack", "InternalError", "SuppressedError"),
-    *("atob", "btoa"),
-}
-"""Names of the engine's own."""
-ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v"}
 OPERATIONS: dict[str, Operation] = {
     "==": equal, "===": identical, "<": less, ">": more, "<=": at_most, ">=": at_least,
     "+": add, "-": subtract, "*": multiply, "/": divided, "%": remaining,
@@ -179,10 +59,10 @@ class Compiled:
 
     call: Function
     pieces: int
-    """Of about how many pieces of code it was made."""
+    """The number of pieces of code it was made of, about."""
 
 
-class _Kept:
+class _Cache:
     expressions: dict[str, Compiled | None] = {}  # noqa: RUF012
     """What has been compiled lately, by its code."""
     pieces = 0
@@ -193,15 +73,15 @@ def compiled(code: str) -> Compiled | None:
     """An expression as a function of the scopes it sees, or None if it needs an engine."""
     if len(code) > MOST_CODE:
         return None
-    if code not in _Kept.expressions:
+    if code not in _Cache.expressions:
         made = _compile(code)
-        _Kept.pieces += made.pieces if made else 1 + len(code) // AS_LONG
-        if _Kept.pieces > MOST_KEPT:
-            _Kept.pieces = 0
-            _Kept.expressions.clear()
-        _Kept.expressions[code] = made
+        _Cache.pieces += made.pieces if made else 1 + len(code) // AS_LONG
+        if _Cache.pieces > MOST_KEPT:
+            _Cache.pieces = 0
+            _Cache.expressions.clear()
+        _Cache.expressions[code] = made
         return made
-    return _Kept.expressions[code]
+    return _Cache.expressions[code]
 
 
 def _compile(code: str) -> Compiled | None:
@@ -214,12 +94,8 @@ def _compile(code: str) -> Compiled | None:
         return None
     try:
         return Compiled(_Builder(parsed).build(node, 0).call, pieces)
-    except _Beyond:
+    except Beyond:
         return None
-
-
-class _Beyond(Exception):
-    """The code is none of what is compiled here."""
 
 
 @dataclass(slots=True)
@@ -228,18 +104,14 @@ class _Piece:
 
     call: Function
     place: tuple[int, int] | None = None
-    """Line and column of the last operator or name in it: an error of a member of it is told there,
-    as the engine tells it."""
+    """Line and column of the last operator or name in it: an error of a member of it is reported there,
+    as the engine does."""
     optional: bool = False
-    """Whether it is a chain in which ``?.`` stands: its value may be :data:`CUT`."""
+    """Whether it is a chain with ``?.``: its value may be :data:`CUT`."""
 
 
 CUT = object()
 """The value of a chain that ``?.`` has ended."""
-
-
-def _constant(value: Any) -> Function:
-    return lambda _scopes: value
 
 
 class _Builder:
@@ -252,18 +124,18 @@ class _Builder:
         """The function of an expression.
 
         Raises:
-            _Beyond: it needs an engine.
+            Beyond: it needs an engine.
         """
         make = MAKERS.get(node.type)
         if make is None or depth > DEEPEST:
-            raise _Beyond
+            raise Beyond
         return make(self, node, depth + 1)
 
     def part(self, node: Node, name: str, depth: int) -> _Piece:
         """The function of an expression in an expression."""
         held = node.child_by_field_name(name)
         if held is None:
-            raise _Beyond
+            raise Beyond
         return self.build(held, depth)
 
     def place(self, node: Node) -> tuple[int, int]:
@@ -273,35 +145,12 @@ class _Builder:
 
     # Literals and names -----------------------------------------------------------------------
 
-    def number(self, node: Node, _depth: int) -> _Piece:
-        """A number, written in decimals."""
-        return _Piece(_constant(self._number(node)))
-
-    def _number(self, node: Node) -> float:
-        text = self.code.of(node)
-        whole = text.partition(".")[0]
-        if not set(text) <= NUMBER or (len(whole) > 1 and whole[0] == "0" and whole.isdigit()):
-            raise _Beyond
-        return float(text)
-
-    def text(self, node: Node, _depth: int) -> _Piece:
-        """A text in quotes."""
-        return _Piece(_constant(self._text(node)))
-
-    def _text(self, node: Node) -> str:
-        pieces = []
-        for part in node.named_children:
-            text = self.code.of(part)
-            if part.type == "escape_sequence":
-                if text[1] in UNCOMMON:
-                    raise _Beyond
-                text = ESCAPES.get(text[1:], text[1:])
-            pieces.append(text)
-        return "".join(pieces)
-
-    def word(self, node: Node, _depth: int) -> _Piece:
-        """``true``, ``false`` or ``null``."""
-        return _Piece(_constant(WORDS[self.code.of(node)]))
+    def literal(self, node: Node, _depth: int) -> _Piece:
+        """A number, text, word, array or object: the latter are new ones at every evaluation."""
+        value = literal(self.code, node)
+        if isinstance(value, list | dict):
+            return _Piece(lambda _scopes: value.copy())
+        return _Piece(lambda _scopes: value)
 
     def name(self, node: Node, _depth: int) -> _Piece:
         """A variable, looked for from the innermost scope."""
@@ -323,44 +172,8 @@ class _Builder:
     def _name(self, node: Node) -> str:
         name = self.code.of(node)
         if not name.isascii() or "\\" in name or name in BEYOND:
-            raise _Beyond
+            raise Beyond
         return name
-
-    def array(self, node: Node, _depth: int) -> _Piece:
-        """An array of literals: a new one at every evaluation."""
-        if any(one.type == "," for one in _doubled(node)):
-            raise _Beyond
-        values = [self._literal(one) for one in node.named_children]
-        return _Piece(lambda _scopes: values.copy())
-
-    def object(self, node: Node, _depth: int) -> _Piece:
-        """An object of literals: a new one at every evaluation."""
-        values: dict[str, Any] = {}
-        for pair in node.named_children:
-            key, value = pair.child_by_field_name("key"), pair.child_by_field_name("value")
-            if pair.type != "pair" or key is None or value is None:
-                raise _Beyond
-            if key.type not in ("property_identifier", "string"):
-                raise _Beyond
-            name = self._text(key) if key.type == "string" else self.code.of(key)
-            if name.isdigit() or name == "__proto__" or "\\" in name or not name.isascii():
-                raise _Beyond
-            values[name] = self._literal(value)
-        return _Piece(lambda _scopes: values.copy())
-
-    def _literal(self, node: Node) -> Any:
-        """A number, text or word in an array or object: nothing that is computed."""
-        if node.type == "unary_expression" and node.children[0].type == "-":
-            operand = node.children[1]
-            if operand.type == "number":
-                return -self._number(operand)
-        if node.type == "number":
-            return self._number(node)
-        if node.type == "string":
-            return self._text(node)
-        if node.type in WORDS:
-            return WORDS[node.type]
-        raise _Beyond
 
     # Operators --------------------------------------------------------------------------------
 
@@ -368,7 +181,7 @@ class _Builder:
         """An expression in brackets: ``?.`` in it ends no chain outside of it."""
         held = node.named_children
         if len(held) != 1:
-            raise _Beyond
+            raise Beyond
         piece = self.build(held[0], depth)
         return _Piece(piece.call, piece.place)
 
@@ -388,11 +201,11 @@ class _Builder:
         operator = node.child_by_field_name("operator")
         left, right = self.part(node, "left", depth), self.part(node, "right", depth)
         if operator is None:
-            raise _Beyond
+            raise Beyond
         if operator.type in ("&&", "||"):
             return self._logical(operator.type, left, right)
         if operator.type not in OPERATIONS:
-            raise _Beyond
+            raise Beyond
         act, first, second = OPERATIONS[operator.type], left.call, right.call
         return _Piece(
             lambda scopes: act(first(scopes), second(scopes), scopes), self.place(operator)
@@ -420,7 +233,7 @@ class _Builder:
         while operator == "typeof" and operand is not None and operand.type == BRACKETS:
             operand = operand.named_children[0]
         if operator == "typeof" and operand is not None and operand.type == "identifier":
-            name = self._name(operand)  # one that nothing declares is no error here
+            name = self._name(operand)  # an undeclared one is not an error here
             return _Piece(lambda scopes: kind_of(found(name, scopes)))
         piece = self.part(node, "argument", depth)
         call = piece.call
@@ -431,7 +244,7 @@ class _Builder:
             "typeof": lambda scopes: kind_of(call(scopes)),
         }
         if operator not in made:
-            raise _Beyond
+            raise Beyond
         return _Piece(made[operator], piece.place)
 
     # Members ----------------------------------------------------------------------------------
@@ -453,7 +266,7 @@ class _Builder:
         """A chain of members; ``?.`` ends it where there is no value."""
         holder, key = node.child_by_field_name("object"), self._key(node)
         if holder is None or depth > DEEPEST:
-            raise _Beyond
+            raise Beyond
         inside = self._chain if holder.type in MEMBERS else self.build
         value = inside(holder, depth + 1)
         index, (line, column) = index_of(key), value.place or self.place(node)
@@ -478,43 +291,27 @@ class _Builder:
         """The name of the member."""
         part = node.child_by_field_name("property") or node.child_by_field_name("index")
         if part is None:
-            raise _Beyond
+            raise Beyond
         if part.type == "number":
-            key = number_text(self._number(part))
+            key = number_text(number(self.code, part))
         elif part.type == "string":
-            key = self._text(part)
+            key = string(self.code, part)
         elif part.type == "property_identifier":
             key = self.code.of(part)
         else:
-            raise _Beyond
+            raise Beyond
         if key in INHERITED or key in METHODS or "\\" in key:
-            raise _Beyond
+            raise Beyond
         return key
 
 
-def _doubled(node: Node) -> list[Node]:
-    """The commas of an array behind which, or before which, no element stands."""
-    children = node.children
-    pairs = pairwise(children)
-    return [after for before, after in pairs if before.type in ("[", ",") and after.type == ","]
-
-
-NUMBER = frozenset("0123456789.eE+-")
-UNCOMMON = frozenset("ux0123456789\n\r\u2028\u2029")
-"""Behind a backslash: what is not the character itself, or a white space."""
 BEYOND = RESERVED | INHERITED | BUILT_IN
 BRACKETS = "parenthesized_expression"
 MEMBERS = ("member_expression", "subscript_expression")
 MAKERS: dict[str, Callable[[_Builder, Node, int], _Piece]] = {
-    "number": _Builder.number,
-    "string": _Builder.text,
-    "true": _Builder.word,
-    "false": _Builder.word,
-    "null": _Builder.word,
+    **dict.fromkeys(("number", "string", *WORDS, "array", "object"), _Builder.literal),
     "identifier": _Builder.name,
     "undefined": _Builder.name,
-    "array": _Builder.array,
-    "object": _Builder.object,
     BRACKETS: _Builder.brackets,
     "ternary_expression": _Builder.conditional,
     "binary_expression": _Builder.binary,

@@ -1,18 +1,18 @@
-"""ECMAScript's values in Python, and what expressions do with them.
+"""ECMAScript's values in Python, and their conversions (ECMAScript 2024, chapter 7).
 
 The values are Python's: ``float``, ``str``, ``bool``, ``None`` (null), :data:`UNDEFINED`, ``list``
-and ``dict``. They mean what ECMAScript 2024 says of them. Work with long texts is counted.
+and ``dict``.
 """
 
 from __future__ import annotations
 
 import math
-import operator
 import re
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from prima.script.evaluation import LARGEST, SCOPES, ScriptError, bounded, plain_number, whole
+from prima.script.evaluation import LARGEST, ScriptError, bounded, plain_number, whole
+from prima.script.surrogates import SURROGATE, well_formed
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -26,7 +26,7 @@ class Undefined:
 
 
 UNDEFINED = Undefined()
-"""What a variable without a value has."""
+"""The value of a variable without one."""
 
 
 class Scope(dict[str, Any]):
@@ -47,14 +47,9 @@ class Named(Scope):
 
 Scopes = tuple[Scope, Scope, Scope, Scope]
 """The scopes that an expression sees: application, document, dialog and local."""
-Operation = Callable[[Any, Any, Scopes], Any]
 
 DEEPEST = 100
-"""Lists and objects of a value from outside that may stand inside each other."""
-LONGEST = 100_000
-"""Characters that a text may have; nothing longer could leave the scopes."""
-SHORT = 200
-"""Characters up to which a text is no work worth counting."""
+"""Lists and objects inside each other that a value from outside may have."""
 CONSTANTS = {"undefined": UNDEFINED, "NaN": math.nan, "Infinity": math.inf}
 SPACE = " \t\n\v\f\r\xa0\ufeff\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u2028\u2029\u202f\u205f\u3000"
 """What ECMAScript takes for white space."""
@@ -63,173 +58,6 @@ NUMERIC = re.compile(
 )
 INDEX = re.compile("0|[1-9][0-9]{0,9}")
 MOST_INDEX = 2**32 - 2
-SURROGATE = re.compile("[\ud800-\udfff]")
-HIGH, LOW = frozenset(map(chr, range(0xD800, 0xDC00))), frozenset(map(chr, range(0xDC00, 0xE000)))
-"""First and second halves of letters."""
-MISSING = object()
-"""Stands for the value of what nothing declares."""
-
-
-# What an expression in Python calls --------------------------------------------------------
-
-
-def sought(name: str, line: int, column: int, scopes: Scopes) -> Any:
-    """A variable that stands in none of the scopes in which most stand.
-
-    Raises:
-        ScriptError: nothing declares it.
-    """
-    value = found(name, scopes, MISSING)
-    if value is MISSING:
-        raise ScriptError(f"ReferenceError: {name} is not defined", [(line, column)])
-    return value
-
-
-def found(name: str, scopes: Scopes, otherwise: Any = UNDEFINED) -> Any:
-    """A variable's value, or what stands for one that nothing declares."""
-    for scope in reversed(scopes):
-        if name in scope:
-            return scope[name]
-    if name in CONSTANTS:
-        return CONSTANTS[name]
-    if name in SCOPES and isinstance(scope := scopes[SCOPES.index(name)], Named):
-        return scope
-    return otherwise
-
-
-def holder_of(name: str, scopes: Scopes) -> Scope:
-    """The innermost scope that has a variable, by its name as written.
-
-    Raises:
-        ScriptError: no scope declares it.
-    """
-    inner, _, last = name.rpartition(".")
-    for scope in (scopes[SCOPES.index(inner)],) if inner else reversed(scopes):
-        if last in scope:
-            return scope
-    raise ScriptError(f'ReferenceError: the variable "{name}" is not declared')
-
-
-def member(value: Any, key: str, index: int, line: int, column: int, scopes: Scopes) -> Any:
-    """A member of a value, by its name and the index that the name is."""
-    if isinstance(value, dict):
-        if isinstance(value, Named) and key == value.name and key not in value:
-            return value
-        return value.get(key, UNDEFINED)
-    if value is None or value is UNDEFINED:
-        what = "null" if value is None else "undefined"
-        message = f"TypeError: cannot read property '{key}' of {what}"
-        raise ScriptError(message, [(line, column)])
-    if not isinstance(value, list | str):
-        return UNDEFINED
-    if len(value) > SHORT and isinstance(value, str):
-        work(scopes, value)
-    if key == "length":
-        return float(len(value) if isinstance(value, list) else units(value))
-    if isinstance(value, str):
-        return unit(value, index)
-    return value[index] if 0 <= index < len(value) else UNDEFINED
-
-
-def work(scopes: Scopes, value: Any) -> None:
-    """Count the work with a value that may be long.
-
-    Raises:
-        ScriptError: the application has taken too long in this instant.
-    """
-    if isinstance(value, str | list) and len(value) > SHORT:
-        count = getattr(scopes[0], "count", None)
-        if count is not None:
-            count(len(value))
-
-
-def equal(first: Any, second: Any, scopes: Scopes) -> bool:
-    """``==``, with the work counted."""
-    if type(first) is float and type(second) is float:
-        return first == second
-    work(scopes, first)
-    work(scopes, second)
-    return alike(first, second)
-
-
-def identical(first: Any, second: Any, scopes: Scopes) -> bool:
-    """``===``, with the work counted."""
-    work(scopes, first)
-    work(scopes, second)
-    return same(first, second)
-
-
-def numeric(value: Any, scopes: Scopes) -> float:
-    """A value as a number, with the work counted."""
-    if type(value) is float:
-        return value
-    work(scopes, value)
-    return number(value)
-
-
-def add(first: Any, second: Any, scopes: Scopes) -> Any:
-    """``+``, which joins texts as well."""
-    if type(first) is float and type(second) is float:
-        return first + second
-    first, second = primitive(first), primitive(second)
-    if not isinstance(first, str) and not isinstance(second, str):
-        return number(first) + number(second)
-    joined = join(text(first), text(second))
-    if len(joined) > SHORT:
-        if len(joined) > LONGEST:
-            raise ScriptError("it used too much memory")
-        work(scopes, joined)
-    return joined
-
-
-def join(first: str, second: str) -> str:
-    """Two texts as one, in which two halves that meet are a letter again."""
-    if first[-1:] in HIGH and second[:1] in LOW:
-        pair = (first[-1] + second[0]).encode("utf-16-le", "surrogatepass").decode("utf-16-le")
-        return first[:-1] + pair + second[1:]
-    return first + second
-
-
-def _arithmetic(act: Callable[[float, float], float]) -> Operation:
-    def calculate(first: Any, second: Any, scopes: Scopes) -> float:
-        return act(numeric(first, scopes), numeric(second, scopes))
-
-    return calculate
-
-
-def _comparison(act: Callable[[Any, Any], bool]) -> Operation:
-    def compare(first: Any, second: Any, scopes: Scopes) -> bool:
-        if type(first) is float and type(second) is float:
-            return act(first, second)
-        first, second = primitive(first), primitive(second)
-        if isinstance(first, str) and isinstance(second, str):
-            if first.isascii() and second.isascii():
-                return act(first, second)
-            work(scopes, first)
-            work(scopes, second)
-            return act(order(first), order(second))
-        return act(numeric(first, scopes), numeric(second, scopes))
-
-    return compare
-
-
-def divide(first: float, second: float) -> float:
-    """Division, which has a value by nought as well."""
-    if second:
-        return first / second
-    if first == 0 or first != first or second != second:
-        return math.nan
-    return math.copysign(math.inf, first) * math.copysign(1, second)
-
-
-def remainder(first: float, second: float) -> float:
-    """The remainder, with the sign of what is divided."""
-    if second == 0 or math.isinf(first):
-        return math.nan
-    return math.fmod(first, second)
-
-
-# Values (ECMAScript 2024, chapter 7) --------------------------------------------------------
 
 
 def truth(value: Any) -> bool:
@@ -273,7 +101,7 @@ def text(value: Any) -> str:
     if isinstance(value, list):
         return ",".join("" if one is None or one is UNDEFINED else text(one) for one in value)
     if isinstance(value, dict):
-        if "toString" in value:  # it is no function
+        if "toString" in value:  # it is not a function
             raise ScriptError("TypeError: toPrimitive")
         return "[object Object]"
     return "undefined"
@@ -349,13 +177,6 @@ def order(value: str) -> str | bytes:
     return value.encode("utf-16-be", "surrogatepass")
 
 
-def well_formed(value: str) -> str:
-    """Text in which halves of letters are whole again, or replaced."""
-    if SURROGATE.search(value) is None:
-        return value
-    return value.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
-
-
 def escaped(value: str) -> str:
     """Text in which halves of letters are whole again, or written as JSON escapes."""
     if SURROGATE.search(value) is None:
@@ -397,7 +218,7 @@ def _quoted(value: str) -> str:
 
 
 def _position(pair: tuple[str, Any]) -> tuple[bool, int]:
-    """Names that are numbers stand before others, in their order (10.1.11.1)."""
+    """Names that are numbers come before others, in their order (10.1.11.1)."""
     index = index_of(pair[0])
     return (index < 0, index)
 
@@ -438,9 +259,3 @@ def outward(value: Any) -> Json:
 
         return loads(bounded(well_formed(stringify(value))))
     return plain_number(value)
-
-
-subtract, multiply = _arithmetic(operator.sub), _arithmetic(operator.mul)
-divided, remaining = _arithmetic(divide), _arithmetic(remainder)
-less, more = _comparison(operator.lt), _comparison(operator.gt)
-at_most, at_least = _comparison(operator.le), _comparison(operator.ge)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import _quickjs as quickjs
 
-from prima.language.values import well_formed, well_formed_json
+from prima.script import sandbox
 from prima.script.ecmascript import UNDEFINED
 from prima.script.evaluation import (
     MAX_SCRIPT_SECONDS,
@@ -26,71 +26,41 @@ from prima.script.evaluation import (
     Scope,
     ScriptError,
     bounded,
+    marked,
     plain_number,
     whole,
 )
-from prima.script.globals import GLOBALS, IDENTIFIER, STRANGE, WORD
-from prima.script.hoisting import HIDDEN, Hoisted, hoisted
+from prima.script.hoisting import Hoisted, hoisted
 from prima.script.names import script_names
-from prima.script.prelude import (
-    CLOCK,
-    DATE,
-    GIVE,
-    GUARD,
-    GUARDS,
-    MEMORY_LIMIT,
-    NAME,
-    PRELUDE,
-    SAFE,
-    STACK_LIMIT,
-    source,
-)
+from prima.script.surrogates import well_formed, well_formed_json
 from prima.script.syntax import FAILURES, TIME_LIMIT, Syntax, script_error
+from prima.script.wrapping import Helpers, assignment, guarded, head, wrapped
 
 if TYPE_CHECKING:
     from prima.messages import Json
 
-HELPERS = source("engine.js")
-
-INTO = "$into$"
-"""The scope whose variables a script declares, for our code around it."""
 MAY_ASK_TIME = re.compile(
     r"""Date|\bthis\b|globalThis|eval|Function|constructor|Reflect|Object|\\"""
     r"""|\[(?!\s*(?:\d*|"[^"]*"|'[^']*')\s*\])"""
 )
 """Code that names ``Date``, or may find it without naming it."""
-EVALUATING = re.compile(r"eval|\\u")
-"""Code that may evaluate other code in its own place."""
-
-
-class _Helpers(dict[str, Any]):
-    """Our functions in an engine by their names, each fetched when it is first needed."""
-
-    def __init__(self, context: Any) -> None:
-        super().__init__()
-        self._all = context.eval(HELPERS)
-        self._guarded = context.eval(f"(all, name) => {GUARD}(all[name])")
-
-    def __missing__(self, name: str) -> Any:
-        found = self[name] = self._guarded(self._all, name)
-        return found
 
 
 class Engine:
     """The ECMAScript of one application."""
 
     lost = ""
-    """Why nothing can be evaluated any more: this one is in its caller's process."""
+    """Why nothing can be evaluated any more: never, in the caller's own process."""
 
     def __init__(self, scopes: tuple[str, ...] = SCOPES) -> None:
         context = quickjs.Context()
-        context.set_memory_limit(MEMORY_LIMIT)
-        context.set_max_stack_size(STACK_LIMIT)
+        context.set_memory_limit(sandbox.MEMORY_LIMIT)
+        context.set_max_stack_size(sandbox.STACK_LIMIT)
         context.set_time_limit(TIME_LIMIT)
         self._context = context
         self._syntax = Syntax(context)
         self._scopes = scopes
-        self._names, self._withs = _head(scopes)
+        self._names, self._withs = head(scopes)
         self.spent = 0.0
         """Seconds of evaluations since the owner last set it to nought."""
         # Functions by their code, for each use that is made of it.
@@ -100,14 +70,14 @@ class Engine:
         self._giving: dict[str, Any] = {}
         self._assigning: dict[tuple[str, str, int], Any] = {}
         self._scripts: dict[str, tuple[Any, Hoisted]] = {}
-        context.eval(GUARDS)
-        self._help = _Helpers(context)
+        context.eval(sandbox.GUARDS)
+        self._help = Helpers(context)
         self.now = self._told = 0
-        """The time by the run's calendar (ms since 1970, UTC): what ``Date`` tells."""
+        """The time by the run's calendar (ms since 1970, UTC), as ``Date`` gives it."""
         self._clocked = False
         """Whether any code may ask for it."""
-        self._tick = context.eval(CLOCK)(DATE)
-        context.eval(PRELUDE)
+        self._tick = context.eval(sandbox.CLOCK)(sandbox.DATE)
+        context.eval(sandbox.PRELUDE)
         self._tick()
         context.eval("Object.preventExtensions(globalThis)")
         self.nothing = self._call(self._help["nothing"], ())
@@ -142,7 +112,7 @@ class Engine:
         function = self._compiled.get(code)
         if function is None:
             self._check(self._syntax.expression, code)
-            give = f"return typeof $v === 'string' ? {GIVE}($v) : $v"
+            give = f"return typeof $v === 'string' ? {sandbox.GIVE}($v) : $v"
             function = self._compile(f"const $v = (\n{code}\n); {give}")
             self._compiled[code] = function
         return function
@@ -154,22 +124,19 @@ class Engine:
         """
         kept = self._lenient.get(code)
         if kept is None:
-            kept = self._lenient[code] = _single(self._syntax, code)
+            several = self._syntax.has_statements(code)
+            # Its lines are counted as those of any (``statement_place``).
+            kept = self._lenient[code] = f"eval({json.dumps(chr(10) + code)})" if several else code
         return kept
 
     def _compile(self, body: str, scopes: tuple[str, ...] | None = None) -> Any:
         """A function of scopes: of all of them, if nothing is said."""
-        names, withs = (self._names, self._withs) if scopes is None else _head(scopes)
+        names, withs = (self._names, self._withs) if scopes is None else head(scopes)
         return self._function(names, f"{withs}{{{body}}}")
 
     def _function(self, parameters: str, body: str) -> Any:
-        """A function of the engine; what code in it throws comes out as an error of ours."""
-        if EVALUATING.search(body):  # it might declare anything, also in our function
-            code = f"{GUARD}(function({parameters}){{{body}}})"
-        else:
-            caught = f"catch({STRANGE}){{throw {SAFE}({STRANGE})}}"
-            code = f"(function({parameters}){{try{{{body}}}{caught}}})"
-        return self._call(self._context.eval, (code,))
+        """A function of the engine; exceptions of code in it become errors of ours."""
+        return self._call(self._context.eval, (guarded(parameters, body),))
 
     def empty(self) -> Scope:
         """The scope in which nothing is declared."""
@@ -212,7 +179,7 @@ class Engine:
             try:
                 return self._call(self._context.parse_json, (json.dumps(value, allow_nan=False),))
             except ValueError:  # JSON has no such numbers
-                return self._call(self._help["parse"], (json.dumps(_marked(value)),))
+                return self._call(self._help["parse"], (json.dumps(marked(value)),))
             except RecursionError:
                 raise ScriptError("it is nested too deep") from None
         if isinstance(value, str):
@@ -279,13 +246,13 @@ class Engine:
         """Evaluate an expression that gives an array; its elements, to be :meth:`put`.
 
         Raises:
-            ScriptError: it is no array.
+            ScriptError: it is not an array.
         """
         array = self.listed(code, scopes, most)
         return [Item(array, index) for index in range(self.length(array))]
 
     def listed(self, code: str, scopes: tuple[Scope, ...], most: int) -> Any:
-        """Evaluate an expression that gives an array; a copy of it, which nobody changes."""
+        """Evaluate an expression that gives an array; give a private copy of it."""
         array = self.raw(code, scopes)
         length = self.length(array)
         if length < 0:
@@ -295,7 +262,7 @@ class Engine:
         return self._call(self._help["listed"], (array,))
 
     def length(self, array: Any) -> int:
-        """How many elements an array has; -1 if it is none."""
+        """The number of an array's elements; -1 for anything else."""
         return int(self._call(self._help["items"], (array,)))
 
     def pick(self, scope: Scope, name: str, array: Any, index: int) -> None:
@@ -328,11 +295,11 @@ class Engine:
         if function is None:
             self._check(self._syntax.expression, code)
             names = self._scopes[: len(scopes)]
-            function = self._assigning[key] = self._compile(_assignment(name, code, names), names)
+            function = self._assigning[key] = self._compile(assignment(name, code, names), names)
         self._call(function, scopes, MAX_SCRIPT_SECONDS)
 
     def detach(self, scope: Scope, name: str) -> None:
-        """Let a variable hold a copy of its data, so that nobody else changes it with theirs."""
+        """Let a variable hold a private copy of its data."""
         self._call(self._help["detach"], (scope, name))
 
     def hand(self, scope: Scope, name: str, source: Scope) -> None:
@@ -370,73 +337,8 @@ class Engine:
             try:
                 if script.code != code:
                     self._check(self._syntax.script, script.code)
-                return self._wrapped(script), script
+                return self._function(*wrapped(script, self._scopes)), script
             except ScriptError:  # something in it is not what it seems
                 pass
         script = Hoisted(code, others=sorted(script_names(code).declared))
-        return self._wrapped(script), script
-
-    def _wrapped(self, script: Hoisted) -> Any:
-        # ECMAScript makes what is assigned and nowhere declared a variable of the outermost
-        # scope, which here is the script's own (VoiceXML 5.3.12).
-        loose = sorted(script_names(script.code).written - {*script.variables} - GLOBALS)
-        known = "||".join(f"n in {_short(scope)}" for scope in self._scopes)
-        declare = (
-            f"for(const n of {json.dumps(script.variables)})if(!(n in {INTO})){INTO}[n]=undefined;"
-            f"for(const n of {json.dumps(loose)})"
-            f"if(!({known}||n in globalThis)){INTO}[n]=undefined;"
-        )
-        give = "".join(
-            f"{INTO}.{name}={NAME}({name}{HIDDEN},'{name}');" for name in script.functions
-        )
-        export = "".join(
-            f"if(typeof {name}!=='undefined'){INTO}.{name}={name};" for name in script.others
-        )
-        inner = f"(function(){{{give}\n{script.code}\n;{export}}}).call({INTO})"  # this is the scope, too
-        return self._function(f"{self._names},{INTO}", f"{declare}{self._withs}{{{inner}}}")
-
-
-def _marked(value: Json) -> Json:
-    """Plain data in which numbers that JSON lacks are objects with a strange name."""
-    if isinstance(value, float) and not math.isfinite(value):
-        return {"\0": "NaN" if math.isnan(value) else "Infinity" if value > 0 else "-Infinity"}
-    if isinstance(value, list | tuple):
-        return [_marked(one) for one in value]
-    if isinstance(value, dict):
-        return {key: _marked(one) for key, one in value.items()}
-    return value
-
-
-def _short(scope: str) -> str:
-    """The name of a scope's parameter; their first two letters tell scopes apart."""
-    return f"{scope[0:2]}{STRANGE}"
-
-
-def _head(scopes: tuple[str, ...]) -> tuple[str, str]:
-    """The parameters of a function of scopes, and what makes their variables seen in it."""
-    names = [_short(name) for name in scopes]
-    return ",".join(names), "".join(f"with({name})" for name in names)
-
-
-PLACE = re.compile(rf"""{WORD}(?:\.{WORD}|\[(?:[\w$.+-]+|"[^"\\\]]*"|'[^'\\\]]*')\])*""")
-"""A variable, or a part of what it holds."""
-
-
-def _assignment(name: str, code: str, scopes: tuple[str, ...]) -> str:
-    """The body of an assignment that fails where the variable is not declared."""
-    scope, dot, rest = name.partition(".")
-    where = [_short(scope) for scope in reversed(scopes)]
-    target = name
-    if dot and scope in scopes:
-        where, target = [_short(scope)], f"{_short(scope)}.{rest}"
-    head = IDENTIFIER.match(rest if len(where) == 1 and dot else name)
-    if head is None or PLACE.fullmatch(name) is None:
-        raise ScriptError(f'"{name[:80]}" names no variable')
-    declared = " || ".join(f"{json.dumps(head[0])} in {scope}" for scope in where)
-    missing = json.dumps(f'the variable "{head[0]}" is not declared')
-    return f"if (!({declared})) throw new ReferenceError({missing}); {target} = (\n{code}\n)"
-
-
-def _single(syntax: Syntax, code: str) -> str:
-    """Code as one expression; its lines are counted as those of any (``statement_place``)."""
-    return f"eval({json.dumps(chr(10) + code)})" if syntax.has_statements(code) else code
+        return self._function(*wrapped(script, self._scopes)), script

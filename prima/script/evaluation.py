@@ -77,3 +77,14 @@ def whole(value: int) -> float:
         return float(value)
     except OverflowError:
         return math.inf if value > 0 else -math.inf
+
+
+def marked(value: Json) -> Json:
+    """Plain data in which numbers that JSON lacks are objects with a strange name."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return {"\0": "NaN" if math.isnan(value) else "Infinity" if value > 0 else "-Infinity"}
+    if isinstance(value, list | tuple):
+        return [marked(one) for one in value]
+    if isinstance(value, dict):
+        return {key: marked(one) for key, one in value.items()}
+    return value

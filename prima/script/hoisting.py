@@ -11,8 +11,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from prima.script.names import FUNCTIONS, bound_names
+from prima.script.names import bound_names
 from prima.script.parse import Code, Node, parse_script
+from prima.script.walk import FUNCTIONS
 
 HIDDEN = "$_"
 """What is added to the name of a function at the top."""
@@ -33,10 +34,10 @@ class Hoisted:
     others: list[str] = field(default_factory=list)
     """What it declares in other ways, to be given to the scope when it has run."""
     shifts: list[tuple[int, int]] = field(default_factory=list)
-    """Lines, and the columns in them behind which its text stands further right than written."""
+    """Lines, and the columns in them behind which the text is shifted to the right."""
 
     def column(self, line: int, column: int) -> int:
-        """Where that place stands in the script as it is written."""
+        """The column in the script as it is written."""
         for at, start in self.shifts:
             column -= len(HIDDEN) if at == line and start < column else 0
         return column
@@ -78,7 +79,7 @@ class _Hoister:
         script.others = [*dict.fromkeys(script.others)]
         hidden = {f"{name}{HIDDEN}" for name in script.functions}
         if not (hidden.isdisjoint(self.names) and {*script.variables}.isdisjoint(script.others)):
-            return None  # a name stands for two things
+            return None  # a name means two things
         script.code = self._edited()
         return script
 
@@ -99,7 +100,7 @@ class _Hoister:
         return "".join([*pieces, text[at:]])
 
     def _declaration(self, node: Node) -> None:
-        """Variables are declared; those of ``var`` belong to the scope whatever they stand in.
+        """Variables are declared; those of ``var`` belong to the scope wherever they are.
 
         At the top ``let`` and ``const`` do where functions may share them; a function's own
         variables are quicker, and they are given to the scope at the end.

@@ -28,7 +28,7 @@ GIVES_NOTHING, GIVES_DATA, GIVES_VALUE = range(3)
 
 METHODS: Mapping[str, Mapping[str, int]] = {
     "Service": {
-        "engine": GIVES_VALUE, "sandbox": GIVES_VALUE, "syntax": GIVES_VALUE,
+        "engine": GIVES_VALUE, "tag_engine": GIVES_VALUE, "syntax": GIVES_VALUE,
         "reset": GIVES_NOTHING,
     },
     "Engine": {
@@ -41,7 +41,7 @@ METHODS: Mapping[str, Mapping[str, int]] = {
         "hand": GIVES_NOTHING, "script": GIVES_NOTHING,
         "empty": GIVES_VALUE,
     },
-    "Sandbox": {
+    "TagEngine": {
         "run": GIVES_NOTHING, "box": GIVES_VALUE, "environment": GIVES_VALUE, "add": GIVES_NOTHING,
         "rule": GIVES_VALUE, "reached": GIVES_DATA, "fault": GIVES_DATA, "carry": GIVES_DATA,
         "take": GIVES_VALUE, "json": GIVES_DATA,
@@ -71,11 +71,11 @@ class Service:
 
         return Engine(tuple(scopes))
 
-    def sandbox(self, others: int) -> Any:
-        """A new sandbox for the tags of a grammar document, beside others for the same utterance."""
-        from prima.script.sandbox import Sandbox
+    def tag_engine(self, others: int) -> Any:
+        """A new engine for the tags of a grammar document, beside others for the same utterance."""
+        from prima.script.tagengine import TagEngine
 
-        return Sandbox(others)
+        return TagEngine(others)
 
     def syntax(self) -> Any:
         """What compiles code without running it."""
@@ -158,8 +158,8 @@ def main() -> None:
 
     sys.path[:] = json.loads(sys.argv[1])
     import prima.script.engine
-    import prima.script.sandbox
-    import prima.script.syntax  # noqa: F401  (no file can be opened later)
+    import prima.script.syntax
+    import prima.script.tagengine  # noqa: F401  (no file can be opened later)
 
     limit()
     try:

@@ -49,7 +49,7 @@ class Code:
         self.text = text
         self.root = tree.root_node
         self._before = before
-        """Characters of ours before it."""
+        """Characters before it that are not the code's."""
         self._width = width
         """Bytes of a character."""
 

@@ -1,4 +1,4 @@
-"""Whether code is ECMAScript, as the engine tells it, and where it is not."""
+"""Whether code is ECMAScript by the engine, and where it is not."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import _quickjs as quickjs
 from prima.script.evaluation import ScriptError
 from prima.script.names import script_names
 from prima.script.parse import MOST_CODE
-from prima.script.prelude import MEMORY_LIMIT, STACK_LIMIT, reason
+from prima.script.sandbox import MEMORY_LIMIT, STACK_LIMIT, reason
 
 MOST_NAMES = 5_000
 """Names that one script may declare: the engine compares each with all others."""
@@ -99,7 +99,7 @@ class Syntax:
         return found
 
     def has_statements(self, code: str) -> bool:
-        """Whether code that should be one expression is none, but could be a script."""
+        """Whether code that should be one expression is a script instead."""
         try:
             self.expression(code)
         except ScriptError:

@@ -24,7 +24,7 @@ class TooMuch(Exception):
 
 
 class Broken(Exception):
-    """The other side has gone, or sends what is no message."""
+    """The other side has gone, or sent something that is not a message."""
 
 
 def send(pipe: int, message: Any, longest: int) -> None:
@@ -32,7 +32,7 @@ def send(pipe: int, message: Any, longest: int) -> None:
 
     Raises:
         TooMuch: it is too long, or nested too deep.
-        Broken: nobody reads.
+        Broken: the other side has gone.
     """
     try:
         body = _encode(message).encode("ascii")

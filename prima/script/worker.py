@@ -23,7 +23,7 @@ from prima.script.evaluation import EngineLost, ScriptError
 MOST_IDLE = 4
 """Processes that are kept for whoever needs one next."""
 MANY = 8
-"""Processes at work from which on those that nobody needs any more are looked for."""
+"""Processes at work from which on unused ones are collected."""
 PASSED_ON = ("LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "SYSTEMROOT")
 """Variables of the environment without which some Pythons do not start."""
 CALL_SECONDS = 35e-6
@@ -33,7 +33,7 @@ ENDING_SECONDS = 5.0
 
 
 class Handle:
-    """A value that stays in the process of its engine; dropped there when nobody here has it."""
+    """A value that stays in the process of its engine; dropped there when it is dropped here."""
 
     __slots__ = ("_dropped", "number")
 
@@ -76,7 +76,7 @@ class Worker:
         self._owner = os.getpid()
         self._dropped: deque[int] = deque()
         self.why = ""
-        """Why it has ended, if it has."""
+        """Why it has ended; empty while it runs."""
         self.use = 0
         """How often it has been given back."""
 
@@ -110,7 +110,7 @@ class Worker:
 
     @property
     def alive(self) -> bool:
-        """Whether it can be called, as far as the system tells."""
+        """Whether it can be called, according to the system."""
         return not self.lost and self._process.poll() is None
 
     def call(self, target: int, method: str, arguments: list[Any], meter: Meter) -> Any:
@@ -181,7 +181,7 @@ def _reason(code: int) -> str:
 
 
 _idle: list[Worker] = []
-"""Processes that nobody uses."""
+"""Idle processes."""
 _started: set[Worker] = set()
 """Processes that were hired and have not ended, as far as is known. They are held here, so that those
 of a run that nobody closed are given back when it is collected, not collected with it."""

@@ -9,7 +9,7 @@ from prima.errors import DocumentError, Problem
 from prima.language.commands import PATIENCE_MS
 from prima.markup.tree import Node
 from prima.messages import Json
-from prima.script.prelude import START
+from prima.script.sandbox import START
 from prima.sim.chance import Amount, Draws
 from prima.sim.expectations import Expectation, read_expectations
 from prima.sim.happenings import (

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from prima.devices.vocabulary import ID, TITLE, VERSION
 from prima.markup.vocabulary import Element, Instead, Vocabulary, attribute
-from prima.script.prelude import START
+from prima.script.sandbox import START
 
 _X = attribute("x", "number", "metres east", "required", low=-1000, high=1000)
 _Y = attribute("y", "number", "metres north", "required", low=-1000, high=1000)

@@ -139,9 +139,7 @@ class Game:
 
     def unheard(self) -> str:
         """What the user said that no application took; returned once."""
-        session = self.rehearsal.session
-        text, session.unheard = session.unheard, ""
-        return text
+        return self.rehearsal.session.take_unheard()
 
     @property
     def asking(self) -> str:

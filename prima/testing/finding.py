@@ -10,8 +10,8 @@ from pathlib import Path
 
 from prima.errors import DocumentError, UsageError, did_you_mean
 from prima.loading.files import read_file
-from prima.markup.opening import root_of
 from prima.markup.reader import parse
+from prima.markup.sniff import root_of
 from prima.markup.toml import parse_toml
 from prima.testing.golden import golden_of
 

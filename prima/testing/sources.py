@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from prima.errors import DocumentError, UsageError
 from prima.loading.files import read_file
-from prima.markup.reader import decode
+from prima.markup.encodings import decode
 
 
 class SourceLines:

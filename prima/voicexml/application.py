@@ -76,9 +76,9 @@ class VoiceInterpreter(App[AnyEngine]):
         self._patient = False
         """Whether what is played now is played to its end, even with the answer there."""
         self._open: Sequence[Command] = ()
+        """Commands during which the question behind them may be answered."""
         self._queue: Sequence[Queued] = ()
         """Commands whose end is waited for."""
-        """Commands during which the question behind them may be answered."""
         self._missed: deque[Event] = deque()
         """Events that came while an answer was waited for (4.1.8): none is lost."""
         self._unit_node = document.node

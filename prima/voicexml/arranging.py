@@ -12,7 +12,7 @@ from prima.errors.diagnoses.behaviour import SHARED_DEVICE
 from prima.errors.diagnoses.reading import TOO_DEEP
 from prima.errors.diagnoses.structure import EMPTY, MISPLACED_ELEMENT, STRAY_TEXT, UNKNOWN_ATTRIBUTE
 from prima.errors.diagnoses.values import BAD_VALUE
-from prima.interpreter.elements import CommandTemplate
+from prima.interpreter.acts import CommandTemplate
 from prima.interpreter.units import LONGEST_UNIT_MS, Reached, now_inside, unit_problem
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.language.commands import TABLE_4_2

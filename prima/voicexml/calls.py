@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Generator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from prima.interpreter.places import source
 from prima.interpreter.transfers import GoOut, Thrown
@@ -14,11 +13,9 @@ from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json, Transferred
 from prima.voicexml.arranging import take_last_said
 from prima.voicexml.fetching import gathered
+from prima.voicexml.owner import Owner
 from prima.voicexml.questions import open_to_answers
 from prima.voicexml.state import Context, Flow, Heard, HungUp, Resume, thrown_outside
-
-if TYPE_CHECKING:
-    from prima.voicexml.machine import Machine
 
 CONNECT_MS = 60_000
 """How long it may take until somebody answers where ``connecttimeout`` does not say."""
@@ -54,9 +51,9 @@ class Call:
 class Calls:
     """Makes the calls of one application."""
 
-    def __init__(self, owner: Machine) -> None:
+    def __init__(self, owner: Owner) -> None:
         self.owner = owner
-        self.app = owner.owner
+        self.app = owner.app
 
     def transfer(self, context: Context, item: Node) -> Flow:
         """Visit a transfer: give its variable the call's outcome, or throw an event.

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections import defaultdict
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from prima.interpreter.places import source
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, no_item, undeclared
@@ -13,16 +12,14 @@ from prima.markup.tree import Node
 from prima.messages import Json, Say
 from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
 from prima.voicexml.dom import DOM, plain_tree
-from prima.voicexml.fetching import Request, decoded
-from prima.voicexml.prompts import Speaker, Speech
-from prima.voicexml.state import SCOPES, Context, Flow, GoDialog, HungUp
+from prima.voicexml.elements import INPUTS
+from prima.voicexml.fetching import decoded
+from prima.voicexml.owner import Owner
+from prima.voicexml.prompts import Speaker
+from prima.voicexml.speech import Speech
+from prima.voicexml.state import SCOPES, Context, Flow, GoDialog, HungUp, Request
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
-if TYPE_CHECKING:
-    from prima.voicexml.machine import Machine
-
-ITEMS = frozenset(["field", "block", "initial", "subdialog", "object", "record", "transfer"])
-INPUTS = frozenset({"field", "record", "object", "subdialog", "transfer"})
 """Items that take input or a result; a block and an initial are control items (2.3)."""
 STEP_TAGS = 10
 """Tags of a document of data that count as one step."""
@@ -33,13 +30,13 @@ SERVICE = "service:"
 class Content(Speaker):
     """Runs executable content for one application; it takes time only where something is fetched."""
 
-    def __init__(self, owner: Machine) -> None:
+    def __init__(self, owner: Owner) -> None:
         super().__init__(owner)
         self._maker: Scope | None = None
 
     def run(self, node: Node, context: Context, local: Scope) -> Flow:
         """Run all that an element holds, in document order."""
-        self.owner.owner.note(node)
+        self.owner.app.note(node)
         yield from self.run_all(node.content, context, local)
 
     def run_all(self, content: Iterable[Node | str], context: Context, local: Scope) -> Flow:

@@ -1,4 +1,4 @@
-"""Loading: a VoiceXML document as nodes, checked by the table; its dialogs by name."""
+"""VoiceXML documents and applications, and where their files come from."""
 
 from __future__ import annotations
 
@@ -8,18 +8,12 @@ from dataclasses import dataclass, field
 from urllib.parse import urldefrag, urlsplit
 
 from prima.errors import DocumentError, Problem
-from prima.errors.diagnoses.structure import DUPLICATE_ID, NO_NAMESPACE
-from prima.markup.check import check_root
-from prima.markup.reader import parse
-from prima.markup.spans import with_namespace
 from prima.markup.tree import Node
 from prima.markup.uris import join
 from prima.messages import Json
-from prima.voicexml.arranging import is_unit
-from prima.voicexml.checks import check_code, check_tree
+from prima.voicexml.checks import check_code
 from prima.voicexml.site import Site
-from prima.voicexml.upgrade import VERSIONS, old, upgrade
-from prima.voicexml.vocabulary import NAMESPACE, PRIMA_NAMESPACE, VOICEXML
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 __all__ = [
     "PRIMA_NAMESPACE",
@@ -30,13 +24,7 @@ __all__ = [
     "broken",
     "join",
     "of_web",
-    "read_page",
 ]
-TWO_DIALOGS = DUPLICATE_ID.says('There are two dialogs "{name}".')
-READ_AS_VOICEXML = NO_NAMESPACE.says(
-    "The root element <vxml> has no namespace: it is read as VoiceXML."
-)
-
 REMOTE = frozenset(["http", "https", "service"])
 """Schemes of URIs that are asked for outside the application."""
 Fetch = Callable[[str], bytes]
@@ -106,49 +94,6 @@ class Page:
     def warnings(self) -> list[Problem]:
         """What is no error until it is reached; found only for who asks."""
         return check_code(self.root, set(self.dialogs))
-
-
-def read_page(uri: str, file: str, data: bytes, site: Site | None = None) -> Page:
-    """Read a VoiceXML document, of a folder that was perhaps copied from a site.
-
-    Raises:
-        DocumentError: it is not well-formed, or no VoiceXML at all.
-    """
-    root = parse(file, data, (VOICEXML,))
-    bare = _without_namespace(root)
-    check_root(root, (VOICEXML,))
-    if old(root):
-        upgrade(root)
-    page = Page(uri, root, problems=[*bare, *check_tree(root)], site=site)
-    for node in root.all("form", "menu"):
-        name = node.get("id") or f"#{len(page.dialogs) + 1}"
-        if name in page.dialogs:
-            page.problems.append(TWO_DIALOGS.at(node.attribute_place("id"), name=name))
-        page.dialogs.setdefault(name, node)
-    units = any(is_unit(one) for form in root.all("form") for one in form.nodes)
-    if units and broken(page) is None:
-        from prima.voicexml.sketched import unit_errors  # which looks at documents
-
-        page.problems += unit_errors(page)
-    return page
-
-
-def _without_namespace(root: Node) -> list[Problem]:
-    """Take a ``<vxml>`` without any namespace for VoiceXML's, with a warning.
-
-    So do the platforms for which such documents were written; their elements are no others'.
-    """
-    if root.tag != "vxml" or root.namespace:
-        return []
-    stack = [root]
-    while stack:
-        node = stack.pop()
-        node.namespace = node.namespace or NAMESPACE
-        stack.extend(node.nodes)
-    if root.get("version", VERSIONS[0]).strip() not in VERSIONS:
-        return []  # VoiceXML 1.0 has no namespace
-    hint = with_namespace(f'Write <vxml xmlns="{NAMESPACE}">.', root, NAMESPACE)
-    return [READ_AS_VOICEXML.at(root.place, hint)]
 
 
 @dataclass(slots=True)

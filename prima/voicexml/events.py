@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from prima.interpreter.selection import Candidate, select_handler, takes, taking
 from prima.interpreter.transfers import MAX_DEPTH, GoBack, GoItem, GoOut, Thrown, thrown_of
 from prima.markup.tree import Node
 from prima.script.evaluation import Scope, ScriptError
+from prima.voicexml.elements import HANDLERS, handler_names, handler_number
+from prima.voicexml.owner import Owner
 from prima.voicexml.state import Context, Flow, HungUp, Unasked
 
-if TYPE_CHECKING:
-    from prima.voicexml.machine import Machine
-
-HANDLERS = ("catch", "error", "help", "noinput", "nomatch")
 ASKED_AGAIN = ("noinput", "nomatch", "help", "maxspeechtimeout")
 """Events after which the platform's own handlers ask again (5.2.5)."""
 WORDS = {
@@ -35,7 +32,7 @@ WORDS = {
 class Events:
     """Handles the events of one application."""
 
-    def __init__(self, owner: Machine) -> None:
+    def __init__(self, owner: Owner) -> None:
         self.owner = owner
         self.engine = owner.engine
 
@@ -155,13 +152,6 @@ def _handlers(context: Context) -> Iterator[Node]:
             yield from node.all(*HANDLERS)
 
 
-def handler_names(handler: Node) -> list[str]:
-    """The events that a handler takes; the empty name is for all."""
-    if handler.tag != "catch":
-        return [handler.tag]
-    return [name.rstrip(".") for name in handler.get("event").split()] or [""]
-
-
 def _takers(context: Context, thrown: Thrown) -> list[Candidate[Node]]:
     """The handlers in scope that take an event; that of all takes VoiceXML's own events alone."""
     known = (
@@ -173,9 +163,3 @@ def _takers(context: Context, thrown: Thrown) -> list[Candidate[Node]]:
 def _place(context: Context) -> int:
     """Where events are counted: at the item, or at the dialog itself."""
     return context.item.index if context.item is not None else -1
-
-
-def handler_number(handler: Node) -> int:
-    """From which time on a handler takes its events, or a prompt is said; 1 where it is none."""
-    count = handler.get("count", "1")
-    return max(int(count), 1) if count.isdecimal() else 1

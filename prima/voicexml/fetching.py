@@ -6,9 +6,7 @@ takes time: the application asks, and is in its transitioning state until the an
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Generator
 from urllib.parse import urldefrag
 
 from prima.errors import DocumentError
@@ -16,26 +14,17 @@ from prima.interpreter.places import source
 from prima.interpreter.transfers import Thrown
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
-from prima.messages import Command, Data, Fetched, Json
-from prima.voicexml.document import FetchError, Page, broken, of_web, read_page
-from prima.voicexml.state import Flow, Resume
-
-if TYPE_CHECKING:
-    from prima.voicexml.machine import Machine
+from prima.messages import Command, Data, Fetched
+from prima.voicexml.document import FetchError, Page, broken, of_web
+from prima.voicexml.owner import Owner
+from prima.voicexml.reading import read_page
+from prima.voicexml.state import Flow, Request, Resume
 
 STEP_BYTES = 200
 """Bytes of a resource that count as one step."""
 FETCH_TIMEOUT = 10_000
 """How long an answer is waited for (ms) where ``fetchtimeout`` does not say."""
 HOSTS_ONLY = "what a host has sent names no file, only what hosts and services answer"
-
-
-@dataclass(frozen=True, slots=True)
-class Request:
-    """What goes along with a URI: a submit's, subdialog's or data's method and values."""
-
-    method: str = "get"
-    values: Mapping[str, Json] = field(default_factory=dict)
 
 
 class Missing(Thrown):
@@ -48,7 +37,7 @@ class Missing(Thrown):
 
 
 def load_page(
-    owner: Machine, uri: str, node: Node, request: Request | None = None
+    owner: Owner, uri: str, node: Node, request: Request | None = None
 ) -> Generator[None, Resume, Page]:
     """Fetch and read another document of the application.
 
@@ -78,7 +67,7 @@ def load_page(
     return page
 
 
-def _read(owner: Machine, uri: str, data: bytes) -> Page:
+def _read(owner: Owner, uri: str, data: bytes) -> Page:
     """A document; that of a host is no part of the folder, whatever URI the folder stands for."""
     if uri in owner.hosted:
         whole = owner.document.outside(uri)
@@ -87,7 +76,7 @@ def _read(owner: Machine, uri: str, data: bytes) -> Page:
 
 
 def fetch(
-    owner: Machine, uri: str, node: Node, request: Request | None = None
+    owner: Owner, uri: str, node: Node, request: Request | None = None
 ) -> Generator[None, Resume, bytes]:
     """A resource's bytes.
 
@@ -110,7 +99,7 @@ def fetch(
     return _weighed(owner, answer.body.encode(answer.charset), node)
 
 
-def _weighed(owner: Machine, data: bytes, node: Node) -> bytes:
+def _weighed(owner: Owner, data: bytes, node: Node) -> bytes:
     """Count what is to be read as steps: to read much, again and again, is a loop as well."""
     for _ in range(len(data) // STEP_BYTES):
         owner.count_step(node)
@@ -118,19 +107,19 @@ def _weighed(owner: Machine, data: bytes, node: Node) -> bytes:
 
 
 def _asked(
-    owner: Machine, uri: str, node: Node, request: Request
+    owner: Owner, uri: str, node: Node, request: Request
 ) -> Generator[None, Resume, Fetched]:
     """Ask for a resource, and play prompts and fetch audio until its answer is there (6.1.1)."""
     timeout = milliseconds(_setting(owner, node, "fetchtimeout"), FETCH_TIMEOUT)
     data: Data = {"method": request.method or "get", "params": dict(request.values)}
-    late = Fetched(owner.owner.name, 0, "", problem="no answer within its fetchtimeout")
-    owner.owner.ask(uri, data, late, timeout, node)
+    late = Fetched(owner.app.name, 0, "", problem="no answer within its fetchtimeout")
+    owner.app.ask(uri, data, late, timeout, node)
     audio = _setting(owner, node, "fetchaudio")
     if audio and not owner.gone:
         said = Command("speak", text=f"[{audio.rpartition('/')[2]}]", source=source(node))
         queued = owner.unqueue()
-        yield from owner.owner.pass_time(queued, [said])
-    return (yield from owner.owner.fetched())
+        yield from owner.app.pass_time(queued, [said])
+    return (yield from owner.app.fetched())
 
 
 def _check_reach(where: str, uri: str, node: Node) -> None:
@@ -143,13 +132,13 @@ def _check_reach(where: str, uri: str, node: Node) -> None:
         raise Thrown.at(node, "error.badfetch", f"{uri}: {HOSTS_ONLY}")
 
 
-def _setting(owner: Machine, node: Node, name: str) -> str:
+def _setting(owner: Owner, node: Node, name: str) -> str:
     """A fetch's setting: the element's own, or the property of that name (6.3.5)."""
     own = node.get(name)
     return own or (owner.setting(owner.context, name) if owner.context is not None else "")
 
 
-def _file(owner: Machine, uri: str, node: Node) -> bytes:
+def _file(owner: Owner, uri: str, node: Node) -> bytes:
     _check_reach(uri, uri, node)
     try:
         return owner.document.fetch(uri)
@@ -160,7 +149,7 @@ def _file(owner: Machine, uri: str, node: Node) -> bytes:
 # Grammars -----------------------------------------------------------------------------------
 
 
-def held(owner: Machine, uri: str, node: Node) -> bytes:
+def held(owner: Owner, uri: str, node: Node) -> bytes:
     """A grammar's bytes: a file's, or what :func:`gathered` has asked for.
 
     Raises:
@@ -177,20 +166,20 @@ def held(owner: Machine, uri: str, node: Node) -> bytes:
     return found
 
 
-def _held_as(owner: Machine, uri: str, node: Node) -> str:
+def _held_as(owner: Owner, uri: str, node: Node) -> str:
     """What a resource that a grammar names is known by: its name where it is in the folder."""
     whole, site = urldefrag(uri)[0], owner.document.page.site
     return whole if site is None or of_web(node.source.file) else site.name(whole)
 
 
-def refusal(owner: Machine, by: str, uri: str, node: Node) -> str:
+def refusal(owner: Owner, by: str, uri: str, node: Node) -> str:
     """Why one grammar may not refer to another, by their URIs; nothing if it may."""
     if _held_as(owner, by, node) not in owner.hosted:
         return ""
     return "" if owner.document.outside(_held_as(owner, uri, node)) else HOSTS_ONLY
 
 
-def gathered(owner: Machine, use: Callable[[], object]) -> Flow:
+def gathered(owner: Owner, use: Callable[[], object]) -> Flow:
     """Do what needs grammars, once all that they are made of has been asked for."""
     while True:
         try:

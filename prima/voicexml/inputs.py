@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from prima.grammar.answers import Answers
 from prima.grammar.builtin import TYPES
@@ -17,10 +16,8 @@ from prima.script.budget import Budget
 from prima.voicexml.document import Page
 from prima.voicexml.fetching import held, refusal
 from prima.voicexml.matching import Found, Listener, keys, listener, phrase, ways
+from prima.voicexml.owner import Owner
 from prima.voicexml.state import Context, Heard
-
-if TYPE_CHECKING:
-    from prima.voicexml.machine import Machine
 
 UNIVERSALS = {"help": "help", "cancel": "cancel", "exit": "exit"}
 """Commands that listen everywhere once the property ``universals`` names them (6.3.6)."""
@@ -43,7 +40,7 @@ class Active:
 class Inputs:
     """Finds and matches the grammars of one application."""
 
-    def __init__(self, owner: Machine) -> None:
+    def __init__(self, owner: Owner) -> None:
         self.owner = owner
         self._loaded: dict[tuple[str, int, str], tuple[Page, Listener]] = {}
         """With the page that each is of: the next one of its URI may be another document."""
@@ -146,7 +143,7 @@ class Inputs:
                     results.append(found)
                     first = first or active
             if self._budget.steps <= 0:
-                self.owner.owner.give_up(active.owner, "what it listens for takes too long")
+                self.owner.app.give_up(active.owner, "what it listens for takes too long")
         return first, results
 
     # Which grammars listen --------------------------------------------------------------

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from prima.interpreter.places import source
 from prima.interpreter.selection import satisfied
@@ -11,15 +11,12 @@ from prima.markup.tree import Node
 from prima.messages import Json
 from prima.voicexml.arranging import parts_of
 from prima.voicexml.calls import Calls
-from prima.voicexml.content import INPUTS
 from prima.voicexml.document import Page
-from prima.voicexml.fetching import Request
+from prima.voicexml.elements import INPUTS
+from prima.voicexml.owner import Owner
 from prima.voicexml.recorder import Recordings
 from prima.voicexml.results import RESULTS, shadow
-from prima.voicexml.state import Context, Flow, GoDialog, Heard, Params
-
-if TYPE_CHECKING:
-    from prima.voicexml.machine import Machine
+from prima.voicexml.state import Context, Flow, GoDialog, Heard, Params, Request
 
 ABSENT = object()
 """What stands for a slot that an interpretation lacks: null is a value."""
@@ -28,7 +25,7 @@ ABSENT = object()
 class Items:
     """Fills the form items of one application."""
 
-    def __init__(self, owner: Machine) -> None:
+    def __init__(self, owner: Owner) -> None:
         self.owner = owner
         self.engine = owner.engine
         self.recorder = Recordings(owner)
@@ -39,7 +36,7 @@ class Items:
     def process(self, context: Context, heard: Heard) -> Flow:
         """What the user said goes to the item, form, link or choice that has taken it."""
         owner = heard.owner
-        self.owner.owner.note(owner, "in" if owner.tag in ("link", "choice") else "heard")
+        self.owner.app.note(owner, "in" if owner.tag in ("link", "choice") else "heard")
         self.remember(context, heard)
         dialog = _dialog_of(heard.page, owner)
         if dialog is not None and dialog is not context.form:

@@ -3,39 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
-from typing import TYPE_CHECKING
 
 from prima.interpreter.bounds import Visit
 from prima.interpreter.places import source
 from prima.interpreter.selection import Counters, select_item, select_prompts
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, thrown_of
 from prima.markup.tree import Node
-from prima.messages import Command, Json
+from prima.messages import Action, Command, Json
 from prima.script.evaluation import Scope, ScriptError
 from prima.voicexml.arranging import Queued, holds, is_unit, parts_of
-from prima.voicexml.content import ITEMS, Content
+from prima.voicexml.content import Content
 from prima.voicexml.document import Page
-from prima.voicexml.events import Events, handler_number
-from prima.voicexml.fetching import Request, fetch
+from prima.voicexml.elements import ITEMS, handler_number
+from prima.voicexml.events import Events
+from prima.voicexml.fetching import fetch
 from prima.voicexml.inputs import Inputs, numbered, words_of
 from prima.voicexml.items import Items
-from prima.voicexml.prompts import Speech
+from prima.voicexml.owner import Application
 from prima.voicexml.questions import Questions
 from prima.voicexml.scopes import Documents
+from prima.voicexml.speech import Speech
 from prima.voicexml.state import (
     Context,
     Flow,
     GoDialog,
     Heard,
     Params,
+    Request,
     Resume,
     Unasked,
     thrown_outside,
 )
 from prima.voicexml.units import Units
-
-if TYPE_CHECKING:
-    from prima.voicexml.application import VoiceInterpreter
 
 DIALOG_STEPS = 100
 """As many pieces of content is the work of beginning a dialog."""
@@ -47,11 +46,11 @@ DEFAULTS = {"timeout": "5s", "bargein": "true", "maxnbest": "1", "termchar": "#"
 class Machine:
     """Runs one application's dialogs; everything it does itself takes no time."""
 
-    def __init__(self, owner: VoiceInterpreter) -> None:
-        self.owner = owner
-        self.engine = owner.engine
-        self.document = owner.document
-        self.pages: dict[str, Page] = {owner.document.page.uri: owner.document.page}
+    def __init__(self, app: Application) -> None:
+        self.app = app
+        self.engine = app.engine
+        self.document = app.document
+        self.pages: dict[str, Page] = {app.document.page.uri: app.document.page}
         self.resources: dict[str, bytes | Thrown] = {}
         """What grammars are made of and no file is: its bytes, or why it cannot be had."""
         self.hosted: set[str] = set()
@@ -77,21 +76,21 @@ class Machine:
     # What content needs -------------------------------------------------------------
 
     @property
-    def actions(self) -> list[object]:
+    def actions(self) -> list[Action]:
         """What the application wants."""
-        return self.owner.actions  # type: ignore[return-value]
+        return self.app.actions
 
     def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound what is done in one instant."""
-        self.owner.count_step(node, steps)
+        self.app.count_step(node, steps)
 
     def count_output(self, characters: int, node: Node) -> None:
         """Bound what comes out in one instant."""
-        self.owner.count_output(characters, node)
+        self.app.count_output(characters, node)
 
     def count_value(self, value: Json, node: Node) -> None:
         """Count a value that leaves its variables, before another is made."""
-        self.owner.count_value(value, node)
+        self.app.count_value(value, node)
 
     def fetch(
         self, uri: str, node: Node, request: Request | None = None
@@ -101,7 +100,7 @@ class Machine:
 
     def send(self, service: str, values: Json, node: Node) -> None:
         """Send values to a service, without waiting for its answer."""
-        self.owner.send(service, {"params": values}, source(node))
+        self.app.send(service, {"params": values}, source(node))
 
     def go(
         self,
@@ -119,7 +118,7 @@ class Machine:
         if prompt is not None or text:
             self.asking = prompt
         if text:
-            self.owner.count_output(len(text), self.document.node)
+            self.app.count_output(len(text), self.document.node)
             self.queue.append(Command("speak", text=text, lang=lang, source=place))
 
     def note_bargein(self, context: Context, own: str = "") -> None:
@@ -244,23 +243,23 @@ class Machine:
 
     def dialog(self, context: Context, form: Node, heard: Heard | None) -> Flow:
         """One form or menu, the state that is active until it is left."""
-        outer, owner = self.state, self.owner
+        outer, app = self.state, self.app
         for page in (context.page, context.root):
             if page is not None:
-                owner.note_document(page)
+                app.note_document(page)
         named = context.page.dialogs.items()
         self.state = next((name for name, one in named if one is form), "")
-        owner.visits.append(Visit(owner.name, owner.now, "enter", form, self.state))
-        owner.note(form)
+        app.visits.append(Visit(app.name, app.now, "enter", form, self.state))
+        app.note(form)
         try:
             yield from self._interpret(context, form, heard)
         finally:
             self.state = outer
-            owner.visits.append(Visit(owner.name, owner.now, "leave", None, outer))
+            app.visits.append(Visit(app.name, app.now, "leave", None, outer))
 
     def _interpret(self, context: Context, form: Node, heard: Heard | None) -> Flow:
         """Initialise, then select, collect, process (appendix C)."""
-        self.owner.count_step(form, DIALOG_STEPS)
+        self.app.count_step(form, DIALOG_STEPS)
         context.form, context.item, context.unit = form, None, None
         context.counters, context.visited = Counters(), set()
         context.quiet = False
@@ -293,7 +292,7 @@ class Machine:
         """
         unit, more = context.unit, True
         while more:
-            self.owner.count_step(unit or context.form or self.document.node, ITEM_STEPS)
+            self.app.count_step(unit or context.form or self.document.node, ITEM_STEPS)
             context.item = None
             try:
                 more = yield from self._visit_next(context, wanted)
@@ -386,7 +385,7 @@ class Machine:
 
     def visit(self, context: Context, item: Node, wanted: str = "") -> Flow:
         """Collect: prompts, then what the item waits for; in a unit perhaps an item that is wanted."""
-        self.owner.note(item)
+        self.app.note(item)
         if is_unit(item):
             inner = wanted if item.get("name") != wanted else ""
             yield from self.units.span(context, item, inner)
@@ -448,7 +447,7 @@ class Machine:
         self.queue = []
         if self.gone:
             raise GoOut(self.gone)
-        return (yield from self.owner.wait(commands, open_to_answers))
+        return (yield from self.app.wait(commands, open_to_answers))
 
 
 def _is_spoken(piece: Node | str) -> bool:

@@ -10,7 +10,8 @@ from prima.errors.diagnoses.names import NO_SUCH_FORM, UNDECLARED_VARIABLE
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.voicexml.caught import thrown_in
-from prima.voicexml.document import Fetch, FetchError, Page, read_page
+from prima.voicexml.document import Fetch, FetchError, Page
+from prima.voicexml.reading import read_page
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, WORDED
 
 MOST_PAGES = 100

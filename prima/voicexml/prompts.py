@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 from urllib.parse import urldefrag
 
-from prima.interpreter.content import MAX_REPEATS, MAX_TEXT
+from prima.interpreter.content import MAX_REPEATS
 from prima.interpreter.places import short, source
 from prima.interpreter.transfers import Thrown, failure
 from prima.language.commands import TABLE_4_2
@@ -20,21 +18,18 @@ from prima.voicexml.cues import (
     MAX_CUES,
     MAX_NAME,
     break_ms,
-    clipped,
-    fold,
     later,
     milliseconds,
     rate_of,
 )
 from prima.voicexml.document import FetchError, Page, of_web
+from prima.voicexml.elements import SILENT
+from prima.voicexml.owner import Owner
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
+from prima.voicexml.speech import Speech
 from prima.voicexml.state import Context
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
-if TYPE_CHECKING:
-    from prima.voicexml.machine import Machine
-
-SILENT = frozenset(["lexicon", "metadata", "meta", "desc"])
 SHOWN = """function (v) { return v === undefined ? 'undefined'
   : v === null || typeof v !== 'object' ? v : v.nodeType !== undefined ? v.textContent
   : typeof v.toString === 'function' && v.toString !== Object.prototype.toString ? String(v)
@@ -55,51 +50,6 @@ MAX_KNOWN = 1000
 """Recordings whose length is remembered."""
 
 
-@dataclass(slots=True)
-class Speech:
-    """What has been read of a prompt and not been queued yet."""
-
-    lang: str
-    place: str
-    parts: list[str | Cue] = field(default_factory=list)
-    base: str = ""
-    """The prompt's ``xml:base``, for its recordings."""
-    rate: float = 1.0
-    """How fast it is said, as a multiple of the usual rate."""
-    silent: bool = False
-    """Whether a recording is heard in the place of what is read: its marks are not passed."""
-    takes: int = 0
-
-    def take(self) -> tuple[str, tuple[Cue, ...]]:
-        """The text so far, white space folded, and its cues; nothing of it is left."""
-        text, cues = fold(self.parts)
-        self.parts.clear()
-        self.takes += 1
-        if self.rate != 1.0:
-            self.parts.append(Cue(0, "rate", self.rate))
-        if len(text) > MAX_TEXT:
-            text, cues = text[:MAX_TEXT], clipped(cues, MAX_TEXT)
-        return text, cues
-
-    def say_at(self, rate: float) -> None:
-        """What follows is said at a rate."""
-        if rate != self.rate:
-            self.rate = rate
-            self.parts.append(Cue(0, "rate", rate))
-
-    def open(self, ms: int | None) -> int:
-        """What follows takes so long, until it is closed; gives what closes it."""
-        if ms is None:
-            return -1
-        self.parts.append(Cue(0, "lasts", ms))
-        return self.takes
-
-    def close(self, opened: int) -> None:
-        """Here ends what takes a set time, unless it has been split meanwhile."""
-        if opened == self.takes:
-            self.parts.append(Cue(0, "end"))
-
-
 Maker = Callable[[Node], Command]
 """Makes a Command of its element."""
 
@@ -107,7 +57,7 @@ Maker = Callable[[Node], Command]
 class Speaker:
     """Evaluates expressions, and reads prompts for their words."""
 
-    def __init__(self, owner: Machine) -> None:
+    def __init__(self, owner: Owner) -> None:
         self.owner = owner
         self.engine = owner.engine
         self.mark: str | None = None
@@ -153,7 +103,7 @@ class Speaker:
             found = self.engine.condition(node.get("cond"), context.scopes(local))
         except ScriptError as error:
             raise self.failure(error, node, "cond") from None
-        self.owner.owner.note(node, "true" if found else "false")
+        self.owner.app.note(node, "true" if found else "false")
         return found
 
     def word(self, node: Node, name: str, context: Context, local: Scope) -> str:

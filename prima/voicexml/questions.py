@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from prima.interpreter.places import source
 from prima.interpreter.transfers import Thrown
 from prima.language.values import milliseconds
@@ -12,16 +10,14 @@ from prima.messages import Command, Cue, Data, Json
 from prima.messages import Heard as Spoken
 from prima.voicexml.arranging import Arranged, Queued, take_last_said
 from prima.voicexml.fetching import gathered
+from prima.voicexml.owner import Owner
 from prima.voicexml.state import Context, Flow, Heard, Resume, thrown_outside
-
-if TYPE_CHECKING:
-    from prima.voicexml.machine import Machine
 
 
 class Questions:
     """Asks the questions of one application."""
 
-    def __init__(self, owner: Machine) -> None:
+    def __init__(self, owner: Owner) -> None:
         self.owner = owner
 
     def ask(self, context: Context, item: Node) -> Flow:
@@ -35,7 +31,7 @@ class Questions:
         question = self._question(context, item, asked)
         if item.tag == "record":
             owner.items_of.recorder.prepare(item, question)
-        owner.owner.heard = None
+        owner.app.heard = None
         opened = [] if item.tag == "record" else open_to_answers(owner.queue, question)
         resume = yield from owner.wait([*owner.queue, question], opened)
         yield from self._answered(context, item, resume)
@@ -68,7 +64,7 @@ class Questions:
                 self.owner.items_of.recorder.broken_off(context, item, resume.event)
             raise thrown_outside(resume)
         outcome = str(resume.data.get("outcome", "noinput"))
-        heard = self.owner.owner.heard
+        heard = self.owner.app.heard
         if outcome == "filled" and heard is not None:
             heard.take_mark(resume.data)
             if heard.owner is item and item.tag == "record":

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from prima.interpreter.transfers import Thrown
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import BEEP, Command, Cue, Data, Event, Json
 from prima.voicexml.matching import KEYS
+from prima.voicexml.owner import Owner
 from prima.voicexml.state import Context, Flow, Heard
-
-if TYPE_CHECKING:
-    from prima.voicexml.machine import Machine
 
 FORMATS = frozenset(["audio/basic", "audio/x-alaw-basic", "audio/x-wav", "audio/wav"])
 """Formats that every platform records in (appendix E)."""
@@ -28,7 +24,7 @@ MAX_KNOWN = 1000
 class Recordings:
     """Fills the record items of one application."""
 
-    def __init__(self, owner: Machine) -> None:
+    def __init__(self, owner: Owner) -> None:
         self.owner = owner
         self.lengths: dict[str, int] = {}
         """What has been recorded, and how long it was (ms)."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from typing import TYPE_CHECKING
 from urllib.parse import urldefrag
 
 from prima.interpreter.transfers import Thrown
@@ -11,11 +10,9 @@ from prima.markup.tree import Node
 from prima.markup.uris import legal
 from prima.script.evaluation import Scope
 from prima.voicexml.document import Page
-from prima.voicexml.fetching import Request, load_page
-from prima.voicexml.state import Context, Flow, GoDialog, Resume
-
-if TYPE_CHECKING:
-    from prima.voicexml.machine import Machine
+from prima.voicexml.fetching import load_page
+from prima.voicexml.owner import Owner
+from prima.voicexml.state import Context, Flow, GoDialog, Request, Resume
 
 CONNECTION = """session.connection = (function (held) {
   for (const name of ['local', 'remote', 'protocol']) held[name] = held[name] || {};
@@ -31,7 +28,7 @@ TELEPHONE = """session.telephone =
 class Documents:
     """Enters the documents of one application."""
 
-    def __init__(self, owner: Machine) -> None:
+    def __init__(self, owner: Owner) -> None:
         self.owner = owner
         self.engine = owner.engine
         self.session = owner.engine.nothing
@@ -41,7 +38,7 @@ class Documents:
         """Make the scope of the whole session (5.1.4); documents see it and cannot change it."""
         session, blank = self.engine.scope(), self.engine.scope()
         self.engine.put(session, "session", session)
-        given = self.engine.scope(given=dict(self.owner.owner.connection))
+        given = self.engine.scope(given=dict(self.owner.app.connection))
         for code in (CONNECTION, TELEPHONE):
             self.engine.raw(code, (session, blank, blank, blank, given))
         self.session = session

@@ -11,31 +11,33 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property
 from urllib.parse import urldefrag, urlsplit
 
-from prima.interpreter.elements import (
+from prima.interpreter.acts import (
     Act,
     Assign,
-    Block,
     Clear,
     CommandTemplate,
-    Document,
     Exit,
     Expression,
-    Field,
-    Filled,
     Foreach,
-    Form,
     Goto,
     Handler,
     If,
-    Item,
     Pause,
-    Prompt,
     Return,
     Run,
     StepTemplate,
-    Subdialog,
     Text,
     Throw,
+)
+from prima.interpreter.elements import (
+    Block,
+    Document,
+    Field,
+    Filled,
+    Form,
+    Item,
+    Prompt,
+    Subdialog,
     Unit,
 )
 from prima.interpreter.entering import Target
@@ -44,11 +46,9 @@ from prima.markup.tree import Node
 from prima.messages import Json
 from prima.script.choices import Choice, choices
 from prima.voicexml.arranging import ARRANGING, is_unit, longest_of
-from prima.voicexml.content import ITEMS
 from prima.voicexml.cues import break_ms
 from prima.voicexml.document import Page
-from prima.voicexml.events import HANDLERS, handler_names, handler_number
-from prima.voicexml.prompts import SILENT
+from prima.voicexml.elements import HANDLERS, ITEMS, SILENT, handler_names, handler_number
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 ASKING = ("field", "initial", "record", "menu")

@@ -16,7 +16,7 @@ from prima.language.commands import TABLE_4_2, CommandType
 from prima.voicexml.arranging import UNIT, is_unit
 from prima.voicexml.caught import thrown_in
 from prima.voicexml.document import Page, broken
-from prima.voicexml.events import HANDLERS
+from prima.voicexml.elements import HANDLERS
 from prima.voicexml.sketch import Sketch, commands_in
 
 PREFIX = "p:"

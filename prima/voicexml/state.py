@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from dataclasses import dataclass, field
 
 from prima.interpreter.selection import Counters
@@ -27,6 +27,14 @@ class Resume:
 
 
 Flow = Generator[None, Resume, None]
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What goes along with a URI: a submit's, subdialog's or data's method and values."""
+
+    method: str = "get"
+    values: Mapping[str, Json] = field(default_factory=dict)
 
 
 @dataclass(slots=True)

@@ -8,27 +8,22 @@ unit, once the form goes on.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from prima.interpreter.transfers import GoOut, Thrown, Transfer
 from prima.interpreter.units import Reach
 from prima.markup.tree import Node
 from prima.script.evaluation import ScriptError
 from prima.voicexml.arranging import longest_of
-from prima.voicexml.content import ITEMS
 from prima.voicexml.document import Page
-from prima.voicexml.events import HANDLERS
+from prima.voicexml.elements import HANDLERS, ITEMS
+from prima.voicexml.owner import Owner
 from prima.voicexml.sketch import Sketch
 from prima.voicexml.state import Context, Flow, HungUp, UnitOver
-
-if TYPE_CHECKING:
-    from prima.voicexml.machine import Machine
 
 
 class Units:
     """Opens and closes the units of one application."""
 
-    def __init__(self, owner: Machine) -> None:
+    def __init__(self, owner: Owner) -> None:
         self.owner = owner
         self._reached: dict[int, tuple[Node, Page | None, Reach]] = {}
         """What each unit reaches, with the application root that was its document's then."""
@@ -43,7 +38,7 @@ class Units:
         """
         if self.owner.queue:
             yield from self.owner.play(context)  # what was said before is no part of it
-        app, items = self.owner.owner, self.owner.items_of
+        app, items = self.owner.app, self.owner.items_of
         app.open_unit(self._reach(context, unit), longest_of(unit), unit)
         context.unit = unit
         items.mark(context, unit)
@@ -62,11 +57,11 @@ class Units:
         """What is said before a unit is left belongs to it (O3); nothing breaks it off."""
         if not self.owner.queue or self.owner.gone:
             return
-        self.owner.owner.leaving = True
+        self.owner.app.leaving = True
         try:
             yield from self.owner.play(context)
         finally:
-            self.owner.owner.leaving = False
+            self.owner.app.leaving = False
 
     def left_by(self, context: Context, error: Thrown | ScriptError) -> bool:
         """Whether an event leaves the unit that the dialog is in before it is handled."""

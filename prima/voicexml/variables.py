@@ -19,11 +19,11 @@ from prima.markup.spans import Declarations
 from prima.markup.tree import Node
 from prima.script.globals import IDENTIFIER
 from prima.script.known import Known, Scope
-from prima.script.names import SCOPES, Names, Use, expression_names, script_names
+from prima.script.names import Names, Use, expression_names, script_names
+from prima.script.walk import OBJECTS
 from prima.voicexml.checks import FORM_ITEMS, NAMING, is_code
-from prima.voicexml.content import INPUTS
 from prima.voicexml.document import Page
-from prima.voicexml.events import HANDLERS
+from prima.voicexml.elements import HANDLERS, INPUTS
 
 ALWAYS = frozenset(
     [
@@ -42,7 +42,7 @@ FILES = ("src", "srcexpr")
 """Attributes of a script that stands elsewhere."""
 LISTED = re.compile(r"\S+")
 """A name in a list of names."""
-MENTIONED = re.compile(rf"\b(?:{'|'.join(sorted(SCOPES))})\b")
+MENTIONED = re.compile(rf"\b(?:{'|'.join(sorted(OBJECTS))})\b")
 
 Text = Callable[[Page, Node], str | None]
 """Gives the text of a script in a file, if it can be had."""
@@ -244,14 +244,14 @@ class _Look:
             scope = known.get(holder)
             if scope is None or name in scope or name in ALWAYS:
                 continue
-            if self.mentioned.isdisjoint([(holder, ""), *((one, name) for one in SCOPES)]):
+            if self.mentioned.isdisjoint([(holder, ""), *((one, name) for one in OBJECTS)]):
                 yield _no_member(read, holder, name, scope)
 
 
 def _mentions(uses: list[Use]) -> Iterator[tuple[str, str]]:
     """The members of scopes that some code gives values or looks at, and scopes used as a whole."""
     members = [use for use in uses if use.holder]
-    for scope in SCOPES:
+    for scope in OBJECTS:
         written = sum(use.name == scope and not use.holder for use in uses)
         if written > sum(use.holder == scope for use in members):
             yield scope, ""
@@ -309,7 +309,7 @@ def _members(node: Node) -> Iterator[Read]:
     for whole in LISTED.finditer(node.get(changed)):
         holder, _, rest = whole[0].partition(".")
         name = rest.partition(".")[0]
-        if holder in SCOPES and IDENTIFIER.fullmatch(name):
+        if holder in OBJECTS and IDENTIFIER.fullmatch(name):
             yield Read(f"{holder}.{name}", node, changed, whole.start())
 
 

@@ -47,12 +47,12 @@ EXPRESSIONS = [
 
 @pytest.mark.parametrize(("name", "code", "message"), EXPRESSIONS)
 def test_expressions(prima: Prima, tmp_path: Path, name: str, code: str, message: str) -> None:
-    """Each is a timely event that the document can handle, with its place."""
+    """Each is an event that the document can handle, with its place."""
     shown = code.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
     asked = f'\n<send to="x"><param name="p" expr="{shown}"/></send><exit/>'
     began = time.monotonic()
     prima("run", stage(tmp_path, app(form(f"<block>{asked}</block>{CATCH}"))), "-o", "t").check(0)
-    assert time.monotonic() - began < 3
+    assert time.monotonic() - began < 60, "it hangs"
     [said] = messages(tmp_path / "t")
     assert said.startswith("caught app.xml:3:") and message in said
 

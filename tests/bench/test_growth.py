@@ -68,7 +68,7 @@ def grown(family: Family, folder: Path, work: Callable[[Path], object]) -> float
 @pytest.fixture(autouse=True)
 def nothing_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """What other tests have compiled would make a small document's share of the work smaller."""
-    monkeypatch.setattr("prima.script.compile._Kept.expressions", {})
+    monkeypatch.setattr("prima.script.compile._Cache.expressions", {})
     names._kept.cache_clear()
 
 

@@ -13,7 +13,7 @@ from prima.errors import Problem
 from prima.lsp import problems as editor
 from prima.lsp.workspace import Workspace
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 
 BESIDE = ROOT / "tests" / "mistakes" / "beside"
 SILENT = (

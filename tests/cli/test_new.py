@@ -10,7 +10,7 @@ import pytest
 from prima.cli.new import KINDS
 from prima.errors import UsageError
 from prima.templates import identifier, write
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 
 
 @pytest.mark.parametrize("name", ["guide", "My guide 3", "日本", "3--x <&> y", "_"])

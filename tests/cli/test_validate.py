@@ -20,7 +20,7 @@ from prima.errors import DocumentError, Place, Problem, listed
 from prima.errors.diagnoses.reading import NOT_XML
 from prima.errors.rendering import excerpt, render, sarif
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.validating import wrong
 
 BAD = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a">

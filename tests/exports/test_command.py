@@ -13,8 +13,8 @@ import pytest
 
 from prima import api
 from prima.exports import FORMATS, timeline
-from tests.helpers.command import prima
 from tests.helpers.exporting import SCENARIOS, check_all, end, exported, of, start
+from tests.helpers.here import prima
 
 
 @pytest.mark.parametrize("to", FORMATS)

@@ -103,7 +103,7 @@ def test_a_link_listens_by_a_file(folder: Path) -> None:
         ('src=""', "a.xml", "bad-value", "src names no file"),
         ('src="#size"', "a.xml", "bad-value", "src names no file"),
         ('src="some.txt"', "some.txt", "not-xml", "not an SRGS grammar"),
-        ('src="a.xml"', "a.xml", "wrong-root", "<prima> is no grammar"),
+        ('src="a.xml"', "a.xml", "wrong-root", "<prima> is not a grammar"),
         ('src="wrong.grxml"', "wrong.grxml", "no-such-rule", 'root rule "sise" is not there'),
         ('src="entity.grxml"', "entity.grxml", "doctype", "DOCTYPE"),
     ],

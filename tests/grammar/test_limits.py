@@ -16,7 +16,7 @@ from prima.grammar import (
     load,
 )
 from prima.grammar.model import Tag
-from prima.script.isolated import IsolatedSandbox
+from prima.script.shared import IsolatedTagEngine
 from tests.helpers.grammars import ABNF, SCRIPT, xml
 from tests.helpers.work import steps
 
@@ -301,13 +301,13 @@ def test_the_work_of_loading_grows_with_the_length() -> None:
 
 def test_tags_are_checked_once(monkeypatch: pytest.MonkeyPatch) -> None:
     checked: list[str] = []
-    check = IsolatedSandbox.fault
+    check = IsolatedTagEngine.fault
 
-    def noted(sandbox: IsolatedSandbox, code: str) -> str:
+    def noted(engine: IsolatedTagEngine, code: str) -> str:
         checked.append(code)
-        return check(sandbox, code)
+        return check(engine, code)
 
-    monkeypatch.setattr(IsolatedSandbox, "fault", noted)
+    monkeypatch.setattr(IsolatedTagEngine, "fault", noted)
     grammar = load(f"{SCRIPT}$r = x {{out=1}} y {{if (1)}} | z {{out=2}};")
     for said in ("x y", "x y", "z", "z"):
         grammar.match(said)

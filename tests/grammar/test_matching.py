@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from prima.grammar.answers import Answers
-from prima.grammar.model import Choice, LeadIndex, Part, Repeat, Sequence
+from prima.grammar.model import Choice, Part, PrefixIndex, Repeat, Sequence
 from prima.script.budget import MOST_MATCHING, Budget
 from tests.helpers.robot import document, read
 
@@ -41,7 +41,7 @@ def unindexed(part: Part) -> None:
     while todo:
         one = todo.pop()
         if isinstance(one, Choice):
-            one.index = LeadIndex({}, [], list(range(len(one.parts))))
+            one.index = PrefixIndex({}, [], list(range(len(one.parts))))
         if isinstance(one, Choice | Sequence):
             todo += one.parts
         elif isinstance(one, Repeat):

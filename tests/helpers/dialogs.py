@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import pytest
 
 from prima.errors import DocumentError, Problem
-from prima.voicexml.document import read_page
+from prima.voicexml.reading import read_page
 from tests.helpers.voice import Call, vxml
 
 SILENT = ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from prima.errors import DocumentError, Problem
-from prima.voicexml.document import read_page
+from prima.voicexml.reading import read_page
 from tests.helpers.robot import document
 from tests.helpers.voice import Call
 

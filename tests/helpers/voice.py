@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 from prima.messages import Ended, Fetched, Inbound
 from prima.sim.telephone import Telephone
-from prima.voicexml.document import FetchError, VoiceDocument, read_page
+from prima.voicexml.document import FetchError, VoiceDocument
+from prima.voicexml.reading import read_page
 from tests.helpers.robot import Bench
 
 HEAD = '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en">'

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import networkx
 import pytest
 
 import prima
@@ -53,9 +54,9 @@ INSIDE = {
         {"__init__"},
     ],
     "markup": [
-        {"limits", "opening", "uris", "vocabulary", "tree"},
-        {"edits", "slips", "spans"},
-        {"build", "check", "rnc", "schema"},
+        {"limits", "sniff", "uris", "vocabulary", "tree"},
+        {"edits", "encodings", "hints", "spans", "wellformed"},
+        {"build", "check"},
         {"reader"},
         {"__init__"},
     ],
@@ -66,7 +67,7 @@ INSIDE = {
         {"diagnoses", "rendering"},
         {"__init__"},
     ],
-    "language": [{"values"}, {"commands", "distributions"}, {"__init__"}],
+    "language": [{"values"}, {"commands", "distributions"}, {"arguments"}, {"__init__"}],
     "loading": [{"diagnoses", "files", "web", "writing"}, {"__init__"}, {"heads"}],
     "experiments": [
         {"levels", "plan", "study", "variants"},
@@ -79,45 +80,70 @@ INSIDE = {
     ],
     "handbook": [{"examples", "rulebook"}, {"__init__"}],
     "script": [
-        {"prelude"},
+        {"sandbox", "surrogates"},
         {"budget", "evaluation", "globals", "parse", "wire"},
-        {"choices", "ecmascript", "known", "names"},
+        {"choices", "ecmascript", "known", "literals", "walk"},
+        {"names", "operations"},
         {"hoisting", "syntax"},
-        {"compile", "engine", "sandbox"},
+        {"compile", "tagengine", "wrapping"},
+        {"engine"},
         {"host"},
         {"worker"},
-        {"isolated"},
+        {"remote"},
+        {"isolated", "shared"},
         {"__init__"},
     ],
     "grammar": [
-        {"errors", "prefixes", "text", "numbers"},
+        {"abnferrors", "errors", "text", "numbers"},
         {"media"},
-        {"model", "moments"},
-        {"values", "builtin", "leads", "legacy", "chart"},
-        {"xmlform", "abnf", "ranking"},
-        {"semantics", "tags", "types"},
+        {"abnfheader", "dates", "model"},
+        {"builtin", "chart", "legacy", "prefixes", "values"},
+        {"abnf", "ranking", "xmlcheck"},
+        {"semantics", "tags", "types", "xmlform"},
         {"grammar", "linking"},
         {"answers", "dialogue", "loading"},
         {"phrases"},
         {"__init__"},
     ],
     "interpreter": [
-        {"diagnoses", "vocabulary"},
-        {"elements", "selection"},
-        {"events", "places", "plain", "sensors"},
+        {"acts", "diagnoses", "selection", "vocabulary"},
+        {"elements"},
+        {"events", "places", "pyengine", "sensors"},
         {"naming", "transfers"},
         {"entering", "rounds", "surroundings", "units"},
         {"returning", "ways"},
+        {"leaving"},
         {"repeats"},
         {"grammars"},
+        {"attributes"},
+        {"buildcontent"},
         {"build", "checks", "frame"},
         {"reader", "owner"},
+        {"expressions"},
         {"content"},
         {"form", "bounds"},
         {"handling", "protocol"},
+        {"states"},
         {"application"},
         {"__init__"},
     ],
+    "voicexml": [
+        {"caught", "cues", "dom", "elements", "recordings", "site", "upgrade", "vocabulary"},
+        {"arranging", "speech"},
+        {"checks"},
+        {"document"},
+        {"listening", "matching", "sketch", "state", "variables"},
+        {"owner", "results", "sketched"},
+        {"events", "prompts", "reading", "recorder", "units"},
+        {"fetching", "pages"},
+        {"content", "inputs", "questions", "scopes"},
+        {"calls"},
+        {"items"},
+        {"machine"},
+        {"application"},
+        {"__init__"},
+    ],
+    "session": [{"applications"}, {"wiring"}, {"hearing"}, {"session"}, {"__init__"}],
     "exports": [{"timeline"}, {"tiers"}, {"csv", "eaf", "mcap", "textgrid", "vtt"}, {"__init__"}],
     "lsp": [
         {"descriptions", "text"},
@@ -167,9 +193,9 @@ INSIDE = {
         {"__init__"},
     ],
     "live": [
-        {"answers", "clock", "journal", "recordings", "told"},
+        {"answers", "clock", "journal", "recordings", "signals", "told"},
         {"driver"},
-        {"mapped"},
+        {"carried", "mapped"},
         {"ros"},
         {"devices", "drivers"},
         {"services"},
@@ -199,13 +225,13 @@ INSIDE = {
 }
 
 ALONE = {
-    "lxml": {"markup.reader"},
+    "lxml": {"markup.wellformed"},
     "pymunk": {"sim.world"},
     "networkx": {"sim.routes"},
-    "lark": {"grammar.abnf"},
+    "lark": {"grammar.abnf", "grammar.abnferrors"},
     "tree_sitter": {"script.parse"},
     "tree_sitter_javascript": {"script.parse"},
-    "_quickjs": {"script.engine", "script.sandbox", "script.syntax"},
+    "_quickjs": {"script.engine", "script.syntax", "script.tagengine"},
     "pydantic": {"transcript.record", "transcript.lines", "experiments.studyfile"},
     "pyarrow": {"experiments.table"},
     "scipy": {"experiments.design", "results"},
@@ -294,6 +320,27 @@ def test_a_module_imports_only_what_stands_below(name: str) -> None:
                     assert rank(inside, parts[2]) < rank(inside, own), f"{name} imports {target}"
         elif parts[1] in MODULES or any(key.startswith(f"{parts[1]}.") for key in MODULES):
             assert rank(LAYERS, parts[1]) < rank(LAYERS, package), f"{name} imports {target}"
+
+
+def origins(tree: ast.Module) -> set[str]:
+    """The modules of the package that names are imported from, without ``prima.``."""
+    found = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("prima."):
+            home = (node.module or "").removeprefix("prima.")
+            for name in (f"{home}.{one.name}" for one in node.names):
+                ways = (name, f"{name}.__init__", home, f"{home}.__init__")
+                found |= set([one for one in ways if one in MODULES][:1])
+    return found
+
+
+def test_no_modules_import_each_other() -> None:
+    """Neither when they are loaded, nor inside functions, nor for types."""
+    graph: networkx.DiGraph[str] = networkx.DiGraph()
+    for name, tree in MODULES.items():
+        graph.add_edges_from((name, one) for one in origins(tree) if one != name)
+    knots = [one for one in networkx.strongly_connected_components(graph) if len(one) > 1]
+    assert not knots
 
 
 @pytest.mark.parametrize(("library", "homes"), sorted(ALONE.items()))

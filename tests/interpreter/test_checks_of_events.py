@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from prima.interpreter.acts import Expression
 from prima.interpreter.application import Interpreter
-from prima.interpreter.elements import Expression
 from prima.interpreter.frame import Fiber
 from prima.interpreter.sensors import sensors_read
 from prima.messages import Loaded, Sensed, Unloaded

@@ -118,7 +118,7 @@ def test_what_is_wrong_is_raised_as_the_command_line_tells_it(hello: Path, tmp_p
         prima.run_live(SCENARIO, resume=tmp_path / "visit.jsonl")
     with pytest.raises(UsageError, match="The speed is 0"):
         prima.run_live(SCENARIO, speed=0)
-    with pytest.raises(DocumentError, match=r"none\.xml. cannot be read"):
+    with pytest.raises(UsageError, match=r"none\.xml: cannot be read"):
         prima.run_live(robot=tmp_path / "none.xml", eas=[hello])
     with pytest.raises(UsageError, match='There is no driver of the kind "sims"'):
         prima.run_live(robot=robot_with(tmp_path, '<driver kind="sims"/>'), eas=[hello])

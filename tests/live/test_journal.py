@@ -13,9 +13,12 @@ import pytest
 from prima import api
 from prima.devices.loop import Loop
 from prima.errors import RunError, UsageError
+from prima.grammar.answers import Answers
 from prima.journal import replay_instants
 from prima.live.devices import LiveDevices
-from prima.live.journal import Journal, catch_up, going_on, known, read_broken
+from prima.live.journal import Journal, Redactor, catch_up, going_on, known, read_broken
+from prima.live.prepared import prepared
+from prima.live.visit import Chosen, Settings, begin
 from prima.messages import Record
 from prima.sim.devices import Cast
 from prima.transcript.lines import finished
@@ -94,6 +97,7 @@ def check_going_on(cast: Cast, records: list[Record], cut: int, path: Path) -> N
 @pytest.mark.parametrize("name", ["touched-on-the-way", "picture-alone"])
 def test_a_run_goes_on_wherever_it_was_cut_off(name: str, tmp_path: Path) -> None:
     cast = cast_of(name)
+    cast.robot.speed *= 4  # another loop of the same movement is no other cut
     records = carried_out(live_loop(cast))
     for cut in range(1, len(records)):
         check_going_on(cast, records, cut, tmp_path / "visit.jsonl")
@@ -222,3 +226,43 @@ def test_a_full_disk_ends_the_run_with_a_clear_error() -> None:
     with pytest.raises(RunError, match="No space left"):
         journal.write([HEAD])
     journal.close()
+
+
+def test_what_users_say_in_their_own_words_is_left_out_wherever_it_comes_back() -> None:
+    takes = [Answers({"a cake": "cake"}), Answers(type="text")]
+    redactor = Redactor(lambda: takes)
+    said = "My name is Ada."
+
+    def heard(text: str) -> Record:
+        return {"time": 1, "phase": "event", "actor": "user", "event": "speech", "text": text}
+
+    redactor([{"time": 0, "phase": "run", "data": {}}])
+    value = {"outcome": "filled", "utterance": said, "value": said}
+    free = [
+        heard(said),
+        {"time": 1, "phase": "end", "text": "Who are you?", "data": value},
+        {"time": 1, "phase": "send", "data": {"to": "diary", "params": {"text": [said, 3]}}},
+        {"time": 1, "phase": "request", "text": "Well, MY  NAME IS ADA. Is that so?"},
+    ]
+    made = redactor(free)
+    assert "ada" not in str(made).lower()
+    assert [one.get("text") for one in made[::3]] == ["[redacted]", "Well, [redacted]. Is that so?"]
+    kept = {"time": 2, "phase": "end", "text": "A cake?", "data": {"value": "cake"}}
+    assert redactor([heard("a cake"), kept])[1] == kept, "a grammar has made this"
+    takes.clear()
+    redactor([])
+    says = {"time": 3, "phase": "request", "text": "So it is. Nobody asks me now."}
+    assert redactor([heard("it"), says])[1] == says
+    assert "Nobody" not in str(redactor([heard("Nobody asks me"), says]))
+
+
+def test_a_scenario_with_free_answers_has_none_of_them_in_a_redacted_journal(
+    tmp_path: Path,
+) -> None:
+    journal = tmp_path / "visit.jsonl"
+    scenario = "documents/scenarios/follow-during-navigation.xml"
+    visit = begin(Chosen(scenario=scenario), Settings(speed=1000, redact=True), str(journal))
+    visit.run(lambda _: None, lambda _: None)
+    assert "I see" not in journal.read_text()
+    with pytest.raises(UsageError, match="is for a new journal"):
+        prepared(Chosen(), Settings(redact=True), None, str(journal))

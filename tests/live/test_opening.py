@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import re
+import signal
+import subprocess
+import sys
 from pathlib import Path
+from subprocess import PIPE
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,10 +15,11 @@ import pytest
 
 from prima.live.driver import Unreachable
 from prima.live.drivers.speech.sound import SoundCard
+from prima.live.signals import BLOCKED_S
 from tests.live.test_live import HELLO, ROOT, prima
 
 DRIVERS = """
-import asyncio, sys
+import asyncio, sys, time
 from prima.live.driver import Driver, TaskDriver, Unreachable, Unusable
 
 class Well(TaskDriver):
@@ -56,6 +62,12 @@ class Made(Well):
 class Samples(Well):
     kind = "samples"
     def sample(self, now): raise ValueError("no such joint")
+
+class Blocks(Well):
+    kind = "blocks"
+    async def open(self):
+        print("blocks", file=sys.stderr, flush=True)
+        time.sleep(1000)
 
 class Due(Well):
     kind = "due"
@@ -117,6 +129,27 @@ def test_a_driver_that_cannot_be_opened_ends_the_run(
     assert again.returncode == 0, again.stderr
 
 
+@pytest.mark.parametrize("check", [[], ["--check"]])
+def test_a_second_signal_ends_a_run_that_a_driver_blocks(check: list[str], stage: Path) -> None:
+    words = ["--robot", robot(stage, TWO.format("blocks", "")), "--driver", "drivers.py", *check]
+    journal = [] if check else ["--ea", "hello.xml", "-o", "visit.jsonl"]
+    command = [sys.executable, "-m", "prima", "live", *words, *journal]
+    with subprocess.Popen(command, cwd=stage, stdout=PIPE, stderr=PIPE, text=True) as run:
+        assert run.stderr is not None
+        assert any(line == "blocks\n" for line in run.stderr)
+        run.send_signal(signal.SIGINT)
+        with pytest.raises(subprocess.TimeoutExpired):
+            run.wait(2 * BLOCKED_S)
+        run.send_signal(signal.SIGINT)
+        told = "".join(run.communicate(timeout=60))
+    line = 1 + DRIVERS.splitlines().index("        time.sleep(1000)")
+    assert run.returncode == 130, told
+    assert f"drivers.py:{line}. Drivers must wait with await." in told
+    assert "well is safe" in told
+    assert "Go on with" not in told
+    assert not (stage / "visit.jsonl").exists()
+
+
 def test_no_driver_stays_half_open(stage: Path) -> None:
     ran = live(stage, TWO.format("raises", "").replace('"well"', '"slow"'))
     assert ran.returncode == 3
@@ -136,6 +169,7 @@ def test_a_run_that_goes_on_keeps_its_journal(stage: Path) -> None:
     (stage / "drivers.py").write_text(DRIVERS)
     on = prima("live", *words)
     assert on.returncode == 0, on.stderr
+    assert "Turn (angle 30)" in on.stdout, "although it was asked for before the cut"
 
 
 @pytest.mark.parametrize(
@@ -183,6 +217,38 @@ def test_a_missing_microphone_is_named_with_its_remedy(
     which = f'the {name} "USB" cannot be opened' if chosen else f"there is no {name}"
     with pytest.raises(Unreachable, match=rf'{which} .*<option name="{name}" value="..."/>'):
         SoundCard(chosen, chosen).open(lambda _: None, lambda _: None)
+
+
+@pytest.mark.parametrize(
+    ("drivers", "told"),
+    [
+        ('<driver kind="well" devices="speaker"/>', 'write devices="locomotion" into a <driver>'),
+        ('<driver kind="mapped" devices="locomotion"/>', 'write <does command="turn" ...> in a'),
+    ],
+)
+def test_a_command_that_no_driver_carries_out_is_told_before_it_fails(
+    drivers: str, told: str, stage: Path
+) -> None:
+    mapped = "\nclass Mapped(Well):\n    kind = 'mapped'\n    mapped = True\n"
+    (stage / "drivers.py").write_text(DRIVERS + mapped)
+    (stage / "hello.xml").write_text(HELLO.replace("<speak>Hello there.</speak>", ""))
+    ran = live(stage, drivers)
+    before = re.search(
+        r"hello\.xml:2:\d+: warning: turn: no driver carries it out: (.+)", ran.stderr
+    )
+    assert before is not None, ran.stderr
+    assert told in before[1]
+    assert (ran.returncode, told in ran.stderr.partition(before[0])[2]) == (3, True)
+    checked = live(stage, drivers, "--check")
+    assert re.search(rf"FAILS +turn +no driver carries it out: {re.escape(told)}", checked.stdout)
+
+
+def test_a_robot_without_a_driver_is_told_with_its_place(stage: Path) -> None:
+    ran = live(stage, "")
+    assert (ran.returncode, "robot.xml:3:1: The robot simulated has no driver." in ran.stderr) == (
+        2,
+        True,
+    )
 
 
 def test_extras_that_are_missing_are_wrong_settings() -> None:

@@ -136,7 +136,7 @@ def test_what_a_driver_that_is_not_there_would_do_is_not_tried(tmp_path: Path) -
 
 def test_a_command_that_no_driver_carries_out_is_named(tmp_path: Path) -> None:
     ran = checked(tmp_path, '<driver kind="reachy" address="127.0.0.1:9" devices="locomotion"/>')
-    assert re.search(r'FAILS +move-head .*name it in a <does command="move-head">', ran.stdout)
+    assert re.search(r'FAILS +move-head .*write devices="neck" into a <driver>', ran.stdout)
 
 
 def test_the_emergency_stop_is_named(tmp_path: Path) -> None:

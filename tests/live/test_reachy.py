@@ -363,7 +363,9 @@ def test_addresses_may_be_short(written: str, address: str) -> None:
     assert read_address(written) == address
 
 
-@pytest.mark.parametrize("written", ["ws://robot", "http://", "http://robot:x", "http://robot/api"])
+@pytest.mark.parametrize(
+    "written", ["ws://robot", "http://", "http://robot:x", "http://robot/api", "not an address"]
+)
 def test_what_is_no_address_is_told_before_the_run(written: str) -> None:
     profile = robot(address=written)
     with pytest.raises(UsageError, match="is not the address of a Reachy Mini; write address="):

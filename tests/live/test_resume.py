@@ -52,7 +52,7 @@ def test_what_was_asked_is_asked_again_or_has_failed(
     how: str, times: int, line: str, host: Host, tmp_path: Path
 ) -> None:
     journal = killed_while_asking(tmp_path, host, how)
-    on = prima("live", "--resume", str(journal), "--until", "30s")
+    on = prima("live", "--resume", str(journal), "--until", "600s", "--speed", "10")
     assert on.returncode == 0, on.stderr
     assert line in on.stdout
     assert len(host.asked) == times
@@ -68,7 +68,7 @@ def test_what_the_cut_left_out_of_its_instant_was_never_asked(host: Host, tmp_pa
     lines = journal.read_text().splitlines(keepends=True)
     sends = next(i for i, text in enumerate(lines) if '"phase":"send"' in text)
     journal.write_text("".join(lines[:sends]))
-    on = prima("live", "--resume", str(journal), "--until", "30s")
+    on = prima("live", "--resume", str(journal), "--until", "600s", "--speed", "10")
     assert on.returncode == 0, on.stderr
     assert "It is I, Robot." in on.stdout
     assert len(host.asked) == 2
@@ -114,13 +114,17 @@ def test_what_has_no_answer_is_known(records: list[Record], left: list[str]) -> 
 SCENARIO = "documents/scenarios/touched-on-the-way.xml"
 
 
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The journal of a scenario's live run; paths in it lead to folders beside it."""
+    path = tmp_path_factory.mktemp("whole") / "visit.jsonl"
+    assert prima("live", "--speed", "1000", SCENARIO, "-o", str(path)).returncode == 0
+    return path
+
+
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.999])
-def test_a_scenario_goes_on_and_gives_the_rehearsals_transcript(
-    share: float, tmp_path: Path
-) -> None:
-    whole, journal = tmp_path / "whole.jsonl", tmp_path / "visit.jsonl"
-    assert prima("live", "--speed", "1000", SCENARIO, "-o", str(whole)).returncode == 0
-    text = whole.read_text()
+def test_a_scenario_goes_on_and_gives_the_rehearsals_transcript(share: float, whole: Path) -> None:
+    journal, text = whole.with_name(f"{share}.jsonl"), whole.read_text()
     ends = text.index("\n") + 1
     journal.write_text(text[: max(int(len(text) * share), ends)])
     on = prima("live", "--speed", "1000", "--resume", str(journal))
@@ -129,14 +133,13 @@ def test_a_scenario_goes_on_and_gives_the_rehearsals_transcript(
     assert prima("replay", str(journal)).returncode == 0
 
 
-def test_a_scenario_that_a_host_has_answered_does_not_go_on(tmp_path: Path) -> None:
-    whole, journal = tmp_path / "whole.jsonl", tmp_path / "visit.jsonl"
-    assert prima("live", "--speed", "1000", SCENARIO, "-o", str(whole)).returncode == 0
+def test_a_scenario_that_a_host_has_answered_does_not_go_on(whole: Path) -> None:
+    journal = whole.with_name("answered.jsonl")
     first = whole.read_text().splitlines(keepends=True)[0]
     fetched = {"time": 0.0, "phase": "fetched", "actor": "environment", "inbound": True}
     fetched |= {"app": "guide", "data": {"serial": 1, "uri": "http://localhost/", "host": True}}
     journal.write_text(first + json.dumps(fetched) + "\n")
     on = prima("live", "--resume", str(journal))
     assert on.returncode == 2
-    assert "visit.jsonl:2: a host has answered this scenario's run" in on.stderr
+    assert "answered.jsonl:2: a host has answered this scenario's run" in on.stderr
     assert journal.read_text() == first + json.dumps(fetched) + "\n"

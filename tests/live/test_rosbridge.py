@@ -10,8 +10,10 @@ import pytest
 
 from prima.devices.profile import read_robot
 from prima.errors import UsageError
-from prima.live.driver import Unusable
+from prima.live.driver import Unreachable, Unusable
 from prima.live.drivers.rosbridge import DRIVER
+from prima.live.drivers.rosbridge.link import RosbridgeLink
+from prima.live.ros import Use
 from prima.sim.map import Map
 from tests.live.test_mapped import ROBOT
 
@@ -44,7 +46,32 @@ def test_an_address_may_be_short(address: str, url: str) -> None:
     assert asyncio.run(made()) == url
 
 
-@pytest.mark.parametrize("address", ["http://robot.local", "ws://", "ws://robot:port"])
+@pytest.mark.parametrize(
+    "address", ["http://robot.local", "ws://", "ws://robot:port", "not an address"]
+)
 def test_a_wrong_address_is_told(address: str) -> None:
     with pytest.raises(UsageError, match='Write for example address="ws://'):
         asyncio.run(driver(address).open())
+
+
+@pytest.mark.parametrize(
+    ("answers", "told"),
+    [(0, "ws://robot does not tell what is there"), (1, "the action /go .* is not there")],
+)
+def test_what_is_missing_is_told_although_the_last_answer_is_late(answers: int, told: str) -> None:
+    """The time to open ends while the bridge is asked once more."""
+
+    class Late(RosbridgeLink):
+        asked = 0
+
+        async def _missing(self) -> list[Use]:
+            self.asked += 1
+            await asyncio.sleep(0 if self.asked <= answers else 1000)
+            return [Use("action", "/go", "my_robot/action/Go")]
+
+    async def connect() -> None:
+        link = Late("ws://robot", 0.3, 1.0)
+        await link._await_all(asyncio.get_running_loop().time() + 0.3)
+
+    with pytest.raises(Unreachable, match=told):
+        asyncio.run(connect())

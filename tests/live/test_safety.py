@@ -245,6 +245,31 @@ def test_a_robot_that_cannot_be_made_safe_is_told_of_and_the_others_are(stage: S
     )
 
 
+def test_no_robot_waits_for_another_to_be_made_safe(
+    stage: Stage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Neither for one that takes long, nor for what still runs for a driver."""
+    monkeypatch.setattr("prima.live.shell.SAFE_S", 2.0)
+    loop, (voice, body) = stage()
+    stopped = asyncio.Event()
+
+    async def safe() -> None:
+        stopped.set()
+
+    async def ping() -> None:
+        try:
+            await asyncio.sleep(1000)
+        except asyncio.CancelledError:
+            await stopped.wait()
+
+    body.safe, voice.ping = safe, ping  # type: ignore[method-assign]
+    voice.safe = stopped.wait  # type: ignore[method-assign, assignment]
+    answer_when_asked(voice)
+    warned: list[str] = []
+    carried_out(loop, 3, warned)
+    assert not warned
+
+
 def test_what_a_thread_tells_arrives_in_the_run(stage: Stage) -> None:
     loop, (voice, _) = stage()
 

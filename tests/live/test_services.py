@@ -21,7 +21,7 @@ from prima.errors import DocumentError, UsageError
 from prima.live.services import LiveServices
 from prima.loading import load_services, validate
 from prima.messages import Fetched, Inbound, Occurred, Order
-from tests.live.test_live import ROBOT, ROOT
+from tests.live.test_live import ROBOT, ROOT, prima
 
 SECRET = "s3cret-key"
 HEAD = '<services xmlns="urn:prima:services:1" version="1.0">\n'
@@ -63,8 +63,8 @@ class Handler(BaseHTTPRequestHandler):
     do_POST = do_PUT = do_GET
 
     def _answer(self, host: Host, path: str, count: int) -> None:
-        if path == "/slow":
-            time.sleep(3)
+        if path in ("/slow", "/later"):
+            time.sleep(3 if path == "/slow" else 1)
         if path == "/drip":
             self.send_response(200)
             self.end_headers()
@@ -385,3 +385,30 @@ def test_a_mediated_run_replays_without_services(
     assert (again.returncode, again.stderr) == (0, "the same, byte for byte\n")
     path.write_text(path.read_text() + "\n")
     assert prima("replay", str(journal)).returncode == 2
+
+
+@pytest.mark.parametrize(("policy", "said"), [("prima", [0, 2, 1]), ("prima+x3", [0, 1, 2])])
+def test_a_topic_is_held_while_a_real_service_answers(
+    policy: str, said: list[int], host: Host, tmp_path: Path
+) -> None:
+    """X3: what another application wants to say waits for the answer where the author asks for it."""
+    services = document(tmp_path, host, 'url="URL/later" method="get"/>')
+    asks = ASKS.replace('<form id="a">', '<form id="a" stream="hold" hold-for="60s">')
+    asks = asks.replace("<block>", "<block><speak>One moment.</speak>")
+    tells = """<prima xmlns="urn:prima:dialogue:1" version="1.0" id="tells" kind="fa">
+      <form id="a"><block><send event="now" delay="2s"/></block>
+        <on event="now"><speak>By the way.</speak><exit/></on></form></prima>"""
+    for name, text in (("asks", asks), ("tells", tells)):
+        (tmp_path / f"{name}.xml").write_text(text)
+    words = ["--ea", str(tmp_path / "asks.xml"), "--fa", str(tmp_path / "tells.xml")]
+    journal = tmp_path / "visit.jsonl"
+    words += ["--services", str(services), "--policy", policy, "--speed", "10", "-o", str(journal)]
+    ran = prima("live", "--robot", ROBOT, *words, timeout=60)
+    assert ran.returncode == 0, ran.stderr
+    records = [json.loads(line) for line in journal.read_text().splitlines()]
+    texts = [one["text"] for one in records if one["phase"] == "start" and one.get("text")]
+    assert texts == [["One moment.", "It is I, Robot.", "By the way."][which] for which in said]
+    held = [one["outcome"] for one in records if one["phase"] == "held"]
+    assert held[:2] == (["begun", "joined"] if "x3" in policy else [])
+    host.server_close()
+    assert prima("replay", str(journal)).returncode == 0

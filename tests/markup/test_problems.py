@@ -11,7 +11,8 @@ import pytest
 from prima.devices.profile import read_robot
 from prima.errors import DocumentError, Problem
 from prima.interpreter.reader import read_document
-from prima.language.commands import Argument, check_argument
+from prima.language.arguments import check_argument
+from prima.language.commands import Argument
 from prima.markup.reader import parse
 from prima.script.names import script_names
 from prima.sim.map import read_world

@@ -6,7 +6,7 @@ from time import perf_counter
 
 import pytest
 
-from prima.markup.opening import root_of
+from prima.markup.sniff import root_of
 
 
 @pytest.mark.parametrize(

@@ -14,10 +14,10 @@ from lxml import etree
 
 from prima import api, loading
 from prima.interpreter.vocabulary import DIALOGUE
-from prima.markup.rnc import make_rnc
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tools.reference import VOCABULARIES, voicexml
+from tools.rnc import make_rnc
 
 SCHEMAS = ROOT / "schemas"
 DOCUMENTS = sorted([*ROOT.glob("documents/**/*.xml"), *ROOT.glob("documents/**/*.vxml")])

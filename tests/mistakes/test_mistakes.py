@@ -21,7 +21,7 @@ from prima.loading.files import Contents, in_place_of_files
 from prima.lsp.fixes import changes
 from prima.lsp.text import Lines
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 
 MISTAKES = Path(__file__).parent
 EXPECTED: dict[str, dict[str, str]] = tomllib.loads(

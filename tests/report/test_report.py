@@ -29,8 +29,8 @@ from prima.transcript.row import Row
 from prima.transcript.rules import RULES
 from prima.transcript.run import run_of
 from tests import ROOT
-from tests.helpers.command import prima
 from tests.helpers.generated_report import long_run
+from tests.helpers.here import prima
 
 SCENARIOS = ROOT / "documents" / "scenarios"
 SCENARIO = SCENARIOS / "follow-during-navigation.xml"

@@ -11,7 +11,7 @@ pytest.importorskip("scipy")
 
 from lxml import etree
 
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.swept import runs, write
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -89,7 +89,7 @@ def test_x10_else_it_is_an_event_of_that_application_alone() -> None:
 def test_x10_nobody_else_hears_what_is_not_taken() -> None:
     bench = lapsed(AGAIN.format("<goto next='#rest'/>", "") + '<form id="rest"/>')
     hears(bench, "yes")
-    assert bench.logs() == [] and bench.session.unheard == "yes"
+    assert bench.logs() == [] and bench.session.take_unheard() == "yes"
 
 
 def test_x10_who_has_ended_is_owed_no_answer() -> None:

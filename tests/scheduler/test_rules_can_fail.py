@@ -13,7 +13,6 @@ from typing import Any
 
 import pytest
 
-from prima import session
 from prima.interpreter.application import Interpreter
 from prima.interpreter.handling import Handling
 from prima.language.commands import CommandType
@@ -39,7 +38,10 @@ from prima.scheduler.mediation import Mediation
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.memory import Memory
 from prima.scheduler.policy import Policy, Ranked
-from prima.session import Session
+from prima.session import hearing
+from prima.session.hearing import Hearing
+from prima.session.session import Session
+from prima.session.wiring import Wiring
 from tests.helpers.rebinding import rebind
 
 Patch = Callable[[pytest.MonkeyPatch], None]
@@ -256,7 +258,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("o3", "dropped", put(requests, "o3", nothing)),
     ("o3", "nothing goes on", put(streams, "continue_with", nothing)),
     ("o3", "the first goes on", put(streams, "going_on", lambda found: found[0])),
-    ("c2", "nobody is told", put(Session, "_tell_turns", nothing)),
+    ("c2", "nobody is told", put(Wiring, "tell_turns", nothing)),
     ("c3", "dropped", put(streams, "open_window", nothing)),
     (
         "u5",
@@ -279,7 +281,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("f4", "all wait for what runs", put(rules, "f2", waits_for_what_runs)),
     ("k2", "one priority", put(CommandType, "priority", property(lambda row: 1))),
     ("k3", "a channel is made", put(Policy, "has", lambda policy, extension: extension == "x4")),
-    ("v1", "the question first", put(Session, "_follow_links", lambda *given: False)),
+    ("v1", "the question first", put(Hearing, "_follow_links", lambda *given: False)),
     ("v2", "dropped", put(Memory, "conflict", nothing)),
     ("v3", "events first", put(Session, "_class", lambda session, value: (0, 0))),
     ("e1", "dropped", put(failures, "e1", nothing)),
@@ -307,12 +309,12 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("x8", "whatever keeps it", reworded(freshness, "_give_up", "not kept or ", "")),
     ("x8", "what follows stays", put(freshness, "followers", lambda root: [root])),
     ("x8", "the last instant", reworded(freshness, "x8", "if ab in may_start", "if False")),
-    ("x8", "what has begun is abandoned", reworded(freshness, "_tell", " and not run.begun", "")),
+    ("x8", "what has begun is abandoned", reworded(freshness, "_notices", " or run.begun", "")),
     ("x8", "nothing is offered", put(freshness, "offered", nothing)),
     ("x8", "what comes before is lost", reworded(endings, "answered", "in ab.waits_for", "in ()")),
-    ("x10", "dropped", put(Session, "_late_for", nothing)),
-    ("x10", "for ever", put(session, "LATE_MS", 10**9)),
-    ("x10", "not at once", put(session, "LATE_MS", 0)),
+    ("x10", "dropped", put(Hearing, "_late_for", nothing)),
+    ("x10", "for ever", put(hearing, "LATE_MS", 10**9)),
+    ("x10", "not at once", put(hearing, "LATE_MS", 0)),
     ("x10", "links alone", put(Mediator, "coming_question", nothing)),
     ("x9", "dropped", put(preparation, "x9", lambda *given: False)),
     ("x9", "whoever resumes", reworded(preparation, "note_words", " and stream.spoken", "")),
@@ -330,7 +332,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("x7", "questions, too", reworded(thirdturn, "_soon_over", " or ab.asks", "")),
     ("x7", "loops, too", reworded(thirdturn, "_soon_over", "ab.feedback or ", "")),
     ("x7", "whatever comes before", put(rules, "before", lambda ab, memory: [])),
-    ("x7", "whatever was heard", reworded(endings, "u2", 'outcome == "filled" and ', "")),
+    ("x7", "whatever was heard", reworded(endings, "_note_answer", 'outcome == "filled" and ', "")),
 ]
 """Those of the rules that decide in a run. V4 is the simulated camera's (tests/sim/test_robot.py)."""
 

@@ -37,12 +37,12 @@ THROWN = [
 ]  # fmt: skip
 HEAD = """
 import json, sys
-from prima.script import engine as expressions, sandbox as grammar, syntax
+from prima.script import engine as expressions, tagengine as grammar, syntax
 from prima.script.evaluation import SCOPES
 expressions.TIME_LIMIT = grammar.TIME_LIMIT = syntax.TIME_LIMIT = 0.05
 told = []
 for code in json.load(sys.stdin):
-    engine, sandbox = expressions.Engine(), grammar.Sandbox()
+    engine, sandbox = expressions.Engine(), grammar.TagEngine()
     scopes = tuple(engine.named(name) for name in SCOPES)
     environment = sandbox.environment('x', False)
     value = f'({{toJSON: function () {{ {code} }}}})'
@@ -87,10 +87,10 @@ def test_what_is_thrown_is_told_within_the_limits(way: str) -> None:
 )
 def test_what_is_no_error_is_told_alike_of_tags_and_scripts(thrown: str, told: str) -> None:
     from prima.script import engine as expressions
-    from prima.script import sandbox as grammar
+    from prima.script import tagengine as grammar
     from prima.script.evaluation import SCOPES, ScriptError
 
-    sandbox, engine = grammar.Sandbox(), expressions.Engine()
+    sandbox, engine = grammar.TagEngine(), expressions.Engine()
     with pytest.raises(ScriptError, match=told):
         sandbox.run(f"throw {thrown}")
     scopes = tuple(engine.named(name) for name in SCOPES)
@@ -99,9 +99,9 @@ def test_what_is_no_error_is_told_alike_of_tags_and_scripts(thrown: str, told: s
 
 
 def test_what_a_grammars_script_declares_is_there_for_its_tags() -> None:
-    from prima.script.sandbox import Sandbox
+    from prima.script.tagengine import TagEngine
 
-    sandbox = Sandbox()
+    sandbox = TagEngine()
     sandbox.run("'use strict'; let a = 1; const b = 2; var c = 3; class D { x() { return a; } }")
     sandbox.run("function f() { return a + b; } { let hidden = 1; } var x = class Inner {};")
     sandbox.run(

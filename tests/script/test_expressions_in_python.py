@@ -11,15 +11,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from prima import api
-from prima.interpreter import application
-from prima.interpreter.plain import MOST_HELD, PlainEngine, is_plain
+from prima.interpreter import states
+from prima.interpreter.pyengine import MOST_HELD, PythonEngine, is_python
 from prima.interpreter.reader import read_document
 from prima.script import compile as compiling
-from prima.script.compile import BUILT_IN, INHERITED, METHODS, VARIABLES, compiled
+from prima.script.compile import compiled
 from prima.script.ecmascript import CONSTANTS
 from prima.script.engine import Engine
 from prima.script.evaluation import SCOPES, ScriptError
-from prima.script.globals import STRANGE
+from prima.script.globals import BUILT_IN, INHERITED, METHODS, STRANGE, VARIABLES
 from prima.script.isolated import Engines
 from tests import ROOT
 
@@ -74,7 +74,7 @@ def both(code: str) -> None:
     assert compiled(code) is not None, f"{code} is left to the engine"
     for method in ("value", "text", "condition"):
         found = []
-        for engine in (PlainEngine(), ENGINE):
+        for engine in (PythonEngine(), ENGINE):
             scopes = scopes_of(engine)
             found.append(outcome(lambda: getattr(engine, method)(code, scopes)))  # noqa: B023
         assert found[0] == found[1], (code, method)
@@ -201,7 +201,7 @@ def test_no_text_becomes_code(text: str) -> None:
         if found is None:
             assert {"\\", "\0"} & {*inside}, "only what is escaped may be left to the engine"
             continue
-        value = found.call(scopes_of(PlainEngine()))
+        value = found.call(scopes_of(PythonEngine()))
         assert value in (text, f"hidden{text}", [text], {"k": text})
 
 
@@ -221,7 +221,7 @@ def test_deep_brackets_are_no_trouble() -> None:
 
 
 def test_texts_do_not_grow_without_end() -> None:
-    engine = PlainEngine()
+    engine = PythonEngine()
     scopes = (engine.scope(), engine.scope(s="x" * 60_000), engine.named("dialog"), engine.scope())
     with pytest.raises(ScriptError, match="memory"):
         engine.value("s + s", scopes)
@@ -233,7 +233,7 @@ def test_texts_do_not_grow_without_end() -> None:
 
 
 def test_long_texts_that_are_gone_count_no_more() -> None:
-    engine = PlainEngine()
+    engine = PythonEngine()
     document = engine.scope(s="x" * 60_000)
     for index in range(500):
         scopes = (engine.scope(), document, engine.named("dialog"), engine.scope())
@@ -242,7 +242,7 @@ def test_long_texts_that_are_gone_count_no_more() -> None:
 
 
 def test_assignments_reach_the_innermost_variable() -> None:
-    engine = PlainEngine()
+    engine = PythonEngine()
     scopes = (engine.scope(n=0), engine.scope(n=1), engine.named("dialog"), engine.scope())
     engine.assign_declared("n", "n + 10", scopes)
     engine.assign_declared("application.n", "n + 100", scopes)
@@ -254,7 +254,7 @@ def test_assignments_reach_the_innermost_variable() -> None:
 
 
 def test_values_from_outside_are_copies() -> None:
-    engine, data = PlainEngine(), {"rooms": [1, 2]}
+    engine, data = PythonEngine(), {"rooms": [1, 2]}
     scope = engine.event("message", "", data)
     data["rooms"].append(3)
     assert engine.get(scope, "event") == {
@@ -274,14 +274,14 @@ def test_a_run_is_the_same_whoever_evaluates(
 ) -> None:
     loaded = api.load_scenario(scenario)
     plain = api.rehearse(loaded).dumps()
-    monkeypatch.setattr(application, "evaluator_of", lambda _document, _shared: Engine())
+    monkeypatch.setattr(states, "evaluator_of", lambda _document, _shared: Engine())
     assert api.rehearse(loaded).dumps() == plain
 
 
-def test_simple_documents_are_plain() -> None:
+def test_simple_documents_are_python() -> None:
     kinds = {}
     for path in sorted((DOCUMENTS / "fa").glob("*.xml")):
-        kinds[path.stem] = is_plain(read_document(path.name, path.read_bytes())[0])
+        kinds[path.stem] = is_python(read_document(path.name, path.read_bytes())[0])
     assert kinds["follow"]
     assert not kinds["dance"], "it has a script"
     assert not kinds["scheduler"], "it calls Number"
@@ -326,7 +326,7 @@ ODD_CODES = [
 def test_odd_data_means_the_same(data: Any, code: str) -> None:
     for method in ("value", "text", "condition"):
         found = []
-        for engine in (PlainEngine(), ENGINE):
+        for engine in (PythonEngine(), ENGINE):
             scopes = scopes_of(engine)
             engine.set(scopes[2], "o", data)
             engine.set(scopes[2], "l", [data, [data]])
@@ -342,13 +342,13 @@ class Word(str):
 
 
 def test_kinds_of_numbers_and_texts_are_numbers_and_texts() -> None:
-    engine = PlainEngine()
+    engine = PythonEngine()
     scopes = scopes_of(engine)
     engine.set(scopes[2], "o", {"word": Word("four"), "whole": 10**400, "yes": True})
     assert engine.condition("o.word === 'four' && o.whole === Infinity && o.yes === true", scopes)
 
 
-@pytest.mark.parametrize("engine", [PlainEngine(), ENGINE], ids=["plain", "engine"])
+@pytest.mark.parametrize("engine", [PythonEngine(), ENGINE], ids=["plain", "engine"])
 @pytest.mark.parametrize("depth", [150, 900, 20_000])
 def test_data_too_deep_is_an_error_of_its_own(engine: Any, depth: int) -> None:
     scopes = scopes_of(engine)
@@ -364,7 +364,7 @@ def test_data_too_deep_is_an_error_of_its_own(engine: Any, depth: int) -> None:
 
 
 def test_long_texts_do_not_take_long_again_and_again() -> None:
-    engine = PlainEngine()
+    engine = PythonEngine()
     scopes = scopes_of(engine)
     engine.set(scopes[1], "a", "é" * 99_999)
     engine.set(scopes[1], "b", "é" * 99_999)
@@ -380,7 +380,7 @@ def test_long_texts_do_not_take_long_again_and_again() -> None:
     "code", ["a == b", "a != 1", "1 == a", "a + ''", "+a", "a * 1", "a[9]", "a < b", "a.length"]
 )
 def test_work_with_long_texts_is_counted(code: str) -> None:
-    engine = PlainEngine()
+    engine = PythonEngine()
     scopes = scopes_of(engine)
     engine.set(scopes[1], "a", "é" * 5_000)
     engine.set(scopes[1], "b", "é" * 5_000)
@@ -389,7 +389,7 @@ def test_work_with_long_texts_is_counted(code: str) -> None:
 
 
 def test_a_variable_that_would_be_too_much_is_not_kept() -> None:
-    engine = PlainEngine()
+    engine = PythonEngine()
     scopes = scopes_of(engine)
 
     def assign_declared(_scope: Any, name: str, code: str, scopes: Any) -> None:
@@ -410,14 +410,14 @@ def test_a_variable_that_would_be_too_much_is_not_kept() -> None:
 def test_compiled_code_does_not_grow_without_end() -> None:
     for index in range(1000):
         assert compiled("+".join(["a", *["b"] * 98, str(index)])) is not None
-    kept = compiling._Kept.expressions.values()
+    kept = compiling._Cache.expressions.values()
     assert sum(one.pieces for one in kept if one is not None) <= compiling.MOST_KEPT
     head = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><var name="b"/><form id="f">'
     logs = "".join(f'<log><value expr="{"b+" * 98}{index}"/></log>' for index in range(600))
     text = f"{head}<block>{logs}</block></form></prima>"
     document, problems = read_document("a.xml", text.encode())
     assert not [one for one in problems if one.severity == "error"]
-    assert not is_plain(document), "so much code is compiled only where it is run"
+    assert not is_python(document), "so much code is compiled only where it is run"
 
 
 @pytest.mark.parametrize(
@@ -439,7 +439,7 @@ def test_values_mean_the_same_whoever_has_them(code: str) -> None:
     }
     found = []
     for how in ("plain", "none", "all"):
-        engine = PlainEngine() if how == "plain" else Engines(how).engine("a", "ea")
+        engine = PythonEngine() if how == "plain" else Engines(how).engine("a", "ea")
         scopes: Any = (*map(engine.named, SCOPES[:3]), engine.scope())
         for name, value in outside.items():
             engine.set(scopes[1], name, value)

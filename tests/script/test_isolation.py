@@ -9,9 +9,10 @@ import time
 
 import pytest
 
-from prima.script import host, isolated, worker
+from prima.script import host, shared, worker
 from prima.script.evaluation import SCOPES, EngineLost, ScriptError
-from prima.script.isolated import Engines, IsolatedEngine, IsolatedSandbox, syntax
+from prima.script.isolated import Engines, IsolatedEngine
+from prima.script.shared import IsolatedTagEngine, syntax
 from tests.helpers.robot import Bench, document
 
 ENDLESS = "var a = []; for (var i = 0; i < 45; i++) a = [a, a]; a.flat(Infinity)"
@@ -34,7 +35,7 @@ def scopes_of(engine: IsolatedEngine) -> tuple[object, ...]:
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Processes that are ended sooner."""
     monkeypatch.setattr(worker, "_idle", [])
-    monkeypatch.setattr(isolated, "_common", [])
+    monkeypatch.setattr(shared, "_common", [])
 
 
 def test_what_does_not_come_back_costs_its_application_alone() -> None:
@@ -179,13 +180,13 @@ def test_values_from_outside_arrive_as_in_the_process_itself(value: object) -> N
 def test_code_that_is_only_compiled_and_tags_have_a_process_that_begins_anew() -> None:
     from prima.script.budget import Budget
 
-    sandbox = IsolatedSandbox(Budget())
+    engine = IsolatedTagEngine(Budget())
     with pytest.raises(EngineLost, match="did not stop"):
-        sandbox.run(ENDLESS)
+        engine.run(ENDLESS)
     syntax().expression("a + b")
     with pytest.raises(ScriptError, match="it ends too early"):
         syntax().expression("a +")
-    again = IsolatedSandbox(Budget())
+    again = IsolatedTagEngine(Budget())
     assert again.json(again.box(1)) == 1
 
 
@@ -262,13 +263,13 @@ def test_tags_run_in_the_process_of_their_application() -> None:
 
     engine, other = engine_of(Engines(), "a"), engine_of(Engines(), "b")
     with pytest.raises(EngineLost, match="did not stop"):
-        IsolatedSandbox(Budget(host=engine.host)).run(ENDLESS)
+        IsolatedTagEngine(Budget(host=engine.host)).run(ENDLESS)
     assert engine.lost
     assert other.value("1", scopes_of(other)) == 1
-    assert IsolatedSandbox(Budget(host=other.host)).fault("x = 1") == ""
+    assert IsolatedTagEngine(Budget(host=other.host)).fault("x = 1") == ""
 
 
 def test_code_of_somebody_else_that_ends_the_common_process_is_no_fault_of_this() -> None:
     syntax().expression("a")
-    os.kill(isolated._common[0].pid, signal.SIGKILL)
+    os.kill(shared._common[0].pid, signal.SIGKILL)
     syntax().expression("a + b")

@@ -12,7 +12,7 @@ from prima.interpreter.application import Interpreter
 from prima.interpreter.transfers import Thrown, Transfer
 from prima.messages import Ended, Event, Sensed
 from prima.script.evaluation import ScriptError
-from prima.script.prelude import reason
+from prima.script.sandbox import reason
 from tests.helpers.robot import Bench, document
 from tests.helpers.voice import Call
 

@@ -13,7 +13,7 @@ from prima import api
 from prima.errors import DocumentError
 from prima.loading import load_scenario
 from prima.sim.happenings import When
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.rehearsing import rehearse
 
 QUIET = '<form id="a"><block><speak>Hello.</speak><exit/></block></form>'

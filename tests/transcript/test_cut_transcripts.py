@@ -9,7 +9,7 @@ import pytest
 
 from prima import api
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 
 SCENARIO = ROOT / "documents" / "scenarios" / "follow-during-navigation.xml"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from prima.voicexml.document import read_page
+from prima.voicexml.reading import read_page
 from tests.helpers.dialogs import GRAMMAR, PASS, YES, ask, asked, block, file, leaf, question, run
 from tests.helpers.voice import Call, vxml
 

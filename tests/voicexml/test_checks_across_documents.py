@@ -9,7 +9,7 @@ import pytest
 from prima import api, loading
 from prima.errors import DocumentError
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.validating import VXML, told
 
 PAGE = """<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en">
@@ -43,7 +43,7 @@ def test_grammars_in_files_that_a_page_names_are_checked(tmp_path: Path) -> None
         " Name a rule: #name.",
         'page.vxml:4:15: warning: The type "application/srgs+xml" contradicts "g/towns.gram",'
         " which is in the ABNF form.",
-        'page.vxml:5:15: warning: The type "application/abnf" is none of SRGS;'
+        'page.vxml:5:15: warning: The type "application/abnf" is not one of SRGS;'
         " it is read as application/srgs.",
     ]
     towns.write_text("language en;\npublic $r = Rome;\n")  # an error of the file is told once

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from prima.voicexml.document import read_page
+from prima.voicexml.reading import read_page
 from prima.voicexml.sketch import Sketch
 from tests.helpers.robot import document
 from tests.helpers.units import SPEECH, P, ask, problems_of, unit

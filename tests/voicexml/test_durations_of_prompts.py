@@ -9,7 +9,7 @@ import pytest
 from prima.devices.voice import PAUSE_MS, SENTENCE_MS, duration, timeline
 from prima.messages import Cue
 from prima.voicexml.cues import MAX_CUES, fold, rate_of
-from prima.voicexml.document import read_page
+from prima.voicexml.reading import read_page
 from tests.helpers.spoken import Played, of, plain, prompt, takes, texts
 from tests.helpers.voice import Call, vxml
 

@@ -6,7 +6,7 @@ import pytest
 
 from prima.errors import DocumentError, Problem
 from prima.messages import Occurred
-from prima.voicexml.document import read_page
+from prima.voicexml.reading import read_page
 from tests.helpers.dialogs import CITIES, P, block
 from tests.helpers.voice import Call, vxml
 

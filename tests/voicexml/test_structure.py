@@ -9,7 +9,8 @@ import pytest
 
 from prima import loading
 from prima.errors import DocumentError
-from prima.voicexml.document import broken, read_page
+from prima.voicexml.document import broken
+from prima.voicexml.reading import read_page
 from prima.voicexml.vocabulary import ALTERNATIVES
 from tests import ROOT
 from tests.helpers.dialogs import P, block, codes, problems, rule, run

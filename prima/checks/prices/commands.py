@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from prima.checks.prices.model import Price, devices_of
 from prima.devices.profile import BRAKING_MS, POINTING_MS, Profile
-from prima.language.commands import TABLE_4_2, Argument, CommandType, check_argument
+from prima.language.arguments import check_argument
+from prima.language.commands import TABLE_4_2, Argument, CommandType
 from prima.markup.tree import Node
 
 SETTLING_MS = 1500

@@ -4,23 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from prima.interpreter.acts import Act, Handler, Return, Run, SendOut, Throw, all_acts, run_commands
 from prima.interpreter.elements import (
-    Act,
     Block,
     Document,
     Field,
     Form,
-    Handler,
     Item,
-    Return,
-    Run,
-    SendOut,
     Subdialog,
-    Throw,
     Unit,
-    all_acts,
     all_items,
-    run_commands,
 )
 
 

@@ -22,30 +22,32 @@ from prima.checks.prices.texts import Constants, words_of
 from prima.devices.profile import Profile
 from prima.devices.voice import duration
 from prima.errors import Place
-from prima.interpreter.elements import (
+from prima.interpreter.acts import (
     Act,
     Assign,
-    Block,
     Clear,
     CommandTemplate,
-    Document,
     Expression,
-    Field,
     Foreach,
-    Form,
     Goto,
     Handler,
-    Item,
     Pause,
     Run,
     SendOut,
     StepTemplate,
-    Subdialog,
     Text,
-    Unit,
     all_acts,
-    all_items,
     pauses_in,
+)
+from prima.interpreter.elements import (
+    Block,
+    Document,
+    Field,
+    Form,
+    Item,
+    Subdialog,
+    Unit,
+    all_items,
 )
 from prima.interpreter.rounds import leads_round, raised_in
 from prima.interpreter.selection import takes

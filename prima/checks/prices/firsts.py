@@ -5,28 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from prima.checks.prices.model import Price
-from prima.interpreter.elements import (
+from prima.interpreter.acts import (
     Act,
-    Block,
-    Document,
     Exit,
     Expression,
-    Field,
     Foreach,
-    Form,
     Goto,
     Handler,
     If,
-    Item,
     Return,
     Run,
     SendOut,
     StepTemplate,
-    Subdialog,
     Throw,
-    all_items,
     run_commands,
 )
+from prima.interpreter.elements import Block, Document, Field, Form, Item, Subdialog, all_items
 from prima.interpreter.rounds import raised_in
 from prima.interpreter.selection import takes
 from prima.markup.tree import Node

@@ -6,18 +6,8 @@ from collections.abc import Callable, Iterable, Sequence
 from itertools import takewhile
 
 from prima.checks.prices.model import Price
-from prima.interpreter.elements import (
-    Act,
-    Assign,
-    Document,
-    Form,
-    Handler,
-    Run,
-    Script,
-    SendOut,
-    Watch,
-    all_acts,
-)
+from prima.interpreter.acts import Act, Assign, Handler, Run, Script, SendOut, all_acts
+from prima.interpreter.elements import Document, Form, Watch
 from prima.interpreter.rounds import leads_round, raised_in
 from prima.interpreter.selection import takes
 from prima.interpreter.sensors import sensors_of

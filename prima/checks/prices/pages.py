@@ -11,7 +11,8 @@ from urllib.parse import urldefrag, urlsplit
 from prima.checks.prices.model import Gap
 from prima.errors import DocumentError
 from prima.markup.tree import Node
-from prima.voicexml.document import FetchError, Page, VoiceDocument, read_page
+from prima.voicexml.document import FetchError, Page, VoiceDocument
+from prima.voicexml.reading import read_page
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
 
 MOST_PAGES = 100

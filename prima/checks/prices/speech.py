@@ -9,8 +9,9 @@ from prima.devices.voice import timeline
 from prima.markup.tree import Node
 from prima.messages import Cue
 from prima.voicexml.cues import break_ms, fold, milliseconds, rate_of
+from prima.voicexml.elements import SILENT
 from prima.voicexml.inputs import words_of
-from prima.voicexml.prompts import APART, SENTENCE, SILENT, UNKNOWN_MS
+from prima.voicexml.prompts import APART, SENTENCE, UNKNOWN_MS
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 UNKNOWN_LETTERS = 20

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from prima.interpreter.selection import takes
 from prima.markup.tree import Node
 from prima.voicexml.arranging import UNIT
-from prima.voicexml.events import HANDLERS
+from prima.voicexml.elements import HANDLERS
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 ITEMS = ("block", "field", "initial", "record", "transfer", "object", "subdialog")

@@ -11,14 +11,8 @@ import re
 from collections.abc import Iterable, Iterator
 
 from prima.grammar.text import fold
-from prima.interpreter.elements import (
-    Assign,
-    Declare,
-    Document,
-    Foreach,
-    Script,
-    all_acts,
-)
+from prima.interpreter.acts import Assign, Declare, Foreach, Script, all_acts
+from prima.interpreter.elements import Document
 from prima.markup.tree import Node
 
 Literal = str | float | bool | None | list["Literal"] | dict[str, "Literal"]

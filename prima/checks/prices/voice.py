@@ -30,7 +30,8 @@ from prima.markup.tree import Node
 from prima.voicexml.arranging import UNIT, arrange, longest_of
 from prima.voicexml.calls import CONNECT_MS, kind_of
 from prima.voicexml.document import Page, VoiceDocument
-from prima.voicexml.events import HANDLERS, WORDS, handler_names
+from prima.voicexml.elements import HANDLERS, handler_names
+from prima.voicexml.events import WORDS
 from prima.voicexml.recorder import BEEP_MS
 from prima.voicexml.sketch import Sketch
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN

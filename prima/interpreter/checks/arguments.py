@@ -7,7 +7,8 @@ from collections.abc import Iterator, Mapping
 from prima.errors import Problem
 from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE, STRAY_TEXT
 from prima.errors.diagnoses.values import BAD_VALUE, OUT_OF_RANGE
-from prima.language.commands import Argument, CommandType, check_argument, missing_argument
+from prima.language.arguments import check_argument, missing_argument
+from prima.language.commands import Argument, CommandType
 from prima.language.values import BadValue, nearest, read_value
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
@@ -37,12 +38,16 @@ def given_to(
         if name in row.arguments and isinstance(value, str):
             yield from _argument(node, name, row.arguments[name], value)
     if missing := missing_argument(row, given):
-        needed = [name for name, one in row.arguments.items() if one.required or one.choice]
-        lacking = next(name for name in needed if name not in given)
         diagnosis = MISSING_PARAM if node.tag == "command" else MISSING_ARGUMENT
-        yield diagnosis.at(node.place, wrong=missing, name=lacking)
+        yield diagnosis.at(node.place, wrong=missing, name=_lacking(row, given))
     if row.text == "none" and says:
         yield CANNOT_SAY.at(node.place, command=row.name, prefix=prefix)
+
+
+def _lacking(row: CommandType, given: Mapping[str, object]) -> str:
+    """The first argument that is needed and not given."""
+    needed = (name for name, one in row.arguments.items() if one.required or one.choice)
+    return next(name for name in needed if name not in given)
 
 
 def _argument(node: Node, name: str, argument: Argument, text: str) -> Iterator[Problem]:

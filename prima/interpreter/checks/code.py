@@ -9,38 +9,41 @@ from typing import Any
 
 from prima.errors import Diagnosis, Problem
 from prima.errors.diagnoses.names import BAD_EXPRESSION
-from prima.interpreter.checks.facts import Facts
-from prima.interpreter.checks.variables import Variables, place_in
-from prima.interpreter.elements import (
+from prima.interpreter.acts import (
     Act,
     Assign,
     Declare,
-    Document,
     Expression,
-    Field,
     Foreach,
-    Form,
     Goto,
     Handler,
     If,
-    Item,
     Log,
-    Prompt,
     Run,
     Script,
     SendOut,
-    Subdialog,
     Throw,
     run_commands,
 )
+from prima.interpreter.checks.facts import Facts
+from prima.interpreter.checks.variables import Variables, place_in
+from prima.interpreter.elements import Document, Field, Form, Item, Prompt, Subdialog
 from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.known import Known
 from prima.script.parse import parse_expression
 
 STRINGS = re.compile(r""""(?:[^"\\\\]|\\\\.)*"|'(?:[^'\\\\]|\\\\.)*'""")
-SLIPS = re.compile(r"[^\x00-\x7f]|\$\{|=\s+=|\b(?:and|or|not)\b")
-"""What a common slip has in it."""
+MISTAKES = (
+    (r"\$\{", "Write the expression alone, without ${ and }."),
+    (r"=\s+=", "Write == without a space."),
+    (r"\band\b", "Write &amp;&amp; for and."),
+    (r"\bor\b", "Write || for or."),
+    (r"\bnot\b", "Write ! for not."),
+)
+"""Common mistakes, and what to write."""
+MISTAKEN = re.compile("|".join(["[^\\x00-\\x7f]", *(words for words, _ in MISTAKES)]))
+"""What code with a common mistake has in it."""
 WIDEST = 60
 """Characters of code that a message quotes."""
 
@@ -123,9 +126,7 @@ def _all_code(facts: Facts) -> Iterator[Code]:
     for kind, held in HELD.items():
         for holder, act in facts.acts.of(kind):
             known = facts.known_in(holder)
-            for one in held(act):
-                if isinstance(one, Expression):
-                    yield one, known, False
+            yield from ((one, known, False) for one in held(act) if isinstance(one, Expression))
     for holder, script in facts.acts.of(Script):
         yield script.code, facts.known_in(holder), True
 
@@ -163,14 +164,14 @@ def _of_item(item: Item) -> Iterator[Expression]:
 def _look_ahead(codes: list[tuple[str, bool]]) -> None:
     """Let the engine look at all code at once that needs it: each call takes time."""
     if len(codes) > 1:
-        from prima.script.isolated import syntax
+        from prima.script.shared import syntax
 
         with suppress(ScriptError):  # the check of each piece reports that there is no engine
             syntax().look_ahead(codes)
 
 
 def _compiled(expr: Expression, script: bool) -> Problem | None:
-    from prima.script.isolated import syntax
+    from prima.script.shared import syntax
 
     try:
         (syntax().script if script else syntax().expression)(expr.code)
@@ -186,27 +187,23 @@ def _compiled(expr: Expression, script: bool) -> Problem | None:
 
 
 def _remedy(code: str) -> str:
-    """What to write for a wrong expression, where that is a common slip."""
-    if not SLIPS.search(code):
+    """What to write for a wrong expression, where it has a common mistake."""
+    if not MISTAKEN.search(code):
         return ""
-    from prima.markup.slips import half
-
     bare = STRINGS.sub("", code)
-    wide = [
-        one
-        for one in ("" if bare.isascii() else bare)
-        if not one.isascii() and half(one).isascii() and half(one).strip()
-    ]
-    if wide:
-        return "Write it in characters of half width: " + " ".join(map(half, wide[:5])) + "."
-    if "${" in bare:
-        return "Write the expression alone, without ${ and }."
-    if re.search(r"=\s+=", bare):
-        return "Write == without a space."
-    for word, right in (("and", "&amp;&amp;"), ("or", "||"), ("not", "!")):
-        if word in bare and re.search(rf"\b{word}\b", bare):
-            return f"Write {right} for {word}."
-    return ""
+    if wide := _of_full_width(bare):
+        return f"Write it in characters of half width: {wide}."
+    return next((remedy for words, remedy in MISTAKES if re.search(words, bare)), "")
+
+
+def _of_full_width(code: str) -> str:
+    """The first few characters of code that have another width there, as they should be."""
+    if code.isascii():
+        return ""
+    from prima.markup.hints import half
+
+    wide = [half(one) for one in code if not one.isascii()]
+    return " ".join([one for one in wide if one.isascii() and one.strip()][:5])
 
 
 def _assigns(expr: Expression) -> Iterator[Problem]:

@@ -7,17 +7,9 @@ from collections.abc import Iterator, Sequence
 
 from prima.errors import Diagnosis, Problem
 from prima.errors.diagnoses.behaviour import SHARED_DEVICE
+from prima.interpreter.acts import GroupTemplate, Run, StepTemplate, Text, run_commands
 from prima.interpreter.checks.facts import Facts
-from prima.interpreter.elements import (
-    Field,
-    Form,
-    GroupTemplate,
-    Run,
-    StepTemplate,
-    Text,
-    Unit,
-    run_commands,
-)
+from prima.interpreter.elements import Field, Form, Unit
 from prima.interpreter.units import long_unit, speak, unit_speaks
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node

@@ -6,23 +6,18 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 
+from prima.interpreter.acts import CommandTemplate as Command
+from prima.interpreter.acts import Declare, Exit, Foreach, Goto, Script, run_commands
 from prima.interpreter.elements import (
     Acts,
-    Declare,
     Document,
-    Exit,
-    Foreach,
     Form,
-    Goto,
     Item,
-    Run,
-    Script,
+    Link,
     Subdialog,
-    all_acts,
     all_items,
-    run_commands,
+    runs_of,
 )
-from prima.interpreter.elements import CommandTemplate as Command
 from prima.script.known import Known, Scope
 from prima.script.names import script_names
 
@@ -93,7 +88,7 @@ class Facts:
             given |= {name for name, _ in item.params}
 
     def _own(self, form: Form | None) -> Scope:
-        return self._declared.setdefault(form.id if form else None, Scope())
+        return self._declared.setdefault(name_of(form), Scope())
 
     @cached_property
     def _every(self) -> Known:
@@ -114,21 +109,26 @@ class Facts:
         """Where each form leads, and the document's own content."""
         found = Leads()
         for form, goto in self.acts.of(Goto):
-            name = form.id if form else None
             if isinstance(goto.form, str):
-                found.targets[name].append(goto.form)
+                found.targets[name_of(form)].append(goto.form)
             elif goto.form is not None:
-                found.anywhere.add(name)
-        found.exits = {form.id if form else None for form, _ in self.acts.of(Exit)}
-        holders = [(None, self.document.links), *((form.id, form.links) for form, _ in self.forms)]
-        for name, links in holders:
-            for link in links:
-                if link.form:
-                    found.targets[name].append(link.form)
+                found.anywhere.add(name_of(form))
+        found.exits = {name_of(form) for form, _ in self.acts.of(Exit)}
+        for name, links in self.links:
+            found.targets[name] += [link.form for link in links if link.form]
         for form, items in self.forms:
-            calls = [item.form for item in items if isinstance(item, Subdialog)]
-            found.calls[form.id] += calls
+            found.calls[form.id] += [item.form for item in items if isinstance(item, Subdialog)]
         return found
+
+    @property
+    def links(self) -> list[tuple[str | None, Sequence[Link]]]:
+        """The links of the document (None), and of each form by its name."""
+        return [(None, self.document.links), *((form.id, form.links) for form, _ in self.forms)]
+
+
+def name_of(form: Form | None) -> str | None:
+    """The name by which a form is looked up; None for the document."""
+    return form.id if form else None
 
 
 def setup_names(setup: Iterable[Declare | Script]) -> set[str]:
@@ -141,7 +141,5 @@ def setup_names(setup: Iterable[Declare | Script]) -> set[str]:
 
 def document_commands(document: Document) -> Iterator[Command]:
     """Every Command of a document."""
-    for _, content, _ in document.contents():
-        for act in all_acts(content):
-            if isinstance(act, Run):
-                yield from run_commands(act.steps)
+    for run in runs_of(document):
+        yield from run_commands(run.steps)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from prima.errors import Diagnosis, Problem
+from prima.interpreter.acts import Run, run_commands
 from prima.interpreter.checks.facts import Facts
-from prima.interpreter.elements import Field, Form, Item, Run, Subdialog, run_commands
+from prima.interpreter.elements import Field, Form, Item, Subdialog
 from prima.language.commands import TABLE_4_2
 from prima.language.values import read_value
 from prima.markup.tree import Node
@@ -14,7 +15,7 @@ from prima.markup.tree import Node
 NO_CAUSES = frozenset(
     ["end", "cancel", "interrupted", "expired", "suspended", "resumed", "noinput", "nomatch"]
 )
-"""How events begin that nobody reacts to (C5)."""
+"""Prefixes of events to which nobody reacts (C5)."""
 IDLE_HINT = Diagnosis(
     "idle-hint",
     "Hint without effect",
@@ -90,7 +91,7 @@ def _asks(items: Sequence[Item]) -> bool:
 
 
 def _speaking(facts: Facts) -> set[str]:
-    """The forms whose content makes the robot say something, as far as can be seen."""
+    """The forms whose content certainly makes the robot say something."""
     return {
         form.id
         for form, run in facts.acts.of(Run)

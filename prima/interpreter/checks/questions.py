@@ -5,18 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from prima.errors import Diagnosis, Problem
+from prima.interpreter.acts import Exit, Goto, Handler, Return, Run, Throw, all_acts, run_commands
 from prima.interpreter.checks.facts import Facts
-from prima.interpreter.elements import (
-    Exit,
-    Field,
-    Goto,
-    Handler,
-    Return,
-    Run,
-    Throw,
-    all_acts,
-    run_commands,
-)
+from prima.interpreter.elements import Field
 from prima.interpreter.events import DEFAULTS, silent_fields
 from prima.language.commands import TABLE_4_2
 
@@ -72,6 +63,6 @@ def _leaves(handler: Handler) -> Iterator[Problem]:
 
 
 def check_silence(facts: Facts) -> Iterator[Problem]:
-    """K1: questions that are asked for ever while nobody answers."""
+    """K1: questions that are repeated for ever while nobody answers."""
     for field in silent_fields(facts.document):
         yield NO_NOINPUT.at(field.node.place, field=field.name)

@@ -6,20 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from prima.errors import Diagnosis, Problem
 from prima.errors.diagnoses.behaviour import UNREACHABLE
-from prima.interpreter.checks.facts import Facts
-from prima.interpreter.elements import (
-    Act,
-    Exit,
-    Field,
-    Foreach,
-    Form,
-    Goto,
-    If,
-    Return,
-    Throw,
-    all_acts,
-    all_items,
-)
+from prima.interpreter.acts import Act, Exit, Foreach, Goto, Handler, If, Return, Throw, all_acts
+from prima.interpreter.checks.facts import Facts, name_of
+from prima.interpreter.elements import Field, Form, all_items
 from prima.interpreter.events import DEFAULTS, handlers_of
 
 LEAVING = (Goto, Return, Exit)
@@ -107,23 +96,30 @@ def _ways(facts: Facts) -> set[str | None]:
 
     A handler of errors does not count: nobody writes a state that is left only when it fails.
     """
-    document = facts.document
-    failing: set[int] = set()
-    asking: set[int] = set()
-    for handler in handlers_of(document, facts.acts):
-        if all(event.partition(".")[0] == "error" for event in handler.events):
-            failing |= set(map(id, all_acts(handler.content)))
-    for handler in document.handlers:
-        if DEFAULTS.issuperset(handler.events):
-            asking |= set(map(id, all_acts(handler.content)))
-    found: set[str | None] = {None} if any(link.form for link in document.links) else set()
-    found |= {form.id for form, _ in facts.forms if any(link.form for link in form.links)}
+    failing = _acts_in(one for one in handlers_of(facts.document, facts.acts) if _fails(one))
+    asking = _acts_in(one for one in facts.document.handlers if DEFAULTS.issuperset(one.events))
+    found = _linking(facts)
     for kind in (Goto, Exit, Return, Throw):
         for holder, act in facts.acts.of(kind):
             stays = isinstance(act, Goto) and act.form is None
             if not stays and id(act) not in failing:
-                found.add("" if id(act) in asking else holder.id if holder else None)
+                found.add("" if id(act) in asking else name_of(holder))
     return found
+
+
+def _fails(handler: Handler) -> bool:
+    """Whether a handler takes errors alone."""
+    return all(event.partition(".")[0] == "error" for event in handler.events)
+
+
+def _acts_in(handlers: Iterable[Handler]) -> set[int]:
+    """The acts of some handlers, by their id()."""
+    return {id(act) for handler in handlers for act in all_acts(handler.content)}
+
+
+def _linking(facts: Facts) -> set[str | None]:
+    """The forms with links to forms; None if the document itself has one."""
+    return {name for name, links in facts.links if any(link.form for link in links)}
 
 
 def _exiting(facts: Facts) -> set[str]:

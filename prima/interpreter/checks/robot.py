@@ -6,16 +6,10 @@ from collections.abc import Iterator, Mapping
 
 from prima.errors import Problem, few, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_ARGUMENT, UNSUPPORTED_COMMAND
+from prima.interpreter.acts import CommandTemplate, GroupTemplate, run_commands
 from prima.interpreter.checks.arguments import given_to
 from prima.interpreter.checks.facts import document_commands
-from prima.interpreter.elements import (
-    CommandTemplate,
-    Document,
-    GroupTemplate,
-    Run,
-    all_acts,
-    run_commands,
-)
+from prima.interpreter.elements import Document, runs_of
 from prima.interpreter.elements import Unit as ItemUnit
 from prima.interpreter.events import handlers_of
 from prima.interpreter.selection import takes
@@ -115,8 +109,7 @@ def _own_row(command: CommandTemplate, commands: Mapping[str, CommandType]) -> C
 
 def _grouped(document: Document) -> Iterator[CommandTemplate]:
     """The Commands in units around Commands (U4)."""
-    for _, content, _ in document.contents():
-        for act in all_acts(content):
-            for step in act.steps if isinstance(act, Run) else ():
-                if isinstance(step.what, GroupTemplate):
-                    yield from run_commands([step])
+    for run in runs_of(document):
+        for step in run.steps:
+            if isinstance(step.what, GroupTemplate):
+                yield from run_commands([step])

@@ -6,19 +6,9 @@ from collections.abc import Iterator
 
 from prima.errors import Problem
 from prima.errors.diagnoses.behaviour import ENDLESS
+from prima.interpreter.acts import Exit, Foreach, Goto, If, Return, Run, Throw, run_commands
 from prima.interpreter.checks.facts import Facts
-from prima.interpreter.elements import (
-    Block,
-    Exit,
-    Foreach,
-    Form,
-    Goto,
-    If,
-    Return,
-    Run,
-    Throw,
-    run_commands,
-)
+from prima.interpreter.elements import Block, Form
 
 MANY_FORMS = 8
 """Of forms that go round, so many are named."""

@@ -7,8 +7,9 @@ from collections.abc import Iterator, Sequence
 from prima.errors import Problem, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_FORM, NO_SUCH_ITEM
 from prima.errors.diagnoses.structure import DUPLICATE_NAME
-from prima.interpreter.checks.facts import Facts
-from prima.interpreter.elements import Clear, Field, Filled, Form, Goto, Item, Subdialog
+from prima.interpreter.acts import Clear, Goto
+from prima.interpreter.checks.facts import Facts, name_of
+from prima.interpreter.elements import Field, Filled, Form, Item, Subdialog
 from prima.markup.spans import instead, value_span
 from prima.markup.tree import Node
 from prima.script.known import Scope
@@ -22,20 +23,22 @@ TWO_ITEMS = DUPLICATE_NAME.says('The form "{form}" has two items named "{name}".
 def check_targets(facts: Facts) -> Iterator[Problem]:
     """Gotos, subdialogs and links to forms and items that are not there."""
     names = _item_names(facts)
-    for form, act in facts.acts.of(Goto):
-        if isinstance(act.form, str):
-            yield from _form(facts, act.form, act.node, "next")
-        if isinstance(act.item, str) and act.item not in names[form.id if form else None]:
-            yield _item(facts, act, act.item, names[form.id if form else None])
+    for holder, act in facts.acts.of(Goto):
+        yield from _goto(facts, act, names[name_of(holder)])
     for _, items in facts.forms:
         for item in items:
             if isinstance(item, Subdialog):
                 yield from _form(facts, item.form, item.node, "src")
-    document = facts.document
-    links = [*document.links, *(link for form in document.forms.values() for link in form.links)]
-    for link in links:
+    for link in (link for _, links in facts.links for link in links):
         if link.form:
             yield from _form(facts, link.form, link.node, "next")
+
+
+def _goto(facts: Facts, act: Goto, items: set[str]) -> Iterator[Problem]:
+    if isinstance(act.form, str):
+        yield from _form(facts, act.form, act.node, "next")
+    if isinstance(act.item, str) and act.item not in items:
+        yield _item(facts, act, act.item, items)
 
 
 def _item_names(facts: Facts) -> dict[str | None, set[str]]:

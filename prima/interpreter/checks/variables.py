@@ -9,8 +9,9 @@ from itertools import chain
 
 from prima.errors import Hint, Place, Problem, Span, suggestion
 from prima.errors.diagnoses.names import UNDECLARED_VARIABLE
+from prima.interpreter.acts import Assign, Clear, Expression, Return
 from prima.interpreter.checks.facts import Facts
-from prima.interpreter.elements import Assign, Clear, Expression, Form, Return
+from prima.interpreter.elements import Form
 from prima.interpreter.events import handlers_of
 from prima.markup.spans import Declarations, value_span
 from prima.markup.tree import Node

@@ -10,7 +10,7 @@ from prima.errors import Hint, Problem, one_of, replaced, suggestion
 from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE, UNKNOWN_ATTRIBUTE
 from prima.errors.diagnoses.values import BAD_VALUE, EXCLUSIVE
 from prima.language.values import NUMBER, read_value
-from prima.markup.slips import meant_value
+from prima.markup.hints import meant_value
 from prima.markup.spans import added, attribute_span, value_span
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Element

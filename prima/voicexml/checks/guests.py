@@ -9,7 +9,8 @@ from prima.errors.diagnoses.names import UNSUPPORTED_COMMAND
 from prima.errors.diagnoses.structure import MISPLACED_ELEMENT, UNKNOWN_ATTRIBUTE, UNKNOWN_ELEMENT
 from prima.errors.diagnoses.values import EXCLUSIVE, NOTHING_TO_SAY
 from prima.interpreter.checks import given_to
-from prima.language.commands import TABLE_4_2, CommandType, excluding_arguments
+from prima.language.arguments import excluding_arguments
+from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.spans import attribute_span, name_spans, value_span
 from prima.markup.tree import Node
 from prima.voicexml.arranging import ARRANGING, check_arranged

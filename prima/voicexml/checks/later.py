@@ -14,7 +14,7 @@ from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
-from prima.script.isolated import IsolatedSyntax, syntax
+from prima.script.shared import IsolatedSyntax, syntax
 from prima.voicexml.arranging import UNIT
 from prima.voicexml.checks.attributes import bad_value, fits, instead_of
 from prima.voicexml.checks.guests import command_problems

@@ -8,13 +8,14 @@ from prima.errors import Place, Problem
 from prima.errors.diagnoses.values import BAD_VALUE
 from prima.markup.tree import Node
 from prima.script.globals import IDENTIFIER, RESERVED
-from prima.script.names import SCOPES, script_names
+from prima.script.names import script_names
+from prima.script.walk import OBJECTS
 from prima.voicexml.arranging import UNIT
 from prima.voicexml.checks.elements import FORM_ITEMS
 
 HIDING = {
     "session": "the session variables, which are read-only",
-    **{name: f"the variables of the {name}" for name in sorted(SCOPES)},
+    **{name: f"the variables of the {name}" for name in sorted(OBJECTS)},
 }
 """Names that variables should not have, and what they make unreachable (5.1.2)."""
 SOMETIMES = frozenset(["async", "await", "let", "of", "static", "yield"])

@@ -86,7 +86,7 @@ def _stuck(session: Session) -> list[str]:
     for app in session.apps.values():
         # Private, but nothing else tells an application that waits for a Command
         # which is gone from one that waits for an event.
-        waiting = sorted(app._waiting) if isinstance(app, Interpreter) else []
+        waiting = sorted(app.waiting) if isinstance(app, Interpreter) else []
         if waiting and not app.over and not memory.behaviors:
             found.append(f"invariant 9: {app.name} waits for {waiting}, which nobody will end")
     return found

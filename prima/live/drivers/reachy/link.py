@@ -217,7 +217,7 @@ def read_address(written: str) -> str:
         host, port = parts.hostname, parts.port or PORT
     except ValueError:
         host, port = None, PORT
-    if not host or parts.scheme != "http" or parts.path.strip("/"):
+    if not host or " " in host or parts.scheme != "http" or parts.path.strip("/"):
         example = 'address="http://reachy-mini.local:8000"'
         raise ValueError(f'"{whole}" is not the address of a Reachy Mini; write {example}.')
     return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"

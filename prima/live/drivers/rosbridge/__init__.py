@@ -26,7 +26,7 @@ class RosbridgeDriver(RosDriver):
             host, port = parts.hostname, parts.port
         except ValueError:
             host, port = None, None
-        if host is None or parts.scheme not in ("ws", "wss"):
+        if not host or " " in host or parts.scheme not in ("ws", "wss"):
             message = f'"{settings.address}" is not the address of a rosbridge.'
             remedy = 'Write for example address="ws://robot.local:9090".'
             raise UsageError(f"{settings.place}: rosbridge: {message} {remedy}")

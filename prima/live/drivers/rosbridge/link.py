@@ -123,18 +123,16 @@ class RosbridgeLink:
         topic.subscribe(lambda message: driver.sense_from_thread(senses, dict(message)))
 
     async def _await_all(self, until: float) -> None:
-        while True:
-            try:
-                async with asyncio.timeout_at(until):
-                    missing = await self._missing()
-            except (TimeoutError, Refused):
-                reason = "does not tell what is there: the node rosapi is needed beside it"
-                raise Unreachable(f"{self._url} {reason}. {LAUNCH}") from None
-            if not missing:
-                return
-            if self._loop.time() + LOOK_S > until:
-                raise Unreachable(f"{_not_there(missing)}.")
-            await asyncio.sleep(LOOK_S)
+        missing: list[Use] = []
+        try:
+            async with asyncio.timeout_at(until):
+                while missing := await self._missing():
+                    await asyncio.sleep(LOOK_S)
+        except (TimeoutError, Refused):
+            if missing:
+                raise Unreachable(f"{_not_there(missing)}.") from None
+            reason = "does not tell what is there: the node rosapi is needed beside it"
+            raise Unreachable(f"{self._url} {reason}. {LAUNCH}") from None
 
     async def _missing(self) -> list[Use]:
         """The actions and services that are not there."""

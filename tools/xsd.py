@@ -66,7 +66,7 @@ def make_schema(vocabulary: Vocabulary) -> str:
         '           elementFormDefault="qualified">',
         '  <xs:import namespace="http://www.w3.org/XML/1998/namespace" schemaLocation="xml.xsd"/>',
         *_import(vocabulary.guests),
-        f'  <xs:element name="{vocabulary.elements[vocabulary.root].tag}" type="{vocabulary.root}"/>',
+        f'  <xs:element name="{vocabulary.root_tag}" type="{vocabulary.root}"/>',
     ]
     for element in vocabulary.elements.values():
         lines += _complex_type(vocabulary, element)
@@ -74,7 +74,7 @@ def make_schema(vocabulary: Vocabulary) -> str:
 
 
 def make_guest_schema(guests: Guests) -> str:
-    """Give the XML Schema 1.0 of elements that stand in documents of another namespace."""
+    """Give the XML Schema 1.0 of elements in documents of another namespace."""
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
         '<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema"',
@@ -122,22 +122,27 @@ def _complex_type(vocabulary: Vocabulary, element: Element) -> list[str]:
     mixed = ' mixed="true"' if element.text else ""
     source = f" ({element.source})" if element.source else ""
     lines = [f'  <xs:complexType name="{element.key}"{mixed}>', _doc(element.doc + source, "    ")]
-    held = [
-        f'<xs:element name="{vocabulary.elements[child].tag}" type="{child}"/>'
-        for child in element.children
-    ]
-    held += [FOREIGN] if held and vocabulary.open else []
-    held = [ANYTHING] if element.key in vocabulary.free else held
-    if held:
-        lines.append('    <xs:choice minOccurs="0" maxOccurs="unbounded">')
-        lines += [f"      {one}" for one in held]
-        lines.append("    </xs:choice>")
+    lines += _content(vocabulary, element)
     for item in element.attributes:
         lines += _attribute(item)
     named = {item.name for item in element.attributes}
     if element.key == vocabulary.root and "xml:lang" not in named:
         lines.append('    <xs:attribute ref="xml:lang"/>')
     return [*lines, "  </xs:complexType>"]
+
+
+def _content(vocabulary: Vocabulary, element: Element) -> list[str]:
+    """What an element may hold, if anything."""
+    held = [
+        f'<xs:element name="{vocabulary.elements[child].tag}" type="{child}"/>'
+        for child in element.children
+    ]
+    held += [FOREIGN] if held and vocabulary.open else []
+    held = [ANYTHING] if element.key in vocabulary.free else held
+    if not held:
+        return []
+    lines = [f"      {one}" for one in held]
+    return ['    <xs:choice minOccurs="0" maxOccurs="unbounded">', *lines, "    </xs:choice>"]
 
 
 def _attribute(item: Attribute) -> list[str]:
@@ -147,26 +152,19 @@ def _attribute(item: Attribute) -> list[str]:
     doc = item.doc + (f" (default: {item.default})" if item.default else "")
     if item.choices:
         values = "".join(f'<xs:enumeration value="{value}"/>' for value in item.choices)
-        lines = [
-            f'    <xs:attribute name="{item.name}"{use}>',
-            _doc(doc, "      "),
-            f'      <xs:simpleType><xs:restriction base="xs:string">{values}'
-            "</xs:restriction></xs:simpleType>",
-            "    </xs:attribute>",
-        ]
+        simple = f'<xs:restriction base="xs:string">{values}</xs:restriction>'
+        held = [f"      <xs:simpleType>{simple}</xs:simpleType>"]
+        lines = _attribute_lines(f'name="{item.name}"{use}', doc, *held)
     else:
-        lines = [
-            f'    <xs:attribute name="{item.name}" type="kind-{item.kind}"{use}>',
-            _doc(doc, "      "),
-            "    </xs:attribute>",
-        ]
+        lines = _attribute_lines(f'name="{item.name}" type="kind-{item.kind}"{use}', doc)
     if item.dynamic:
-        lines += [
-            f'    <xs:attribute name="{item.name}-expr" type="kind-expression">',
-            _doc(f"An expression that gives {item.name}: {item.doc}", "      "),
-            "    </xs:attribute>",
-        ]
+        doc = f"An expression that gives {item.name}: {item.doc}"
+        lines += _attribute_lines(f'name="{item.name}-expr" type="kind-expression"', doc)
     return lines
+
+
+def _attribute_lines(attributes: str, doc: str, *held: str) -> list[str]:
+    return [f"    <xs:attribute {attributes}>", _doc(doc, "      "), *held, "    </xs:attribute>"]
 
 
 def _simple_type(kind: str) -> list[str]:

@@ -38,7 +38,7 @@ def make_rnc(vocabulary: Vocabulary) -> str:
 
 
 def _foreign(vocabulary: Vocabulary) -> list[str]:
-    """The elements of other namespaces, where any may stand."""
+    """The elements of other namespaces, where any are allowed."""
     if not vocabulary.open:
         return []
     if vocabulary.guests is None:
@@ -55,16 +55,18 @@ def _element(vocabulary: Vocabulary, element: Element) -> str:
             tag = "[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*"
             parts.append(f'attribute xml:lang {{ "" | xsd:token {{ pattern = "{tag}" }} }}?')
         parts.append("attribute xsi:* { text }*")
-    if element.key in vocabulary.free:
-        parts.append("(text | element * { anything })*")
-    else:
-        held = ["text"] if element.text else []
-        held += [f"e-{key}" for key in element.children]
-        held += ["foreign"] if vocabulary.open and element.children else []
-        if held:
-            parts.append("text" if held == ["text"] else f"({' | '.join(held)})*")
-    body = ",\n    ".join(parts) or "empty"
+    body = ",\n    ".join([*parts, *_content(vocabulary, element)]) or "empty"
     return f"\n{_doc(element.doc, element.source)}e-{element.key} =\n  element {element.tag} {{\n    {body}\n  }}\n"
+
+
+def _content(vocabulary: Vocabulary, element: Element) -> list[str]:
+    """What an element may hold, if anything."""
+    if element.key in vocabulary.free:
+        return ["(text | element * { anything })*"]
+    held = ["text"] if element.text else []
+    held += [f"e-{key}" for key in element.children]
+    held += ["foreign"] if vocabulary.open and element.children else []
+    return held if held in ([], ["text"]) else [f"({' | '.join(held)})*"]
 
 
 def _guest(element: Element) -> str:

@@ -39,27 +39,28 @@ _MIDNIGHT = {"midnight", "twelve midnight", "12 midnight", "twelve oclock midnig
 _PASSED_OVER = {"the", "of", "on", "in", "year"} | {
     f"{day}day" for day in ("mon", "tues", "wednes", "thurs", "fri", "satur", "sun")
 }
+DAYS = range(1, 32)
 YEARS = range(1500, 3000)
-"""Years that are understood alone, without a month."""
+"""Years that are understood without a month."""
 
 
 def date(text: str, folded: str) -> str | None:
     """``yyyymmdd`` with a question mark for each digit that was not said, or None."""
-    plain = text.strip(" .。!").lower()
+    figures = text.strip(" .。!").lower()
     for pattern in _FIGURES:
-        if match := pattern.fullmatch(plain):
+        if match := pattern.fullmatch(figures):
             found = match.groupdict()
-            year = int(found["y"]) if found.get("y") else None
-            return _written(year, int(found["m"]), int(found["d"]))
+            return _written(*(int(found[one]) if found.get(one) else None for one in "ymd"))
     if match := _JAPANESE.fullmatch(folded):
-        given = [match[name] for name in "ymd"]
-        read = [None if one is None else cardinal(one) for one in given]
-        if any(given) and (read[1] or read[0]) and not (read[2] and not read[1]):
-            wrong = any(
-                one is not None and two is None for one, two in zip(given, read, strict=True)
-            )
-            return None if wrong else _written(*read)
+        year, month, day = map(_counted, match.groups())
+        if (year or month) and (month or not day):
+            return _written(year, month, day)
     return _english_date(folded.replace(",", " ").split())
+
+
+def _counted(said: str | None) -> int | None:
+    """A number in Japanese; where it cannot be read 0, which no year, month or day is."""
+    return None if said is None else cardinal(said) or 0
 
 
 def _english_date(words: list[str]) -> str | None:
@@ -70,21 +71,14 @@ def _english_date(words: list[str]) -> str | None:
         return _without_month(words)
     month, before, after = MONTHS[words[at]], words[:at], words[at + 1 :]
     if before:
-        day = ordinal(" ".join(before))
-        if day is None and (year := _year(before)) is not None:
-            day = ordinal(" ".join(after)) if after else None
-            return None if after and day is None else _written(year, month, day)
-        year = _year(after) if after else None
-        return None if day is None or (after and year is None) else _written(year, month, day)
-    for size in (2, 1):  # the longest day first
-        day = ordinal(" ".join(after[:size])) if len(after) >= size else None
-        rest = after[size:]
-        if day is not None and 1 <= day <= 31:
-            year = _year(rest) if rest else None
-            if not rest or year is not None:
-                return _written(year, month, day)
-    year = _year(after) if after else None
-    return None if after and year is None else _written(year, month, None)
+        readings = [(before, after), (after, before)]
+    else:  # the longest day first
+        readings = [(after[:2], after[2:]), (after[:1], after[1:]), ([], after)]
+    for days, years in readings:
+        day, year = ordinal(" ".join(days)), _year(years)
+        if (day in DAYS or not days) and (year is not None or not years):
+            return _written(year, month, day)
+    return None
 
 
 def _without_month(words: list[str]) -> str | None:
@@ -93,7 +87,7 @@ def _without_month(words: list[str]) -> str | None:
     if year in YEARS:
         return _written(year, None, None)
     said = " ".join(words)
-    counted = cardinal(said) is not None  # "five" is no day, "fifth" is
+    counted = cardinal(said) is not None  # "fifth" is a day, "five" is not
     day = None if counted or not words else ordinal(said)
     return None if day is None else _written(None, None, day)
 
@@ -126,18 +120,12 @@ def _written(year: int | None, month: int | None, day: int | None) -> str | None
 def time(folded: str) -> str | None:
     """``hhmmx``: x is a, p, h for 24 hours, or ? where it was not said; or None."""
     folded = folded.removeprefix("at ")
-    if folded in _NOON or folded in _MIDNIGHT:
+    if folded in _NOON | _MIDNIGHT:
         return "1200p" if folded in _NOON else "1200a"
     if match := re.fullmatch(r"(\d{1,2})(\d{2})", folded):
         return _clock(int(match[1]), int(match[2]), "")
     if match := _CLOCK_JA.fullmatch(folded):
-        hour, minute = cardinal(match["h"]), cardinal(match["m"]) if match["m"] else 0
-        if match["half"]:
-            minute = 30
-        if hour is None or minute is None:
-            return None
-        part = {"午前": "a", "午後": "p"}.get(match["x"] or "", "")
-        return _clock(12 if part and hour == 0 else hour, minute, part)
+        return _japanese_time(match)
     part = "h" if folded.endswith(" hours") else ""
     folded = folded.removesuffix(" hours")
     if match := _PART.fullmatch(folded):
@@ -149,34 +137,54 @@ def time(folded: str) -> str | None:
     return _past(words, part) if _LINKS.keys() & set(words) else _words(words, part)
 
 
+def _japanese_time(match: re.Match[str]) -> str | None:
+    """``午後三時半``."""
+    minute = 30 if match["half"] else cardinal(match["m"]) if match["m"] else 0
+    hour, part = cardinal(match["h"]), {"午前": "a", "午後": "p"}.get(match["x"] or "", "")
+    if hour is None or minute is None:
+        return None
+    return _clock(12 if part and hour == 0 else hour, minute, part)
+
+
 def _past(words: list[str], part: str) -> str | None:
     """``half past five``, ``a quarter to six``, ``ten minutes before noon``."""
     at = next(index for index, word in enumerate(words) if word in _LINKS)
     sign, named = _LINKS[words[at]], " ".join(words[at + 1 :])
     minutes = _minutes([word for word in words[:at] if word not in ("a", "minute", "minutes")])
     hour = 12 if named in _NOON | _MIDNIGHT else cardinal(named)
-    if minutes is None or not minutes or hour is None:
+    if not minutes or hour is None:
         return None
-    if named in _NOON | _MIDNIGHT and not part:
-        part = "p" if (named in _NOON) == (sign > 0) else "a"
+    part = part or _half_of_day(named, after=sign > 0)
     if sign < 0:
         hour, minutes = hour - 1 or 12, 60 - minutes
     return _clock(hour, minutes, part)
 
 
+def _half_of_day(named: str, after: bool) -> str:
+    """a or p for what is a little after or before noon or midnight; nothing for other times."""
+    if named in _NOON:
+        return "p" if after else "a"
+    return "" if named not in _MIDNIGHT else "a" if after else "p"
+
+
 def _words(words: list[str], part: str) -> str | None:
     """``five thirty``, ``oh five hundred``, ``seventeen forty five``."""
-    if words[:1] in (["oh"], ["o"], ["zero"]) and len(words) > 1 and words[1] != "hundred":
+    if words[:1] in (["oh"], ["o"], ["zero"]) and words[1:2] not in ([], ["hundred"]):
         words = words[1:]
         part = part or ("h" if words[-1] == "hundred" else "")
-    hour = cardinal("zero" if words[0] in ("oh", "o") else words[0]) if words else None
-    if hour is None:
-        return None
-    rest = words[1:]
-    if hour >= 20 and rest and (ones := cardinal(rest[0])) and ones < 4:
-        hour, rest = hour + ones, rest[1:]
+    hour, rest = _hour(words)
     minutes = _minutes(rest) if rest else 0
-    return None if minutes is None else _clock(hour, minutes, part)
+    return None if hour is None or minutes is None else _clock(hour, minutes, part)
+
+
+def _hour(words: list[str]) -> tuple[int | None, list[str]]:
+    """The hour that words begin with, of one or two of them, and the others."""
+    if not words:
+        return None, []
+    hour, rest = cardinal("zero" if words[0] in ("oh", "o") else words[0]), words[1:]
+    if hour is not None and hour >= 20 and rest and (ones := cardinal(rest[0])) and ones < 4:
+        return hour + ones, rest[1:]
+    return hour, rest
 
 
 def _minutes(words: list[str]) -> int | None:

@@ -1,4 +1,4 @@
-"""What an author most likely meant: values and elements as they should have been written."""
+"""Hints for authors: values and elements as they were most likely meant."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ UNITS = {
     "S": 1000,
     "MS": 1,
 }
-"""Units of time that are not those of documents, in ms."""
-# Compiled when they are used: most documents have no slips.
+"""Units of time that documents do not have, in ms."""
+# Compiled when they are used: most documents have no mistakes.
 MEASURE = r"\s*([0-9]+(?:[.,][0-9]+)?|[.,][0-9]+)\s*([A-Za-z]*)\s*"
 NUMBER = r"\s*([+-]?(?:[0-9]+(?:[.,][0-9]+)?|[.,][0-9]+))\s*[A-Za-z/°%]*[²2]?\s*"
 TRUTHS = {"yes": "true", "1": "true", "on": "true", "no": "false", "0": "false", "off": "false"}
 LONG = 100
-"""Letters of a value beyond which no guess is made."""
+"""Length of a value above which no guess is made."""
 INSIDE = {
     "field": "Write it into a <prompt>.",
     "when": "Write it into a <say>.",
@@ -32,12 +32,12 @@ INSIDE = {
     "value": 'Write an expression: <value expr="..."/>.',
     "goto": "Remove it; the tag ends with />.",
 }
-"""Where text belongs that stands directly in an element."""
+"""Where text belongs that is directly in an element."""
 INSTEAD = {
     "prompt": "Write <speak>; a <prompt> is what a <field> asks.",
     "option": "It is an answer that a <field> takes.",
 }
-"""What to write instead of an element that stands where it makes no sense at all."""
+"""What to write instead of an element that makes no sense in its place."""
 TEXTS = ("text", "value", "say", "content", "message", "name")
 """Attributes that authors give to what holds its text inside."""
 
@@ -45,7 +45,7 @@ TEXTS = ("text", "value", "say", "content", "message", "name")
 def half(text: str) -> str:
     """Text in characters of half width, as keyboards for English give."""
     straight = re.sub("[“”„«»]", '"', text)
-    import unicodedata  # only what is wrong needs it
+    import unicodedata  # needed for problems only
 
     return unicodedata.normalize("NFKC", re.sub("[‘’‚]", "'", straight))
 
@@ -65,7 +65,7 @@ def meant_value(kind: str, text: str) -> str:
 
 
 LONG_SECONDS = 100
-"""A time without a unit that is no less most likely means milliseconds."""
+"""A time without a unit from this number on most likely means milliseconds."""
 
 
 def _guess(kind: str, text: str) -> str:
@@ -95,11 +95,11 @@ PAUSES = {
     "break": 'Between Commands write <pause time="1s"/>; a <break> is a pause inside of a text.',
     "pause": 'Inside of a text write <break time="1s"/>; a <pause> stands between Commands.',
 }
-"""The two pauses, each written where the other belongs."""
+"""The two kinds of pauses, each in the place of the other."""
 
 
 def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
-    """What to do with an element that stands where it may not."""
+    """What to do with an element in a place where it is not allowed."""
     allowed = vocabulary.parents(tag)
     if tag in PAUSES and "break" in vocabulary.tags:
         return PAUSES[tag]

@@ -1,6 +1,6 @@
-"""The evaluator of documents whose expressions all need no engine.
+"""The evaluator of documents all of whose expressions Python can evaluate.
 
-An application that has no others (:func:`is_plain`) is evaluated here: each expression is a Python
+An application that has no others (:func:`is_python`) is evaluated here: each expression is a Python
 function of the scopes that it sees (:mod:`prima.script.compile`); any other application runs
 in an :class:`~prima.script.engine.Engine`.
 """
@@ -19,15 +19,15 @@ from prima.script.ecmascript import (
     Scope,
     Scopes,
     escaped,
-    holder_of,
     inward,
     outward,
     stringify,
     text,
     truth,
-    well_formed,
 )
 from prima.script.evaluation import MAX_SCRIPT_SECONDS, ScriptError, bounded
+from prima.script.operations import holder_of
+from prima.script.surrogates import well_formed
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -39,23 +39,23 @@ MOST_HELD = 4_000_000
 SECONDS = 4e-9
 """What a character takes at most to be compared, joined or read."""
 PIECE, FEW_PIECES = 125, 20
-"""As many characters is the work of a piece of an expression, in one with more pieces than that."""
+"""The work of a piece of an expression in characters, if it has more pieces than the second."""
 COUNTED = 10
-"""As many characters is the work of counting a variable."""
+"""The work of counting a variable, in characters."""
 MOST_PIECES = 50_000
 """Pieces of code that a document may have to be evaluated here."""
 
 
-def is_plain(document: Document) -> bool:
+def is_python(document: Document) -> bool:
     """Whether all the code of a document can be evaluated here."""
-    if document.plain is None:
-        document.plain = not document.scripted and _are_plain(
+    if document.python is None:
+        document.python = not document.scripted and _are_python(
             {one.code: None for one in document.expressions}
         )
-    return document.plain
+    return document.python
 
 
-def _are_plain(codes: Iterable[str]) -> bool:
+def _are_python(codes: Iterable[str]) -> bool:
     pieces = 0
     for code in codes:
         found = compiled(code)
@@ -80,8 +80,8 @@ def weighed(found: Compiled) -> Function:
     return long
 
 
-class PlainEngine:
-    """What an :class:`~prima.script.engine.Engine` does, for applications without scripts."""
+class PythonEngine:
+    """Does what an :class:`~prima.script.engine.Engine` does, for applications without scripts."""
 
     nothing = Scope()
     """A scope in which nothing is declared."""
@@ -176,10 +176,10 @@ class PlainEngine:
         return outward(scope.get(name, UNDEFINED))
 
     def elements(self, code: str, scopes: Scopes, most: int) -> list[Any]:
-        """Evaluate an expression that gives an array; its elements as they are here.
+        """Evaluate an expression that gives an array; give its elements.
 
         Raises:
-            ScriptError: it is no array.
+            ScriptError: it is not an array.
         """
         array = (self._functions.get(code) or self._call(code))(scopes)
         if not isinstance(array, list):

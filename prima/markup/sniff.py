@@ -1,4 +1,4 @@
-"""What a file begins with: enough to tell what kind of document it is."""
+"""The beginning of a file, which shows what kind of document it is."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ PIECES = ((b"<?", b"?>"), (b"<!--", b"-->"))
 def root_of(data: bytes) -> bytes:
     """A file from where its root element seems to begin: past the prolog, without parsing it.
 
-    No file is refused: of one that is no XML all but white space is given. Text in UTF-16 is
-    given with one byte a letter.
+    No file is refused: one that is not XML is given without leading white space, text in UTF-16
+    with one byte for each letter.
     """
     if b"\0" in data[:4]:
         data = data.replace(b"\0", b"")

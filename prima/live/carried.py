@@ -1,0 +1,69 @@
+"""Which driver carries a goal out, and what to write where none does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from prima.devices.goals import RECORD, Begin
+from prima.devices.profile import Profile
+from prima.errors import Problem, few
+from prima.errors.diagnoses.names import UNSUPPORTED_COMMAND
+from prima.interpreter.acts import CommandTemplate
+from prima.interpreter.checks.facts import document_commands
+from prima.interpreter.elements import Document
+from prima.live.driver import Driver
+from prima.messages import Command, Json
+from prima.session import AnyDocument
+
+UNCARRIED = UNSUPPORTED_COMMAND.says("{what}: {lacking}.")
+SPOKEN = ("pause", "speak", "q-and-a")
+"""Commands that move nothing."""
+
+
+def route(drivers: Sequence[Driver], goal: Begin) -> Driver | None:
+    """The driver of a goal: the one that says how, or else the first with one of its devices."""
+    there = [one for one in drivers if one.settings.devices & goal.devices]
+    how = (one for one in there if one.does(goal) is not None)
+    able = (one for one in there if not one.mapped or goal.kind in one.own)
+    return next(how, None) or next(able, None)
+
+
+def lacking(drivers: Sequence[Driver], goal: Begin) -> str:
+    """What a robot's document lacks so that a goal is carried out; nothing if it lacks nothing."""
+    if route(drivers, goal) is not None:
+        return ""
+    if goal.kind == RECORD:
+        return "no driver records"
+    if not any(one.settings.devices & goal.devices for one in drivers):
+        names = " ".join(sorted(goal.devices))
+        return f'no driver carries it out: write devices="{names}" into a <driver>'
+    gesture = str(goal.command.args.get("name", "")) if goal.kind == "gesture" else ""
+    which = f'gesture="{gesture}"' if gesture else f'command="{goal.kind}"'
+    return f"no driver carries it out: write <does {which} ...> in a <driver>"
+
+
+def uncarried(
+    robot: Profile, drivers: Sequence[Driver], documents: Iterable[AnyDocument]
+) -> list[Problem]:
+    """Commands of documents that the robot has, but no driver of it: warnings."""
+    found = []
+    for document in documents:
+        commands = document_commands(document) if isinstance(document, Document) else ()
+        for command in commands:
+            goal = _goal(robot, command)
+            if goal is not None and (why := lacking(drivers, goal)):
+                what = " ".join([goal.kind, *map(str, goal.command.args.values())])
+                found.append(UNCARRIED.at(command.node.place, what=what, lacking=why))
+    return few(found, 1)
+
+
+def _goal(robot: Profile, command: CommandTemplate) -> Begin | None:
+    """What a driver would be told to begin, as far as the document tells; None for mere speech."""
+    row = robot.commands.get(command.type)
+    if row is None or row.substitute or row.name in SPOKEN:
+        return None
+    name = command.args.get("name") if row.name == "gesture" else None
+    args: dict[str, Json] = {"name": name} if isinstance(name, str) else {}
+    if args and name not in robot.gestures:
+        return None  # that is told already
+    return Begin("", row.name, Command(row.name, args), row.devices)

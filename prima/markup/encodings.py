@@ -1,0 +1,86 @@
+"""Bytes of a document as text, in one of the accepted encodings."""
+
+from __future__ import annotations
+
+import codecs
+import re
+
+from prima.errors import Place
+from prima.markup.limits import LIMITS, refusal, too_large
+
+ENCODINGS = frozenset(
+    ["utf-8", "ascii", "utf-16", "utf-16-le", "utf-16-be", "koi8-r", "koi8-u"]
+    + [f"iso8859-{number}" for number in range(1, 17) if number != 12]
+    + [f"cp{number}" for number in range(1250, 1259)]
+    + ["shift_jis", "cp932", "euc_jp", "iso2022_jp", "gb2312", "gbk", "gb18030", "big5", "euc_kr"]
+)
+"""Accepted encodings, by the names that :func:`codecs.lookup` gives them."""
+ENCODING = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._\-]+)["']""")
+MARKS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF32_LE, "utf-32"),
+    (codecs.BOM_UTF32_BE, "utf-32"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+    (b"<\0?\0", "utf-16-le"),
+    (b"\0<\0?", "utf-16-be"),
+)
+"""How files of some encodings begin (XML 1.0, appendix F)."""
+LATE_DECLARATION = re.compile(rb"(?:\xef\xbb\xbf)?\s+<\?xml\s")
+
+
+def decode(file: str, data: bytes) -> str:
+    """Give a document's text.
+
+    Raises:
+        DocumentError: it is too large, in an encoding that is not accepted, or not in the one
+            that it declares.
+    """
+    if len(data) > LIMITS.bytes:
+        raise too_large(file, len(data))
+    encoding = _encoding(file, data)
+    try:
+        text = data.decode("utf-8-sig" if encoding == "utf-8" else encoding)
+    except UnicodeDecodeError as error:
+        if LATE_DECLARATION.match(data):  # the parser reports it; its encoding counts for nothing
+            return data.decode("iso-8859-1")
+        message = f"A byte here is not {encoding.upper()}."
+        remedy = "Save it as UTF-8, or declare the encoding it has."
+        raise refusal(byte_place(file, encoding, error), "encoding", message, remedy) from None
+    return with_line_feeds(text)
+
+
+def _encoding(file: str, data: bytes) -> str:
+    """The encoding that a file's first bytes show; else the one that it declares, or UTF-8."""
+    marked = next((name for mark, name in MARKS if data.startswith(mark)), "")
+    declaration = ENCODING.match(data)
+    declared = declaration[1].decode().lower() if declaration else ""
+    place = Place(file, 1, declaration.start(1) + 1) if declaration else Place(file)
+    if not marked and _codec(declared).startswith("utf-16"):
+        message = f'The file says encoding="{declared}", but it is not in UTF-16.'
+        raise refusal(place, "encoding", message, "Declare the encoding it has.")
+    encoding = marked or declared or "utf-8"
+    if _codec(encoding) not in ENCODINGS:
+        message = f'The encoding "{encoding}" is not accepted.'
+        where = place if encoding == declared else Place(file)
+        raise refusal(where, "encoding", message, "Save it as UTF-8.")
+    return encoding
+
+
+def _codec(encoding: str) -> str:
+    """Python's name of an encoding; nothing for an unknown one."""
+    try:
+        return codecs.lookup(encoding).name
+    except LookupError:
+        return ""
+
+
+def with_line_feeds(text: str) -> str:
+    """Text whose lines end in line feeds, whatever they end in in the file (XML 1.0, 2.11)."""
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def byte_place(file: str, encoding: str, error: UnicodeDecodeError) -> Place:
+    """The place of the byte that is not in a file's encoding; columns count characters."""
+    before = with_line_feeds(error.object[: error.start].decode(encoding, errors="ignore"))
+    return Place(file, before.count("\n") + 1, len(before) - before.rfind("\n"))

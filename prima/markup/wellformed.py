@@ -1,0 +1,256 @@
+"""Why a text is not well-formed XML, in plain words and at the place of the mistake.
+
+This is the only module that knows lxml, whose parser says what is wrong.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+from xml.parsers import expat
+
+from prima.errors import DocumentError, Edit, Fix, Hint, Place, Span, nearest_word, replaced
+from prima.markup.limits import refusal, too_deep
+from prima.markup.tree import Source
+from prima.markup.vocabulary import Vocabulary
+
+if TYPE_CHECKING:
+    from lxml import etree
+
+OTHER_FORMS = (
+    (("{",), "This is JSON, not XML.", "If it is a transcript, prima show prints it."),
+    (
+        ("#ABNF", "#JSGF", "#GSL", ";GSL"),
+        "This is a grammar, not XML.",
+        "Name it in a VoiceXML document (<grammar src>); prima validate checks it.",
+    ),
+)
+"""How texts of other forms begin, what they are, and what to do with them."""
+MISMATCH = r"tag mismatch: (\S+) line (\d+) and (\S+)"
+"""The parser's words for a closing tag that does not fit: the opening one, its line, the closing."""
+UNCLOSED = r"(?:tag mismatch:|Premature end of data in tag) ([^\s<>]+) line"
+"""The parser's words for an element that is not closed."""
+REMEDIES = (
+    (MISMATCH, "The <{0}> of line {1} is still open here: write </{0}>, or end its own tag with />."),
+    (r"Namespace prefix (\S+) ", 'Write the name without "{0}:", or declare it: xmlns:{0}="...".'),
+    (r"Char 0x0|PCDATA invalid Char value 0|Invalid character",
+     "Remove the character; an editor may not show it. Save the file as UTF-8."),
+    (r"invalid Char value|xmlParseCharRef", "Remove the control character."),
+    (r"Premature end of data in tag (\S+) line (\d+)",
+     "The <{0}> of line {1} is never closed: write </{0}>."),
+    (r"Start tag expected", "Begin with a root element, such as <prima> or <vxml>."),
+    (r"Attribute (\S+) redefined", "Keep one of them."),
+    (r"Unescaped '<' not allowed in attributes", "Write &lt; for <, or close the quote before."),
+    (r"EntityRef|xmlParseEntityRef", "Write &amp; for &."),
+    (r"attributes construct error", "Put a space between attributes, and quote their values."),
+    (r"AttValue", 'Write the value in quotes: name="value".'),
+    (r"Extra content at the end", "A document has one root element, and nothing after it."),
+    (r"StartTag: invalid element name", "Write &lt; for a < that begins no tag."),
+    (r"XML declaration allowed only", "Move it to the very beginning of the file."),
+    (r"Specification mandates value", 'Write the value in quotes: name="value".'),
+    (r"error parsing attribute name", "Close the tag with >, or remove what is not an attribute."),
+    (r"Sequence '\]\]>'", "Write ]]&gt;."),
+    (r"[Cc]omment", "A comment ends with --> and holds no --."),
+    (r"CData", "It ends with ]]>."),
+)  # fmt: skip
+"""The parser's words, and what the author may do."""
+PLAINER = (
+    (r"xmlParseEntityRef: no name", "an & is not escaped"),
+    (r"EntityRef: expecting ';'", "an & begins no character's name, or lacks its ;"),
+    (r"AttValue: \" or ' expected", "an attribute's value has no quotes"),
+    (r"Specification mandates value for attribute (\S+)", 'the attribute "{0}" has no value'),
+    (r"attributes construct error", "an attribute is written wrongly"),
+    (r"error parsing attribute name", "the name of an attribute is expected here"),
+    (MISMATCH, "</{2}> does not end <{0}>"),
+    (r"Premature end of data in tag (\S+) line (\d+)", "the file ends inside <{0}>"),
+    (r"StartTag: invalid element name", "a < begins no tag"),
+    (r"Unescaped '<' not allowed in attributes values", "a < is in an attribute's value"),
+    (r"Namespace prefix (\S+) on (\S+) is not defined", 'the prefix "{0}" is not declared'),
+)
+"""The parser's words, and plainer ones."""
+BEGINNINGS = ((MISMATCH, "</"), (r"Namespace prefix (\S+) on", "<{0}:"), ("Entity", "&"))
+"""The parser's words for mistakes whose ends it names, and how they begin on the same line."""
+WIDE = {
+    **dict.fromkeys("“”„″＂「」『』", 'This is a typographic quote: write ".'),
+    **dict.fromkeys("‘’‚＇", "This is a typographic quote: write '."),
+    **dict.fromkeys(
+        "\u3000\u00a0\u2003\u202f", "This is a space of another kind: type an ordinary one."
+    ),
+    "＝": "This equals sign has full width: write =.",
+    "／": "This slash has full width: write /.",
+    "＞": "This bracket has full width: write >.",
+}
+"""Characters that editors put in place of those of XML, and what to write."""
+OPEN_QUOTE = re.compile(r"""=\s*(["'])[^"'<]*\Z""")
+TEMPLATE = re.compile(r"<%|<\?php|<\?=")
+
+
+class _Seen(Exception):
+    """The root element has been reached."""
+
+
+def explain(source: Source, vocabularies: Sequence[Vocabulary]) -> None:
+    """Check that a text is well-formed XML.
+
+    Args:
+        source: the text.
+        vocabularies: languages to which a misspelt opening tag may belong.
+
+    Raises:
+        DocumentError: it is not well-formed, or its DOCTYPE declares something.
+    """
+    from lxml import etree  # most documents have nothing that needs explaining
+
+    _check_prolog(source)
+    parser = etree.XMLParser(
+        resolve_entities="internal",  # type: ignore[arg-type]  # the stubs know True and False
+        no_network=True,
+        load_dtd=False,
+        huge_tree=False,
+        remove_comments=True,
+        remove_pis=True,
+        encoding="utf-8",
+    )
+    try:
+        root = etree.fromstring(source.text.encode(), parser)
+    except etree.XMLSyntaxError as error:
+        raise _misspelt(source, error, vocabularies) or _syntax_error(source, error) from None
+    dtd = root.getroottree().docinfo.internalDTD
+    if dtd is not None and (dtd.entities() or dtd.elements()):  # type: ignore[union-attr]
+        raise refusal(Place(source.file), "doctype", "A DOCTYPE may not declare anything itself.")
+
+
+def _check_prolog(source: Source) -> None:
+    """Refuse a DOCTYPE that declares anything itself, before anything is expanded."""
+    parser = expat.ParserCreate(encoding="utf-8")
+
+    def doctype(_name: str, _system: str | None, _public: str | None, internal: bool) -> None:
+        if internal:
+            raise refusal(
+                Place(source.file, parser.CurrentLineNumber),
+                "doctype",
+                "A DOCTYPE may not declare anything itself.",
+                "Remove the part in square brackets; entities are not needed in UTF-8.",
+            )
+
+    def start(_tag: str, _attributes: dict[str, str]) -> None:
+        raise _Seen
+
+    parser.StartDoctypeDeclHandler = doctype
+    parser.StartElementHandler = start
+    try:
+        parser.Parse(source.text.encode(), True)
+    except (_Seen, expat.ExpatError):
+        return  # lxml has better messages
+
+
+def _misspelt(
+    source: Source, error: etree.XMLSyntaxError, vocabularies: Sequence[Vocabulary]
+) -> DocumentError | None:
+    """The error for an opening tag that no language has, where its closing tag is right."""
+    match = re.search(MISMATCH, _said(error))
+    if match is None:
+        return None
+    opened, closed = match[1], match[3]
+    tags = {tag for one in vocabularies for tag in one.tags}
+    if opened in tags or closed not in tags or not nearest_word(opened, [closed]):
+        return None
+    line = int(match[2])
+    place = Place(source.file, line, max(_line(source, line).rfind(f"<{opened}") + 1, 1))
+    name = Span.of(place._replace(column=place.column + 1), opened)
+    remedy = replaced(f'Did you mean "{closed}"? The closing tag is right.', closed, name)
+    return refusal(place, "unknown-element", f"There is no <{opened}>.", remedy)
+
+
+def _said(error: etree.XMLSyntaxError) -> str:
+    """The parser's message without the place."""
+    return " ".join((error.msg or "Not XML").split(", line ")[0].split())
+
+
+def _line(source: Source, number: int) -> str:
+    """A line of the text, counted from 1; nothing for one behind the last."""
+    lines = source.text.split("\n")
+    return lines[number - 1] if number <= len(lines) else ""
+
+
+def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:
+    text = source.text.strip()
+    if not text:
+        place = Place(source.file)
+        return refusal(place, "not-xml", "The file is empty.", "Begin with a root element.")
+    line, column = error.position or (1, 1)
+    place = Place(source.file, max(line or 1, 1), max(column or 1, 1))
+    for beginnings, what, remedy in OTHER_FORMS:
+        if text.startswith(beginnings):
+            return refusal(place, "not-xml", what, remedy)
+    message = _said(error)
+    if "depth" in message.lower():
+        return too_deep(place)
+    if message.startswith("Entity '"):
+        name = message.split("'")[1]
+        told = f"The entity &{name}; is not known: documents declare none."
+        remedy = "Write the character itself; only &amp; &lt; &gt; &quot; &apos; are needed."
+        return refusal(_beginning(source, place, message), "entity", told, remedy)
+    return _not_well_formed(source, place, message)
+
+
+def _not_well_formed(source: Source, place: Place, message: str) -> DocumentError:
+    """The error for a mistake that the parser names: nearer to it and in plainer words."""
+    told, remedy = _translated(PLAINER, message) or message, _translated(REMEDIES, message)
+    fixes: tuple[Fix, ...] = ()
+    quote = _open_quote(source, place) if "'<' not allowed in attributes" in message else None
+    if quote:
+        place = quote
+        told, remedy = "a quote that is opened here is not closed", "Write the other quote."
+    else:
+        place = _beginning(source, place, message)
+        wide = WIDE.get(_line(source, place.line)[place.column - 1 : place.column])
+        if wide:
+            remedy = wide
+        elif unclosed := re.search(UNCLOSED, message):
+            fixes = _closed(source, place, unclosed[1])
+    if TEMPLATE.search(source.text):
+        remedy, fixes = "A server makes the document from this: run what it makes.", ()
+    told = f"This is not well-formed XML: {told.rstrip('.')}."
+    return refusal(place, "not-xml", told, Hint(remedy, fixes))
+
+
+def _translated(table: Iterable[tuple[str, str]], message: str) -> str:
+    """What a table has for the parser's words."""
+    for words, text in table:
+        if match := re.search(words, message):
+            return text.format(*match.groups())
+    return ""
+
+
+def _open_quote(source: Source, place: Place) -> Place | None:
+    """A quote that is opened on a line before a place and not closed there."""
+    end = sum(len(line) + 1 for line in source.text.split("\n")[: place.line - 1])
+    before = source.text[: end + place.column - 1]
+    quote = OPEN_QUOTE.search(before[-10_000:])
+    if quote is None or "\n" not in quote[0]:
+        return None
+    return source.at(len(before) - len(quote[0]) + quote[0].index(quote[1]))
+
+
+def _beginning(source: Source, place: Place, message: str) -> Place:
+    """Where a mistake begins whose end the parser has named."""
+    unclosed = re.search(MISMATCH, message)
+    if unclosed and unclosed[1].startswith("／"):
+        line = int(unclosed[2])
+        return Place(source.file, line, max(_line(source, line).find("／") + 1, 1))
+    for words, beginning in BEGINNINGS:
+        if match := re.search(words, message):
+            sought = beginning.format(*match.groups())
+            start = _line(source, place.line).rfind(sought, 0, place.column)
+            return place._replace(column=start + 1) if start >= 0 else place
+    return place
+
+
+def _closed(source: Source, place: Place, name: str) -> tuple[Fix, ...]:
+    """An end tag before the one that ends something else, or at the end of the text."""
+    at = len(source.text.rstrip())
+    here = _line(source, place.line).startswith("</", place.column - 1)
+    span = Span.of(place, "") if here else source.span(at, at)
+    return (Fix(f"Write </{name}>", (Edit(span, f"</{name}>"),)),)

@@ -1,0 +1,101 @@
+"""Literals of ECMAScript as values of Python."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+from prima.script.parse import Code, Node
+
+WORDS = {"true": True, "false": False, "null": None}
+NUMBER = frozenset("0123456789.eE+-")
+ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v"}
+UNCOMMON = frozenset("ux0123456789\n\r\u2028\u2029")
+"""Behind a backslash: what is not the character itself, or a white space."""
+
+
+class Beyond(Exception):
+    """The code needs an engine."""
+
+
+def literal(code: Code, node: Node) -> Any:
+    """The value of a literal.
+
+    Raises:
+        Beyond: it needs an engine.
+    """
+    if node.type == "array":
+        return _array(code, node)
+    return _object(code, node) if node.type == "object" else _plain(code, node)
+
+
+def number(code: Code, node: Node) -> float:
+    """A number that is written in decimals.
+
+    Raises:
+        Beyond: it is written in another way.
+    """
+    text = code.of(node)
+    whole = text.partition(".")[0]
+    if not set(text) <= NUMBER or (len(whole) > 1 and whole[0] == "0" and whole.isdigit()):
+        raise Beyond
+    return float(text)
+
+
+def string(code: Code, node: Node) -> str:
+    """A text in quotes.
+
+    Raises:
+        Beyond: an escape in it is uncommon.
+    """
+    pieces = []
+    for part in node.named_children:
+        text = code.of(part)
+        if part.type == "escape_sequence":
+            if text[1] in UNCOMMON:
+                raise Beyond
+            text = ESCAPES.get(text[1:], text[1:])
+        pieces.append(text)
+    return "".join(pieces)
+
+
+def _plain(code: Code, node: Node) -> Any:
+    """A number, text or word: nothing that holds others."""
+    if node.type == "number":
+        return number(code, node)
+    if node.type == "string":
+        return string(code, node)
+    if node.type in WORDS:
+        return WORDS[node.type]
+    raise Beyond
+
+
+def _item(code: Code, node: Node) -> Any:
+    """A value in an array or object, which is not computed."""
+    if node.type == "unary_expression" and node.children[0].type == "-":
+        operand = node.children[1]
+        if operand.type == "number":
+            return -number(code, operand)
+    return _plain(code, node)
+
+
+def _array(code: Code, node: Node) -> list[Any]:
+    children = node.children
+    if any(one.type in ("[", ",") and two.type == "," for one, two in pairwise(children)):
+        raise Beyond  # an element is left out
+    return [_item(code, one) for one in node.named_children]
+
+
+def _object(code: Code, node: Node) -> dict[str, Any]:
+    values: dict[str, Any] = {}
+    for pair in node.named_children:
+        key, value = pair.child_by_field_name("key"), pair.child_by_field_name("value")
+        if pair.type != "pair" or key is None or value is None:
+            raise Beyond
+        if key.type not in ("property_identifier", "string"):
+            raise Beyond
+        name = string(code, key) if key.type == "string" else code.of(key)
+        if name.isdigit() or name == "__proto__" or "\\" in name or not name.isascii():
+            raise Beyond
+        values[name] = _item(code, value)
+    return values

@@ -1,0 +1,199 @@
+"""What expressions in Python do with values: variables, members and operators.
+
+Work with long texts is counted.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable
+from typing import Any
+
+from prima.script.ecmascript import (
+    CONSTANTS,
+    UNDEFINED,
+    Named,
+    Scope,
+    Scopes,
+    alike,
+    number,
+    order,
+    primitive,
+    same,
+    text,
+    unit,
+    units,
+)
+from prima.script.evaluation import SCOPES, ScriptError
+
+Operation = Callable[[Any, Any, Scopes], Any]
+
+LONGEST = 100_000
+"""Characters that a text may have; nothing longer could leave the scopes."""
+SHORT = 200
+"""Characters up to which work with a text is not counted."""
+HIGH, LOW = frozenset(map(chr, range(0xD800, 0xDC00))), frozenset(map(chr, range(0xDC00, 0xE000)))
+"""First and second halves of letters."""
+MISSING = object()
+"""The value of what nothing declares."""
+
+
+def sought(name: str, line: int, column: int, scopes: Scopes) -> Any:
+    """A variable that is in none of the usual scopes.
+
+    Raises:
+        ScriptError: nothing declares it.
+    """
+    value = found(name, scopes, MISSING)
+    if value is MISSING:
+        raise ScriptError(f"ReferenceError: {name} is not defined", [(line, column)])
+    return value
+
+
+def found(name: str, scopes: Scopes, otherwise: Any = UNDEFINED) -> Any:
+    """A variable's value, or ``otherwise`` if nothing declares it."""
+    for scope in reversed(scopes):
+        if name in scope:
+            return scope[name]
+    if name in CONSTANTS:
+        return CONSTANTS[name]
+    if name in SCOPES and isinstance(scope := scopes[SCOPES.index(name)], Named):
+        return scope
+    return otherwise
+
+
+def holder_of(name: str, scopes: Scopes) -> Scope:
+    """The innermost scope that has a variable, by its name as written.
+
+    Raises:
+        ScriptError: no scope declares it.
+    """
+    inner, _, last = name.rpartition(".")
+    for scope in (scopes[SCOPES.index(inner)],) if inner else reversed(scopes):
+        if last in scope:
+            return scope
+    raise ScriptError(f'ReferenceError: the variable "{name}" is not declared')
+
+
+def member(value: Any, key: str, index: int, line: int, column: int, scopes: Scopes) -> Any:
+    """A member of a value, by its name and the index that the name is."""
+    if isinstance(value, dict):
+        if isinstance(value, Named) and key == value.name and key not in value:
+            return value
+        return value.get(key, UNDEFINED)
+    if value is None or value is UNDEFINED:
+        message = f"TypeError: cannot read property '{key}' of {text(value)}"
+        raise ScriptError(message, [(line, column)])
+    if isinstance(value, str):
+        work(scopes, value)
+        return float(units(value)) if key == "length" else unit(value, index)
+    if not isinstance(value, list):
+        return UNDEFINED
+    if key == "length":
+        return float(len(value))
+    return value[index] if 0 <= index < len(value) else UNDEFINED
+
+
+def work(scopes: Scopes, value: Any) -> None:
+    """Count the work with a value that may be long.
+
+    Raises:
+        ScriptError: the application has taken too long in this instant.
+    """
+    if isinstance(value, str | list) and len(value) > SHORT:
+        count = getattr(scopes[0], "count", None)
+        if count is not None:
+            count(len(value))
+
+
+def equal(first: Any, second: Any, scopes: Scopes) -> bool:
+    """``==``, with the work counted."""
+    if type(first) is float and type(second) is float:
+        return first == second
+    work(scopes, first)
+    work(scopes, second)
+    return alike(first, second)
+
+
+def identical(first: Any, second: Any, scopes: Scopes) -> bool:
+    """``===``, with the work counted."""
+    work(scopes, first)
+    work(scopes, second)
+    return same(first, second)
+
+
+def numeric(value: Any, scopes: Scopes) -> float:
+    """A value as a number, with the work counted."""
+    if type(value) is float:
+        return value
+    work(scopes, value)
+    return number(value)
+
+
+def add(first: Any, second: Any, scopes: Scopes) -> Any:
+    """``+``, which joins texts as well."""
+    if type(first) is float and type(second) is float:
+        return first + second
+    first, second = primitive(first), primitive(second)
+    if not isinstance(first, str) and not isinstance(second, str):
+        return number(first) + number(second)
+    joined = join(text(first), text(second))
+    if len(joined) > SHORT:
+        if len(joined) > LONGEST:
+            raise ScriptError("it used too much memory")
+        work(scopes, joined)
+    return joined
+
+
+def join(first: str, second: str) -> str:
+    """Two texts as one, in which two halves that meet are a letter again."""
+    if first[-1:] in HIGH and second[:1] in LOW:
+        pair = (first[-1] + second[0]).encode("utf-16-le", "surrogatepass").decode("utf-16-le")
+        return first[:-1] + pair + second[1:]
+    return first + second
+
+
+def _arithmetic(act: Callable[[float, float], float]) -> Operation:
+    def calculate(first: Any, second: Any, scopes: Scopes) -> float:
+        return act(numeric(first, scopes), numeric(second, scopes))
+
+    return calculate
+
+
+def _comparison(act: Callable[[Any, Any], bool]) -> Operation:
+    def compare(first: Any, second: Any, scopes: Scopes) -> bool:
+        if type(first) is float and type(second) is float:
+            return act(first, second)
+        first, second = primitive(first), primitive(second)
+        if isinstance(first, str) and isinstance(second, str):
+            if first.isascii() and second.isascii():
+                return act(first, second)
+            work(scopes, first)
+            work(scopes, second)
+            return act(order(first), order(second))
+        return act(numeric(first, scopes), numeric(second, scopes))
+
+    return compare
+
+
+def divide(first: float, second: float) -> float:
+    """Division, which has a value by nought as well."""
+    if second:
+        return first / second
+    if first == 0 or first != first or second != second:
+        return math.nan
+    return math.copysign(math.inf, first) * math.copysign(1, second)
+
+
+def remainder(first: float, second: float) -> float:
+    """The remainder, with the sign of what is divided."""
+    if second == 0 or math.isinf(first):
+        return math.nan
+    return math.fmod(first, second)
+
+
+subtract, multiply = _arithmetic(operator.sub), _arithmetic(operator.mul)
+divided, remaining = _arithmetic(divide), _arithmetic(remainder)
+less, more = _comparison(operator.lt), _comparison(operator.gt)
+at_most, at_least = _comparison(operator.le), _comparison(operator.ge)

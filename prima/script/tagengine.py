@@ -1,0 +1,189 @@
+"""The ECMAScript engine for the tags of grammars, in a process of its own.
+
+``Date`` tells the time that is given and ``Math.random`` is seeded, so that a match can be repeated.
+"""
+
+from __future__ import annotations
+
+import json
+from time import thread_time
+from typing import TYPE_CHECKING, Any
+
+import _quickjs as quickjs
+
+from prima.script.budget import TIME_LIMIT
+from prima.script.evaluation import ScriptError
+from prima.script.sandbox import (
+    CLOCK,
+    DATE,
+    EVALUATE,
+    GUARD,
+    GUARDS,
+    MEMORY_LIMIT,
+    PRELUDE,
+    STACK_LIMIT,
+    reason,
+    source,
+)
+from prima.script.surrogates import well_formed, well_formed_json
+
+if TYPE_CHECKING:
+    from prima.messages import Json
+
+DONE = 1_000_000
+"""What comes after a rule's last tag."""
+LEAST_MEMORY = 1024 * 1024
+"""Bytes that each sandbox may use, however many there are: each further one has half as many."""
+RESULT_LIMIT = 100_000
+"""Characters that a value may have when it leaves the engine."""
+
+HELPERS = source("tags.js")
+
+CHECK = source("check.js")
+"""Compiles a script by itself, which ends before it begins; it declares nothing outside."""
+
+
+def shared(code: str) -> str:
+    """A script whose declarations at its top are all of the global scope, by which others see them.
+
+    ``let``, ``const`` and ``class`` would be seen nowhere else where code is evaluated by a function.
+    """
+    if not any(word in code for word in ("let", "const", "class")):
+        return code
+    from prima.script.parse import parse_script
+
+    parsed = parse_script(code)
+    if parsed is None or not parsed.sound:
+        return code
+    pieces, at = [], 0
+    for node in parsed.root.children:
+        name = node.child_by_field_name("name")
+        if node.type == "lexical_declaration":
+            word = node.children[0]
+            pieces += [code[at : parsed.start(word)], "var"]
+            at = parsed.end(word)
+        elif node.type == "class_declaration" and name is not None:
+            start, end = parsed.start(node), parsed.end(node)
+            pieces += [code[at:start], f"var {parsed.of(name)} = {code[start:end]};"]
+            at = end
+    return "".join([*pieces, code[at:]])
+
+
+class TagEngine:
+    """The ECMAScript of one grammar document while one utterance is interpreted."""
+
+    def __init__(self, others: int = 0) -> None:
+        """``others`` is how many sandboxes the same utterance has already."""
+        self.now, self._told = 0, -1
+        """The time that the tags see (ms since 1970, UTC)."""
+        self.spent = 0.0
+        """Seconds of the processor that the tags of this utterance have taken."""
+        context = quickjs.Context()
+        context.set_memory_limit(max(MEMORY_LIMIT >> others, LEAST_MEMORY))
+        context.set_max_stack_size(STACK_LIMIT)
+        context.set_time_limit(TIME_LIMIT)
+        context.eval(GUARDS)
+        clock = context.eval(CLOCK)(DATE)
+        context.eval(PRELUDE)
+        clock()
+        self._clock = clock
+        self._context = context
+        self._helpers = context.eval(HELPERS)
+        self._check = context.eval(CHECK)
+        self._functions: dict[str, Any] = {}
+
+    def _call(self, function: Any, *given: Any) -> Any:
+        if self.spent > TIME_LIMIT:
+            raise ScriptError(f"the tags took longer than {TIME_LIMIT:g} s")
+        began = thread_time()
+        try:
+            if self._told != self.now:
+                self._told = self.now
+                self._clock(float(self.now))
+            return function(*given)
+        except (quickjs.JSException, quickjs.StackOverflow) as error:
+            raise ScriptError(reason(str(error), TIME_LIMIT)) from None
+        except (TypeError, ValueError, OverflowError, MemoryError, SystemError) as error:
+            raise ScriptError(f"it gives what cannot be used: {error}") from None
+        finally:
+            self.spent += thread_time() - began
+
+    def run(self, code: str) -> None:
+        """Run a script in the global scope (SISR 1.0: global tags)."""
+        self._call(self._context.eval(EVALUATE), f";{shared(code)}\n;0")
+
+    def box(self, value: Json) -> Any:
+        """A value from outside, as functions of the sandbox take it."""
+        return self._call(self._helper("box"), json.dumps(value))
+
+    def environment(self, text: str, merges: bool) -> Any:
+        """What a rule's tags see; rules that it refers to are added in order."""
+        return self._call(self._helper("environment"), well_formed(text), merges)
+
+    def add(self, environment: Any, name: str, box: Any, text: str) -> None:
+        """Add the value of a rule that was referred to."""
+        self._call(self._member(environment, "add"), name, box, well_formed(text))
+
+    def rule(self, code: str, environment: Any) -> Any:
+        """Run the tags of a rule; ``$next(out)`` in them passes a rule that was referred to."""
+        function = self._functions.get(code)
+        if function is None:
+            body = f"{GUARD}(function (rules, meta, $next, out) {{\n{code}\n$next.at = {DONE}; return {{ v: out }};\n}})"
+            function = self._functions[code] = self._call(self._context.eval, body)
+        given = [self._member(environment, name) for name in ("rules", "meta", "next")]
+        box = self._call(function, *given, self._call(self._context.eval, "({})"))
+        if self.reached(environment) != DONE:
+            raise ScriptError("return stands outside of a function")
+        return box
+
+    def reached(self, environment: Any) -> int:
+        """Which of a rule's tags was begun last."""
+        try:
+            at = self._context.eval(f"{GUARD}((e) => e.next.at | 0)")(environment)
+        except (quickjs.JSException, quickjs.StackOverflow):
+            return 0
+        return max(int(at), 0)
+
+    def fault(self, code: str) -> str:
+        """Why a script is not well-formed by itself; empty if it is."""
+        try:
+            self._check(code)
+        except (quickjs.JSException, quickjs.StackOverflow) as error:
+            return reason(str(error), TIME_LIMIT)
+        return ""
+
+    def carry(self, box: Any) -> str:
+        """A boxed value as text, for :meth:`take` of another sandbox; functions are undefined there."""
+        text = self._call(self._helper("carry"), box)
+        if len(text) > RESULT_LIMIT:
+            raise ScriptError(f"it gives more than {RESULT_LIMIT:,} characters")
+        return str(text)
+
+    def take(self, text: str) -> Any:
+        """A value that another sandbox has given."""
+        return self._call(self._helper("take"), text)
+
+    def json(self, box: Any) -> Json:
+        """A boxed value as plain data; undefined and functions become None."""
+        text = self._call(self._helper("json"), box)
+        if not isinstance(text, str):
+            return None
+        if len(text) > RESULT_LIMIT:
+            raise ScriptError(f"it gives more than {RESULT_LIMIT:,} characters")
+        try:
+            return json.loads(well_formed_json(text))
+        except RecursionError:
+            raise ScriptError("its value is nested too deep") from None
+
+    def _helper(self, name: str) -> Any:
+        found = self._functions.get(f"={name}")
+        if found is None:
+            guard = self._context.eval(GUARD)
+            found = self._functions[f"={name}"] = guard(self._member(self._helpers, name))
+        return found
+
+    def _member(self, thing: Any, name: str) -> Any:
+        getter = self._functions.get(f".{name}")
+        if getter is None:
+            getter = self._functions[f".{name}"] = self._context.eval(f"((o) => o.{name})")
+        return self._call(getter, thing)

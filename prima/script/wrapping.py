@@ -1,0 +1,92 @@
+"""Code of ours around that of documents, and beside it."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+from prima.script.evaluation import ScriptError
+from prima.script.globals import GLOBALS, IDENTIFIER, STRANGE, WORD
+from prima.script.hoisting import HIDDEN, Hoisted
+from prima.script.names import script_names
+from prima.script.sandbox import GUARD, NAME, SAFE, source
+
+HELPERS = source("engine.js")
+INTO = "$into$"
+"""The scope whose variables a script declares, for our code around it."""
+EVALUATING = re.compile(r"eval|\\u")
+"""Code that may evaluate other code in its own place."""
+
+
+class Helpers(dict[str, Any]):
+    """Our functions in an engine by their names, each fetched when it is first needed."""
+
+    def __init__(self, context: Any) -> None:
+        super().__init__()
+        self._all = context.eval(HELPERS)
+        self._guarded = context.eval(f"(all, name) => {GUARD}(all[name])")
+
+    def __missing__(self, name: str) -> Any:
+        found = self[name] = self._guarded(self._all, name)
+        return found
+
+
+def guarded(parameters: str, body: str) -> str:
+    """The code of a function; exceptions of code in it become errors of ours."""
+    if EVALUATING.search(body):  # it might declare anything, also in our function
+        return f"{GUARD}(function({parameters}){{{body}}})"
+    caught = f"catch({STRANGE}){{throw {SAFE}({STRANGE})}}"
+    return f"(function({parameters}){{try{{{body}}}{caught}}})"
+
+
+def _short(scope: str) -> str:
+    """The name of a scope's parameter; their first two letters tell scopes apart."""
+    return f"{scope[0:2]}{STRANGE}"
+
+
+def head(scopes: tuple[str, ...]) -> tuple[str, str]:
+    """The parameters of a function of scopes, and what makes their variables seen in it."""
+    names = [_short(name) for name in scopes]
+    return ",".join(names), "".join(f"with({name})" for name in names)
+
+
+PLACE = re.compile(rf"""{WORD}(?:\.{WORD}|\[(?:[\w$.+-]+|"[^"\\\]]*"|'[^'\\\]]*')\])*""")
+"""A variable, or a part of what it holds."""
+
+
+def assignment(name: str, code: str, scopes: tuple[str, ...]) -> str:
+    """The body of an assignment that fails where the variable is not declared."""
+    scope, dot, rest = name.partition(".")
+    where = [_short(scope) for scope in reversed(scopes)]
+    target = name
+    if dot and scope in scopes:
+        where, target = [_short(scope)], f"{_short(scope)}.{rest}"
+    head = IDENTIFIER.match(rest if len(where) == 1 and dot else name)
+    if head is None or PLACE.fullmatch(name) is None:
+        raise ScriptError(f'"{name[:80]}" names no variable')
+    declared = " || ".join(f"{json.dumps(head[0])} in {scope}" for scope in where)
+    missing = json.dumps(f'the variable "{head[0]}" is not declared')
+    return f"if (!({declared})) throw new ReferenceError({missing}); {target} = (\n{code}\n)"
+
+
+def wrapped(script: Hoisted, scopes: tuple[str, ...]) -> tuple[str, str]:
+    """The parameters and body of a script's function: of all scopes, and of that which it declares in."""
+    # ECMAScript makes what is assigned and nowhere declared a variable of the outermost
+    # scope, which here is the script's own (VoiceXML 5.3.12).
+    loose = sorted(script_names(script.code).written - {*script.variables} - GLOBALS)
+    known = "||".join(f"n in {_short(scope)}" for scope in scopes)
+    declare = (
+        f"for(const n of {json.dumps(script.variables)})if(!(n in {INTO})){INTO}[n]=undefined;"
+        f"for(const n of {json.dumps(loose)})"
+        f"if(!({known}||n in globalThis)){INTO}[n]=undefined;"
+    )
+    give = "".join(f"{INTO}.{name}={NAME}({name}{HIDDEN},'{name}');" for name in script.functions)
+    export = "".join(
+        f"if(typeof {name}!=='undefined'){INTO}.{name}={name};" for name in script.others
+    )
+    inner = (
+        f"(function(){{{give}\n{script.code}\n;{export}}}).call({INTO})"  # this is the scope, too
+    )
+    names, withs = head(scopes)
+    return f"{names},{INTO}", f"{declare}{withs}{{{inner}}}"

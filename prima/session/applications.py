@@ -1,0 +1,140 @@
+"""The applications of a run: their interpreters, which of them live, what fails in one alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from prima.interpreter.application import Interpreter
+from prima.interpreter.bounds import Visit
+from prima.interpreter.elements import Document
+from prima.interpreter.protocol import App
+from prima.interpreter.transfers import GoOut
+from prima.language.commands import CommandType
+from prima.language.values import moment
+from prima.script.evaluation import EngineLost
+from prima.script.isolated import Engines
+
+if TYPE_CHECKING:
+    from prima.voicexml.document import VoiceDocument
+
+AnyDocument: TypeAlias = "Document | VoiceDocument"
+AnyApp: TypeAlias = App[Any]
+
+
+class Applications:
+    """The applications of a run, in declared order.
+
+    Args:
+        documents: what they run.
+        commands: the robot's Commands, by their names.
+        date: when the run begins by its own calendar.
+        isolate: whose code gets a process of its own.
+    """
+
+    def __init__(
+        self,
+        documents: Iterable[AnyDocument],
+        commands: Mapping[str, CommandType],
+        date: str,
+        isolate: str,
+    ) -> None:
+        self._began = moment(date)
+        self._engines = Engines(isolate)
+        self._arguments = {name: frozenset(row.arguments) for name, row in commands.items()}
+        self.documents = {document.id: document for document in documents}
+        self.named = {name: self._made(one) for name, one in self.documents.items()}
+        self.order = {name: index for index, name in enumerate(self.named)}
+        self.loaded: set[str] = set()
+        self.alive: list[AnyApp] | None = []
+        """Those that are loaded and not over, in declared order; None if to be looked up."""
+        self.defects: list[Exception] = []
+        """What has gone wrong in interpreters themselves: each has ended its application."""
+
+    def _made(self, document: AnyDocument) -> AnyApp:
+        """The interpreter of a document; one for which no engine can be had ends at its start."""
+
+        def make() -> AnyApp:
+            return interpreter_of(document, self._arguments, self._began, self._engines)
+
+        try:
+            return make()
+        except EngineLost as error:
+            return self._engines.without(error, make)
+
+    def close(self) -> None:
+        """Give back the processes in which code was evaluated."""
+        self._engines.close()
+
+    def drain_visits(self) -> list[Visit]:
+        """What each application came to since the last time, one application after the other."""
+        found: list[Visit] = []
+        for app in self.named.values():
+            found += app.visits
+            app.visits.clear()
+        return found
+
+    # Driving ------------------------------------------------------------------
+
+    def load(self, name: str) -> AnyApp | None:
+        """Put an application in, anew if it is over; None if it is there already."""
+        app = self.named[name]
+        if name in self.loaded:
+            if not app.over:
+                return None
+            before, app = app, self._made(self.documents[name])
+            app.visits[:0] = before.visits
+            self.named[name] = app
+        self.loaded.add(name)
+        self.alive = None
+        return app
+
+    def there(self, name: str) -> AnyApp | None:
+        """The application of a name, if it has been put in; it may be over."""
+        return self.named.get(name) if name in self.loaded else None
+
+    def living(self) -> list[AnyApp]:
+        """Those that are loaded and not over, in declared order."""
+        if self.alive is None:
+            self.alive = [
+                app for name, app in self.named.items() if name in self.loaded and not app.over
+            ]
+        return self.alive
+
+    def alone(self, name: str) -> list[AnyApp]:
+        """The application of a name, if it lives."""
+        app = self.there(name)
+        return [app] if app is not None and not app.over else []
+
+    @contextmanager
+    def contained(self, app: AnyApp) -> Iterator[None]:
+        """E2: what goes wrong in an application's interpreter ends that application alone."""
+        try:
+            yield
+        except Exception as error:
+            self.fail(app, error)
+
+    def fail(self, app: AnyApp, error: Exception) -> None:
+        """End an application by an error."""
+        if not isinstance(error, EngineLost | GoOut):
+            self.defects.append(error)
+        app.fail(error)
+
+
+def interpreter_of(
+    document: AnyDocument,
+    arguments: Mapping[str, frozenset[str]],
+    began: int,
+    engines: Engines,
+) -> AnyApp:
+    """The interpreter of a document, of whichever language it is, in a run that began then."""
+    app: AnyApp
+    if isinstance(document, Document):
+        app = Interpreter(document, arguments, engines)
+    else:
+        from prima.voicexml.application import VoiceInterpreter
+
+        app = VoiceInterpreter(document, engines)
+    app.began = began
+    return app

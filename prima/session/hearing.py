@@ -1,0 +1,217 @@
+"""What the user says: whom it answers (V1), also too late (X10) or too early (X8)."""
+
+from __future__ import annotations
+
+from prima.grammar.answers import Answers
+from prima.language.commands import LATE_MS
+from prima.messages import Command, Ended, Event, Heard, Hypothesis, Json, Order
+from prima.scheduler.behavior import WAITING, Behavior
+from prima.session.applications import AnyApp
+from prima.session.wiring import Wiring
+
+
+class Hearing:
+    """Gives what the user says to whom it answers.
+
+    Args:
+        wiring: what carries the session.
+        late_answers: whether the extension X10 holds.
+    """
+
+    def __init__(self, wiring: Wiring, late_answers: bool) -> None:
+        self.wiring = wiring
+        self.unheard = ""
+        """What the user said last that nobody took."""
+        self._late_answers = late_answers
+        self._lapsed: tuple[str, int] | None = None
+        """Whose question nobody answered in time last, and when that was (X10)."""
+
+    def listening(self) -> list[Answers]:
+        """What is listened for: by the question that listens or may be interrupted, and by links (V1)."""
+        asked: list[Answers | None] = []
+        question = self.wiring.mediator.question()
+        if question is not None and question.run is not None and self._hears(question):
+            asked.append(self.wiring.apps.named[question.app.name].answers(question.run.number))
+        for ab in self.wiring.mediator.memory.running.values():
+            if ab.command is not None and not ab.silent:
+                asked.append(self.wiring.apps.named[ab.app.name].open_during(ab.command))
+        found = [answers for answers in asked if answers is not None]
+        for app in self.wiring.in_order():
+            found += app.listening()
+        return found
+
+    def hear(self, value: Heard) -> None:
+        """V1: the question that listens, then links that listen all the time, then nomatch."""
+        self.wiring.mediator.senses_user()
+        self.wiring.serial += 1
+        question = self.wiring.mediator.question()
+        if question is not None and not self._hears(question):
+            question = None
+        late = self._late_for(value, question)
+        self._record(value, late)
+        said = value.hypotheses
+        if late is not None:
+            self._answer_late(late, value, said)
+            return
+        taken = self._answer(question, value) if question is not None else self._breaks_in(value)
+        if taken or self._follow_links(value.text, said, question):
+            return
+        if question is None or question.silent:
+            self.unheard = value.text
+        elif not self._offer(value, said):
+            self._refuse(question, value)
+
+    def _record(self, value: Heard, late: AnyApp | None) -> None:
+        lasted = {"lasted": value.lasted / 1000} if value.lasted and self._late_answers else {}
+        self.wiring.recorder.add(
+            "event",
+            "user",
+            app=late.name if late is not None else None,
+            event="speech",
+            text=value.text,
+            data={**value.data, **lasted} or None,
+            rule="X10" if late is not None else None,
+            serial=self.wiring.serial,
+            inbound=True,
+        )
+
+    def _answer(self, question: Behavior, value: Heard) -> bool:
+        """Whether what the user says ends the question: by an answer, its length, or a link."""
+        asked, said = question.command, value.hypotheses
+        if value.data.get("toolong") and asked is not None and asked.cued("longest"):
+            self._conclude(question.id, {"outcome": "maxspeechtimeout", "utterance": value.text})
+            return True
+        if question.run is None:
+            return False
+        app, answer, link = self.wiring.apps.named[question.app.name], None, None
+        with self.wiring.apps.contained(app):
+            answer = app.answer(question.run.number, said)
+        if answer is not None:
+            self._conclude(question.id, value.filled(answer))
+            return True
+        with self.wiring.apps.contained(app):
+            link = app.listens_to(said)
+        if link is None or not link.event:
+            return False
+        # As in VoiceXML, a link ends the input of the field that is being visited.
+        self._conclude(question.id, {"outcome": link.event, "utterance": value.text})
+        return True
+
+    def _refuse(self, question: Behavior, value: Heard) -> None:
+        """What nobody has taken is the question's nomatch; a hotword is listened for further."""
+        if question.command is None or not question.command.cued("hotword"):
+            data = {"outcome": "nomatch", "utterance": value.text, **value.data}
+            self._conclude(question.id, data)
+
+    def lapse(self, value: Ended) -> None:
+        """X10: note the question that nobody has answered in time."""
+        if not self._late_answers or value.data.get("outcome") != "noinput":
+            return
+        question = self.wiring.mediator.running(value.behavior)
+        if question is not None and not question.silent:
+            self._lapsed = question.app.name, self.wiring.recorder.now
+
+    def _late_for(self, value: Heard, question: Behavior | None) -> AnyApp | None:
+        """X10: whose question the user answers too late, unless it asks again and listens."""
+        if self._lapsed is None:
+            return None
+        name, when = self._lapsed
+        app = self.wiring.apps.named[name]
+        if app.over or self.wiring.recorder.now - value.lasted - when > LATE_MS:
+            self._lapsed = None
+            return None
+        return None if question is not None and question.app.name == name else app
+
+    def _answer_late(self, app: AnyApp, value: Heard, said: list[Hypothesis]) -> None:
+        """X10: to its next question, else to its links, else as its event ``late``."""
+        question, answer, link = self.wiring.mediator.coming_question(app.name), None, None
+        if question is not None and question.run is not None:
+            with self.wiring.apps.contained(app):
+                answer = app.answer(question.run.number, said)
+        if question is not None and answer is not None:
+            self._answer_early(question, value.filled(answer), "X10")
+            return
+        data: dict[str, Json] = {"text": value.text}
+        with self.wiring.apps.contained(app):
+            link = app.listens_to(said)
+            if link is not None:
+                app.follow(
+                    self.wiring.recorder.now, link, Event("speech", self.wiring.serial, data)
+                )
+            elif app.takes("late"):
+                app.event(self.wiring.recorder.now, Event("late", self.wiring.serial, data))
+            else:
+                self.unheard = value.text
+        self.wiring.act(app)
+
+    def _offer(self, value: Heard, said: list[Hypothesis]) -> bool:
+        """X8: what a question refuses may answer the first one of a reaction that waits."""
+        question, answer = self.wiring.mediator.offered(), None
+        if question is None or question.run is None:
+            return False
+        app = self.wiring.apps.named[question.app.name]
+        with self.wiring.apps.contained(app):
+            answer = app.answer(question.run.number, said)
+        if answer is not None:
+            self._answer_early(question, value.filled(answer), "X8")
+        self.wiring.act(app)
+        return answer is not None
+
+    def _answer_early(self, question: Behavior, data: dict[str, Json], rule: str) -> None:
+        """X8, X10: a question is answered that is still to be asked, or is being asked."""
+        if self.wiring.mediator.running(question.id) is not None:
+            self._conclude(question.id, data)
+            return
+        self.wiring.mediator.answered(question, data, rule, self.wiring.serial)
+        self.wiring.settle()
+
+    @staticmethod
+    def _hears(question: Behavior) -> bool:
+        """Whether a question takes an answer now: it listens, or may be interrupted."""
+        command = question.command
+        return question.listening or (command is not None and bool(command.args.get("bargein")))
+
+    def _breaks_in(self, value: Heard) -> bool:
+        """Whether an application takes what the user says while its prompts are being said."""
+        wiring = self.wiring
+        now, memory = wiring.recorder.now, wiring.mediator.memory
+        for ab in [*memory.running.values(), *memory.waiting.values()]:
+            app = self.wiring.apps.named[ab.app.name]
+            if ab.command is None or ab.silent:
+                continue
+            during: Command | None = ab.command
+            taken = False
+            with self.wiring.apps.contained(app):
+                if ab.state is WAITING:  # between two prompts, the first of which has just ended
+                    during = app.before(ab.command) if ab.freed == now else None
+                taken = during is not None and app.breaks_in(now, during, value, value.hypotheses)
+            if taken or app.over:
+                self.wiring.act(app)
+            if taken:
+                return True
+        return False
+
+    def _follow_links(self, text: str, said: list[Hypothesis], question: Behavior | None) -> bool:
+        """V1: links take it; what was said to a question, no link of another application's EA."""
+        taken = False
+        event = Event("speech", self.wiring.serial, {"text": text})
+        for app in self.wiring.in_order():
+            if question is not None and app.kind != "fa" and app.name != question.app.name:
+                continue
+            with self.wiring.apps.contained(app):
+                link = app.listens_to(said)
+                if link is not None:
+                    taken = True
+                    app.follow(self.wiring.recorder.now, link, event)
+            self.wiring.act(app)
+        return taken
+
+    def _conclude(self, behavior: str, data: dict[str, Json]) -> None:
+        """The answer is the question's end (C4); the devices are told to stop listening."""
+        ab = self.wiring.mediator.running(behavior)
+        if ab is not None:
+            self.wiring.mediator.orders.append(
+                Order("abort", behavior, ab.command, app=ab.app.name)
+            )
+        self.wiring.mediator.ended(behavior, True, data, inbound=False)
+        self.wiring.settle()

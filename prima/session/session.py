@@ -1,0 +1,343 @@
+"""A session: inbound values in, orders out.
+
+:meth:`Session.step` takes what happens at one instant and carries it through by rule V3: ends of
+ABs, then events, then timeouts, until nothing more happens; then selection, once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import asdict
+
+from prima.grammar.answers import Answers
+from prima.interpreter.bounds import Visit
+from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
+from prima.messages import (
+    Data,
+    Delayed,
+    Emergency,
+    Ended,
+    Event,
+    Failed,
+    Fetched,
+    Halted,
+    Heard,
+    Inbound,
+    Json,
+    Listening,
+    Loaded,
+    Narrated,
+    Occurred,
+    Order,
+    Presence,
+    Record,
+    Sensed,
+    Transferred,
+    Unloaded,
+)
+from prima.scheduler.mediator import Mediator
+from prima.scheduler.policy import Policy
+from prima.scheduler.recorder import Recorder
+from prima.script.sandbox import START
+from prima.session.applications import AnyApp, AnyDocument, Applications
+from prima.session.hearing import Hearing
+from prima.session.wiring import Wiring
+
+SEEING = frozenset(["human.found", "human.lost"])
+"""Events by which the camera tells whether it sees the user (V4)."""
+
+
+class Session:
+    """One robot's applications under one policy.
+
+    ``isolate`` says whose code gets a process of its own
+    (:data:`~prima.script.isolated.ISOLATIONS`); :meth:`close` gives these back.
+    """
+
+    def __init__(
+        self,
+        documents: Iterable[AnyDocument],
+        policy: Policy,
+        commands: Mapping[str, CommandType],
+        bound: int | None = None,
+        date: str = START,
+        absence: int = ABSENCE_MS,
+        isolate: str = "ea",
+        patience: int = PATIENCE_MS,
+    ) -> None:
+        self._apps = Applications(documents, commands, date, isolate)
+        self.recorder = Recorder()
+        self.mediator = Mediator(policy, commands, self.recorder, bound, absence, patience)
+        self._wiring = Wiring(self._apps, self.mediator, self.recorder)
+        self._hearing = Hearing(self._wiring, policy.has("x10"))
+        self._sensors: dict[str, Json] = {}
+
+    @property
+    def apps(self) -> Mapping[str, AnyApp]:
+        """The applications by their names, in declared order."""
+        return self._apps.named
+
+    @property
+    def documents(self) -> Mapping[str, AnyDocument]:
+        """What the applications run, by their names."""
+        return self._apps.documents
+
+    @property
+    def failures(self) -> list[str]:
+        """Applications that ended by an error, as ``NAME: what``."""
+        return self._wiring.failures
+
+    @property
+    def defects(self) -> list[Exception]:
+        """What has gone wrong in interpreters themselves: each has ended its application."""
+        return self._apps.defects
+
+    def take_unheard(self) -> str:
+        """What the user said last that nobody took; given once."""
+        text, self._hearing.unheard = self._hearing.unheard, ""
+        return text
+
+    def drain_visits(self) -> list[Visit]:
+        """What each application came to since the last time, one application after the other."""
+        return self._apps.drain_visits()
+
+    # Driving ------------------------------------------------------------------
+
+    def step(self, now: int, inbound: Collection[Inbound]) -> list[Order]:
+        """Take in what happens at ``now`` (ms, never less than before); gives the orders.
+
+        Orders are for the devices, in the order in which they were made; ``send``
+        orders are for services.
+        """
+        self.recorder.now = now
+        if self._wiring.turns:
+            self._wiring.tell_turns()
+        for value in sorted(inbound, key=self._class) if len(inbound) > 1 else inbound:
+            if type(value) is Occurred:  # by far the most
+                self._occurred(value)
+            else:
+                self._take(value)
+        mediator = self.mediator
+        if self._wiring.due or mediator.memory.behaviors or mediator.holds:
+            self._time_out(now)
+        if mediator.told:
+            self._wiring.settle()
+        orders: list[Order] = []
+        if mediator.changed:  # else it has given no orders either
+            mediator.select()
+            self._wiring.note_turns()
+            orders = mediator.drain_orders()
+        if self._wiring.sends:
+            orders += self._wiring.sends
+            self._wiring.sends = []
+        return orders
+
+    def deadline(self) -> int | None:
+        """The next instant at which :meth:`step` has to be called, if anything is due."""
+        if self._wiring.turns:
+            return self.recorder.now + 1
+        due = min(self._wiring.due.values(), default=None)
+        late = self.mediator.deadline()
+        return late if due is None else due if late is None else min(due, late)
+
+    def close(self) -> None:
+        """Give back the processes in which code was evaluated: the session is over."""
+        self._apps.close()
+
+    @property
+    def written(self) -> int:
+        """Characters that the applications have said, logged and sent."""
+        return sum(app.written for app in self._apps.named.values())
+
+    def drain(self) -> list[Record]:
+        """Give the records made since the last time."""
+        return self.recorder.drain()
+
+    @property
+    def over(self) -> bool:
+        """Whether every application that was loaded has ended."""
+        return bool(self._apps.loaded) and not self._apps.living()
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing runs or waits in working memory."""
+        return not self.mediator.memory.behaviors
+
+    def _class(self, value: Inbound) -> tuple[int, int]:
+        """V3: class, and for ends the application, the one whose stream is active first."""
+        if isinstance(value, Ended | Listening | Halted | Failed):
+            return 0, self._rank(value.behavior.partition("#")[0])
+        return 1, 0
+
+    def _rank(self, name: str) -> int:
+        active = self.mediator.memory.active
+        return -1 if active is not None and active.name == name else self._apps.order.get(name, 0)
+
+    def _take(self, value: Inbound) -> None:
+        match value:
+            case Ended():
+                self._hearing.lapse(value)
+                self.mediator.ended(value.behavior, value.goal, value.data)
+                self._wiring.settle()
+            case Listening():
+                self._record("listening", "robot", behavior=value.behavior)
+                self.mediator.listening(value.behavior)
+            case Halted():
+                self.mediator.interrupted(value.behavior, value.data)
+                self._wiring.settle()
+            case Failed():
+                self.mediator.failed(value.behavior, value.device, value.reason)
+                self._wiring.settle()
+            case Heard():
+                self._hearing.hear(value)
+            case Fetched() | Transferred():
+                self._answered(value)
+            case Sensed():
+                self._sensed(value)
+            case Emergency():
+                self._emergency(value)
+            case Loaded():
+                self._load(value)
+            case Unloaded():
+                self._unload(value)
+            case Delayed() | Presence() | Narrated():
+                self._note(value)
+
+    def _note(self, value: Delayed | Presence | Narrated) -> None:
+        """Record what no application has to do with."""
+        match value:
+            case Delayed():
+                waited: dict[str, Json] = {"waited": value.waited / 1000}
+                ab, device = value.behavior, value.device
+                self._record("delayed", "robot", behavior=ab, device=device, data=waited)
+            case Presence():
+                outcome, why = "back" if value.there else "missing", value.reason or None
+                device = value.device
+                self._record("device", "environment", device=device, outcome=outcome, message=why)
+            case Narrated():
+                self._record("note", value.actor, text=value.text)
+
+    def _emergency(self, value: Emergency) -> None:
+        """E5: applications are told by an event, whose serial number the record has."""
+        self._wiring.serial += 1
+        self.mediator.emergency(value.pressed, value.resume, self._wiring.serial)
+        name = "emergency.stop" if value.pressed else "emergency.release"
+        event = Event(name, self._wiring.serial, {}, reactive=True, shared=True)
+        for app in self._wiring.in_order():
+            with self._apps.contained(app):
+                app.event(self.recorder.now, event)
+            self._wiring.act(app)
+        self._wiring.settle()
+
+    def _record(self, phase: str, actor: str, **fields: Json) -> None:
+        self.recorder.add(phase, actor, inbound=True, **fields)
+
+    def _load(self, value: Loaded) -> None:
+        name = value.app
+        self._record("load", "environment", app=name, data=place_data(value))
+        app = self._apps.load(name)
+        if app is None:
+            return
+        app.sensors.update(self._sensors)
+        app.connection = value.connection
+        self.mediator.load(name, app.kind, self._apps.documents[name].lang, self._apps.order[name])
+        with self._apps.contained(app):
+            app.start(self.recorder.now)
+        self._wiring.act(app)
+        if self._sensors:  # what it watches for may be so already
+            self._look(app, {})
+        self._wiring.settle()
+
+    def _unload(self, value: Unloaded) -> None:
+        self._record("unload", "environment", app=value.app, data=place_data(value))
+        app = self._apps.there(value.app)
+        if app is not None:
+            with self._apps.contained(app):
+                app.stop()
+            self._wiring.act(app)
+
+    def _occurred(self, value: Occurred) -> None:
+        name, app, data = value.name, value.app, value.data
+        self._wiring.serial = serial = self._wiring.serial + 1
+        self.recorder.event(name, value.actor, app, data, serial)
+        if name in SEEING:
+            self.mediator.sees_user(name == "human.found")
+        elif value.actor == "user":
+            self.mediator.senses_user()
+        apps = self._apps.alive if app is None else self._apps.alone(app)
+        if apps is None or len(apps) > 1:
+            apps = self._wiring.in_order()
+        event = Event(name, serial, data, True, shared=app is None)
+        for one in apps:
+            try:
+                one.event(self.recorder.now, event)
+            except Exception as error:  # as _contained does, which takes longer
+                self._apps.fail(one, error)
+            if one.actions or self._wiring.due or one.deadline is not None:
+                self._wiring.act(one)
+
+    def listening(self) -> list[Answers]:
+        """What is listened for: by the question that listens or may be interrupted, and by links (V1)."""
+        return self._hearing.listening()
+
+    def _answered(self, value: Fetched | Transferred) -> None:
+        """An answer goes to the application that has asked."""
+        if isinstance(value, Fetched):
+            answer = {key: one for key, one in asdict(value).items() if one and key != "app"}
+            self._record("fetched", "environment", app=value.app, data=answer)
+        else:
+            data: dict[str, Json] = {"uri": value.uri}
+            serial, outcome = value.serial, value.outcome
+            self._record(
+                "transferred",
+                "environment",
+                app=value.app,
+                serial=serial,
+                outcome=outcome,
+                data=data,
+            )
+        app = self._apps.there(value.app)
+        if app is not None:
+            with self._apps.contained(app):
+                app.replied(self.recorder.now, value)
+            self._wiring.act(app)
+            self._wiring.settle()
+
+    def _sensed(self, value: Sensed) -> None:
+        self._record("sensed", "environment", data=dict(value.values))
+        self._sensors.update(value.values)
+        for app in self._wiring.in_order():
+            self._look(app, value.values)
+
+    def _look(self, app: AnyApp, values: Data) -> None:
+        """C6: an application is told of sensors, and its conditions on them may have turned true."""
+        raised: list[str] = []
+        with self._apps.contained(app):
+            raised = app.sensed(self.recorder.now, values)
+        for name in raised:
+            self._wiring.own_event(app, name, {}, reactive=True)
+        self._wiring.act(app)
+
+    def _time_out(self, now: int) -> None:
+        """V3: timeouts come last."""
+        if self.mediator.expire():
+            self._wiring.settle()
+        if not self._wiring.due or min(self._wiring.due.values()) > now:
+            return
+        for app in self._wiring.in_order():
+            due: list[tuple[str, Data]] = []
+            with self._apps.contained(app):
+                due = app.expire(now)
+            for name, data in due:
+                self._wiring.own_event(app, name, dict(data), reactive=False)
+            self._wiring.act(app)
+
+    # Outbound -----------------------------------------------------------------
+
+
+def place_data(value: Loaded | Unloaded) -> dict[str, Json] | None:
+    """What a record tells of an application that comes or goes with a place, or has a caller."""
+    told: dict[str, Json] = {"place": value.place} if value.place else {}
+    if isinstance(value, Loaded) and value.connection:
+        told["connection"] = dict(value.connection)
+    return told or None

@@ -1,0 +1,370 @@
+"""What the parts of a VoiceXML interpreter need of the whole, and of each other.
+
+The machine (:mod:`~prima.voicexml.machine`) runs the Form Interpretation Algorithm. Its parts
+run content, listen, enter documents, fill items and handle events; they know each other, the
+machine, and the application that owns it by the protocols here alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from typing import Literal, NoReturn, Protocol
+
+from prima.interpreter.bounds import Visit
+from prima.interpreter.protocol import Answer
+from prima.interpreter.transfers import Thrown
+from prima.interpreter.units import Reach
+from prima.markup.tree import Node
+from prima.messages import Action, Command, Cue, Data, Event, Fetched, Json
+from prima.script.evaluation import Scope
+from prima.script.isolated import AnyEngine
+from prima.voicexml.arranging import Queued
+from prima.voicexml.document import Page, VoiceDocument
+from prima.voicexml.speech import Speech
+from prima.voicexml.state import Context, Flow, Heard, Request, Resume
+
+
+class Application(Protocol):
+    """The application, as a session drives it."""
+
+    name: str
+    now: int
+    """The instant (ms)."""
+    connection: Data
+    """What is known of the user's connection (VoiceXML 5.1.4)."""
+    heard: Heard | None
+    """What the user said last, as a grammar took it."""
+    leaving: bool
+    """Whether a unit is being left: what is said in it is said to its end."""
+    actions: list[Action]
+    """What it wants, for the session to carry out."""
+    visits: list[Visit]
+    """What it came to."""
+
+    @property
+    def engine(self) -> AnyEngine:
+        """Evaluates its code."""
+
+    @property
+    def document(self) -> VoiceDocument:
+        """What it runs."""
+
+    @property
+    def overdue(self) -> bool:
+        """Whether no answer has come in time."""
+
+    def note(self, node: Node, what: Literal["in", "true", "false", "heard"] = "in") -> None:
+        """An element is gone through, or its condition has been evaluated."""
+
+    def note_document(self, page: Page) -> None:
+        """A document is there, whatever becomes of it."""
+
+    def count_step(self, node: Node, steps: int = 1) -> None:
+        """Bound what is done in one instant."""
+
+    def count_output(self, characters: int, node: Node) -> None:
+        """Bound what comes out in one instant."""
+
+    def count_value(self, value: Json, node: Node) -> None:
+        """Count a value that leaves its variables."""
+
+    def give_up(self, node: Node, reason: str) -> NoReturn:
+        """End the application: it has gone past a limit."""
+
+    def send(self, service: str, data: Data, place: str) -> int:
+        """Send something to a service, or to a URI; gives its serial."""
+
+    def ask(self, uri: str, data: Data, late: Answer, timeout: int, node: Node) -> None:
+        """Ask something of a URI; ``late`` is the answer if none comes in ``timeout`` ms."""
+
+    def expect(self, late: Answer, timeout: int | None) -> None:
+        """Wait for an answer to what has been asked; without a timeout, for ever."""
+
+    def expect_nothing(self) -> None:
+        """Wait for no answer any more."""
+
+    def wait(
+        self, commands: Sequence[Queued], open_to_answers: Sequence[Command] = ()
+    ) -> Generator[None, Resume, Resume]:
+        """Ask for Commands, one after another, and wait for the end of the last."""
+
+    def answer_or_input(
+        self, commands: Sequence[Queued]
+    ) -> Generator[None, Resume, Answer | Resume]:
+        """Wait for an answer or for the end of Commands, whichever is first."""
+
+    def pass_time(
+        self, queued: Sequence[Queued], audio: Sequence[Queued]
+    ) -> Generator[None, Resume, None]:
+        """Play what is queued, then fetch audio until the answer is there (6.1.1)."""
+
+    def fetched(self) -> Generator[None, Resume, Fetched]:
+        """Wait for the answer of a fetch."""
+
+    def open_unit(self, reach: Reach, longest: int, node: Node) -> None:
+        """U5: what is asked for from now on belongs to a unit."""
+
+    def close_unit(self) -> None:
+        """U5: the unit is left."""
+
+
+class Contents(Protocol):
+    """Runs executable content, and evaluates what is in it."""
+
+    def run(self, node: Node, context: Context, local: Scope) -> Flow:
+        """Run an element's content."""
+
+    def holds(self, node: Node, context: Context, local: Scope) -> bool:
+        """An element's condition; one without holds."""
+
+    def word(self, node: Node, name: str, context: Context, local: Scope) -> str:
+        """An attribute, or its ``expr`` form, as a word."""
+
+    def values(
+        self, node: Node, names: list[str], context: Context, local: Scope
+    ) -> dict[str, Json]:
+        """The values of variables by their names."""
+
+    def put(
+        self, scope: Scope, name: str, node: Node, attribute: str, context: Context, local: Scope
+    ) -> None:
+        """Set a variable to the value of an attribute's expression."""
+
+    def declare(self, node: Node, scope: Scope, context: Context, local: Scope) -> None:
+        """Declare a variable."""
+
+    def script(self, node: Node, scope: Scope, context: Context, local: Scope) -> Flow:
+        """Run a script."""
+
+    def data(self, node: Node, scope: Scope, context: Context, local: Scope) -> Flow:
+        """Fetch data (VoiceXML 2.1, 5)."""
+
+    def question_cues(
+        self, asked: Command | None, before: Sequence[Queued], hotword: bool
+    ) -> tuple[Cue, ...]:
+        """The cues of a question."""
+
+
+class Listening(Protocol):
+    """Knows which grammars listen."""
+
+    def activate(self, context: Context) -> None:
+        """Load all that listens now."""
+
+    def modes(self, context: Context) -> list[str]:
+        """The kinds of input that the application takes (6.3.6)."""
+
+    def noted(self, context: Context, text: str) -> tuple[str, str] | None:
+        """An utterance that no grammar has taken, and its mode; None if nobody listens to such."""
+
+    def most_results(self, context: Context) -> int:
+        """How many results are wanted at most (6.3.2)."""
+
+
+class Entering(Protocol):
+    """Enters the documents of the application."""
+
+    session: Scope
+    """The session's variables."""
+
+    def root(
+        self, page: Page, context: Context | None = None
+    ) -> Generator[None, Resume, Page | None]:
+        """The application root of a leaf."""
+
+    def find(
+        self,
+        context: Context,
+        uri: str,
+        node: Node,
+        request: Request | None = None,
+        base: Page | None = None,
+    ) -> Generator[None, Resume, tuple[Page | None, str]]:
+        """The dialog that a URI names, and its document where that is fetched."""
+
+
+class Recording(Protocol):
+    """Fills the record items."""
+
+    lengths: dict[str, int]
+    """What has been recorded, and how long it was (ms)."""
+
+    def check(self, item: Node) -> None:
+        """Refuse a format in which nothing can be recorded."""
+
+    def prepare(self, item: Node, question: Command) -> None:
+        """Make a question ask for a recording."""
+
+    def take(self, context: Context, item: Node, heard: Heard, data: Data) -> Flow:
+        """Fill a record with what was said."""
+
+    def broken_off(self, context: Context, item: Node, event: Event) -> None:
+        """Keep what was recorded until the user hung up."""
+
+
+class Filling(Protocol):
+    """Fills the form items."""
+
+    @property
+    def recorder(self) -> Recording:
+        """Fills those that record."""
+
+    def process(self, context: Context, heard: Heard) -> Flow:
+        """What the user said goes to the item, form, link or choice that has taken it."""
+
+    def remember(self, context: Context, heard: Heard) -> None:
+        """Set ``application.lastresult$`` (5.1.5)."""
+
+    def fill(
+        self, context: Context, item: Node, value: Json, shadow: dict[str, Json] | None = None
+    ) -> None:
+        """Set the variable of an item, and its shadow variables."""
+
+    def mark(self, context: Context, item: Node) -> None:
+        """Visit an item no more."""
+
+    def run_filled(self, context: Context, filled: list[Node]) -> Flow:
+        """Run the ``filled`` elements of items that have just been filled."""
+
+
+class Catching(Protocol):
+    """Handles events."""
+
+    def taker(self, context: Context, thrown: Thrown) -> Node | None:
+        """The handler that takes an event, if any."""
+
+
+class Owner(Protocol):
+    """The machine: what is remembered while the application runs, and how it goes on."""
+
+    pages: dict[str, Page]
+    """Documents by their URIs."""
+    resources: dict[str, bytes | Thrown]
+    """What grammars are made of and no file is: its bytes, or why it cannot be had."""
+    hosted: set[str]
+    """Names and URIs that a real host has answered, and no service."""
+    queue: list[Queued]
+    """Prompts and Commands that are played on reaching a wait (4.1.8)."""
+    asking: Node | None
+    """The last prompt queued."""
+    reprompted: bool
+    gone: str
+    """The event by which the user has gone."""
+    context: Context | None
+
+    # Its parts:
+
+    @property
+    def app(self) -> Application:
+        """The application."""
+
+    @property
+    def engine(self) -> AnyEngine:
+        """Evaluates its code."""
+
+    @property
+    def document(self) -> VoiceDocument:
+        """What it runs."""
+
+    @property
+    def actions(self) -> list[Action]:
+        """What the application wants."""
+
+    @property
+    def content(self) -> Contents:
+        """Runs its content."""
+
+    @property
+    def inputs(self) -> Listening:
+        """Listens."""
+
+    @property
+    def documents(self) -> Entering:
+        """Enters its documents."""
+
+    @property
+    def items_of(self) -> Filling:
+        """Fills its items."""
+
+    @property
+    def events(self) -> Catching:
+        """Handles its events."""
+
+    # Bounds:
+
+    def count_step(self, node: Node, steps: int = 1) -> None:
+        """Bound what is done in one instant."""
+
+    def count_output(self, characters: int, node: Node) -> None:
+        """Bound what comes out in one instant."""
+
+    def count_value(self, value: Json, node: Node) -> None:
+        """Count a value that leaves its variables."""
+
+    # What is queued and waited for:
+
+    def say(self, text: str, lang: str, place: str, prompt: Node | None = None) -> None:
+        """Queue something to be said."""
+
+    def note_bargein(self, context: Context, own: str = "") -> None:
+        """Note whether the user may break in on what has just been queued."""
+
+    def unqueue(self) -> list[Queued]:
+        """What is queued, to be said in a wait that no question is part of."""
+
+    def enumeration(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
+        """Read what enumerate says (2.2.4)."""
+
+    def play(self, context: Context) -> Flow:
+        """Play what is queued and wait until it has been said."""
+
+    def wait(
+        self, commands: Sequence[Queued], open_to_answers: Sequence[Command] = ()
+    ) -> Generator[None, Resume, Resume]:
+        """Wait for the end of Commands."""
+
+    def fetch(
+        self, uri: str, node: Node, request: Request | None = None
+    ) -> Generator[None, Resume, bytes]:
+        """A resource's bytes, or ``error.badfetch``."""
+
+    def send(self, service: str, values: Json, node: Node) -> None:
+        """Send values to a service, without waiting for its answer."""
+
+    # The dialog:
+
+    def local(self) -> Scope:
+        """A new anonymous scope."""
+
+    def setting(self, context: Context, name: str) -> str:
+        """A property's value, innermost first (6.3)."""
+
+    def number(self, context: Context, name: str, default: float) -> float:
+        """A property as a number."""
+
+    def items(self, context: Context) -> list[Node]:
+        """The form items of the active dialog."""
+
+    def guarded(self, context: Context, item: Node) -> bool:
+        """Whether an item's variable is defined, so that it is not visited."""
+
+    def visit_all(self, context: Context, wanted: str = "") -> Flow:
+        """Visit the items of the dialog, or of the unit that it is in, until none is left."""
+
+    def execute(
+        self, context: Context, page: Page, dialog: str, heard: Heard | None = None
+    ) -> Flow:
+        """Run documents and dialogs of one context until it is left."""
+
+    def finish(self, context: Context) -> Flow:
+        """Say what is queued at an application's end (4.1.8)."""
+
+    def go(
+        self,
+        context: Context,
+        uri: str,
+        node: Node,
+        request: Request | None = None,
+        base: Page | None = None,
+    ) -> Flow:
+        """Follow a URI to a dialog (5.3.7)."""
