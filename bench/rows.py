@@ -8,6 +8,7 @@ from typing import Any
 
 from bench import (
     batch,
+    experiments,
     isolation,
     large,
     live,
@@ -467,6 +468,49 @@ def lives() -> list[Row]:
     ]
 
 
+def experimenting() -> list[Row]:
+    """Sweeps and explorations."""
+    return [
+        Row(
+            "A sweep of 10,000 runs on two processes",
+            "runs/s",
+            Call(experiments.pooled, (10_000,), (4,)),
+            "two independent processes",
+            Call(experiments.independent, (10_000,), (4,)),
+            least=0.95,
+            rounds=3,
+        ),
+        Row(
+            "A sweep's rows, from the values to the table",
+            "s",
+            Call(experiments.rows_seconds, (500,), (4,)),
+            "their simulation alone",
+            Call(experiments.runs_seconds, (500,), (4,)),
+            most=1.2,
+            rounds=5,
+        ),
+        Row(
+            "A sweep on two workers of Dask",
+            "runs/s",
+            Call(experiments.on_dask, (10_000,), (4,)),
+            "two processes of this machine",
+            Call(experiments.pooled, (10_000,), (4,)),
+            least=0.85,
+            rounds=3,
+            needs="distributed",
+        ),
+        Row(
+            "Every variant to 1 ms, one event moved by up to 5 s",
+            "s",
+            Call(experiments.every_variant, (5_000,), (10, 4)),
+            "an exploration",
+            Call(experiments.explored, (5_000,), (10,)),
+            least=10,
+            rounds=3,
+        ),
+    ]
+
+
 SECTIONS: dict[str, Callable[[], list[Row]]] = {
     "Events": events,
     "Load": loads,
@@ -480,4 +524,5 @@ SECTIONS: dict[str, Callable[[], list[Row]]] = {
     "Large documents": large_ones,
     "Isolation": isolated,
     "Live": lives,
+    "Experiments": experimenting,
 }

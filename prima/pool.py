@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from prima.errors import RunError
@@ -247,19 +248,24 @@ def _context() -> Any:
 def _starting() -> Iterator[None]:
     """Start processes with this one's module paths that ignore Ctrl-C.
 
-    They do not import from the current folder. Only this process handles an interrupt, and
-    ends the others; one that comes meanwhile is delayed.
+    They import neither from the current folder nor the script that runs here: nothing of it is
+    needed, and one without ``if __name__ == "__main__"`` would start processes from them, too.
+    Only this process handles an interrupt, and ends the others; one that comes meanwhile is
+    delayed.
     """
     paths = os.pathsep.join(os.path.abspath(path) for path in sys.path)
     settings = {"PYTHONSAFEPATH": "1", "PYTHONPATH": paths}
     before = {name: os.environ.get(name) for name in settings}
     os.environ.update(settings)
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
     waiting = _mask(signal.SIG_BLOCK, ())
     try:
         _track()
         _mask(signal.SIG_BLOCK, {signal.SIGINT})
         yield
     finally:
+        sys.modules["__main__"] = script
         for name, value in before.items():
             if value is None:
                 del os.environ[name]

@@ -123,7 +123,7 @@ def sweep(
     )
     _check_table(output, resume, bundle)
     made = Sweep(question)
-    _tell_cost(made, workers, plan)
+    _tell_cost(made, address, workers, plan)
     if plan:
         return
     pool = pool_of(address, workers)
@@ -136,7 +136,7 @@ def sweep(
         _write(out, resume)
         return
     check_output(bundle, "archive", *scenarios, *question.scenarios)
-    check_bundle(out)
+    check_bundle(bundle, out)
     ended = None
     try:
         _write(out, resume)
@@ -153,7 +153,7 @@ def _check_table(output: str | None, resume: bool, bundle: str | None) -> None:
     Raises:
         UsageError: it is not named.
     """
-    if resume and output is None:
+    if resume and output in (None, "-"):
         raise UsageError("--resume needs the table: -o sweep.csv.")
     if bundle is not None and output in (None, "-"):
         raise UsageError("--bundle needs the table: -o sweep.csv.")
@@ -176,15 +176,17 @@ def _vary(varied: tuple[str, ...]) -> dict[str, str]:
     return vary
 
 
-def _tell_cost(made: Sweep, workers: int | None, plan: bool) -> None:
+def _tell_cost(made: Sweep, address: str | None, workers: int | None, plan: bool) -> None:
     """Tell how long a sweep takes, if it was asked for, or if it is long."""
+    from prima.experiments.cluster import size_of
     from prima.experiments.sweep import estimate
-    from prima.pool import cores
 
-    if plan:
-        put(estimate(made, workers or cores()))
-    elif len(made) > MANY:
-        tell(estimate(made, workers or cores()))
+    if plan or len(made) > MANY:
+        told = estimate(made, size_of(address, workers))
+        if plan:
+            put(told)
+        else:
+            tell(told)
 
 
 def _print(made: Sweep, pool: Pool) -> None:

@@ -64,12 +64,24 @@ def write_bundle(path: str, out: Output) -> int:
     return len(files)
 
 
-def check_bundle(out: Output) -> None:
+def check_bundle(path: str, out: Output) -> None:
     """Look before the first run whether a bundle can be made.
 
+    Args:
+        path: the archive.
+        out: the table.
+
     Raises:
-        UsageError: something that is read is not below this folder.
+        UsageError: the archive cannot be there, or something that is read is not below this
+            folder.
     """
+    there = Path(path)
+    if there.resolve() in (out.path.resolve(), out.folder.resolve()):
+        raise UsageError(f"{path}: the table is written there; name another file for the archive.")
+    if there.is_dir():
+        raise UsageError(f"{path}: it is a folder; name a file for the archive.")
+    if not there.parent.is_dir():
+        raise UsageError(f"{path}: there is no folder {there.parent}; make it first.")
     for name in _read(out):
         if Path(name).is_absolute() or ".." in Path(name).parts:
             message = f"{name}: a bundle has files of this folder and below it alone."

@@ -9,13 +9,14 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from itertools import islice
+from time import sleep
 from typing import TYPE_CHECKING, Any
 
 from prima.errors import RunError, UsageError
 from prima.errors.visible import escaped
 from prima.experiments.pools import Making, Pool, Result, Runs, local
 from prima.experiments.variants import Variant
-from prima.pool import Died
+from prima.pool import Died, cores
 from prima.version import __version__
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ SECONDS = 10
 """How long a scheduler and its first worker may take to answer."""
 AT_ONCE = 8
 """Runs of one task, as a task takes about a millisecond of the scheduler."""
+TRIES = 5
+"""How often workers are asked what they are, where one of them ends meanwhile."""
 AHEAD = 8
 """Tasks for each worker that are sent ahead."""
 ADDRESS = re.compile(r"(tcp|tls|ws|wss)://[^\s/:]+(:\d{1,5})?")
@@ -66,18 +69,35 @@ def cluster(address: str) -> Pool:
     return pool
 
 
+def size_of(address: str | None, workers: int | None) -> int:
+    """How many processes the same pool has.
+
+    Raises:
+        UsageError: as for :func:`pool_of`, or nobody answers.
+    """
+    pool_of(address, workers)
+    if address is None:
+        return workers or cores()
+    client = _connected(address)
+    try:
+        return len(client.nthreads())
+    finally:
+        client.close(timeout=1)
+
+
 @contextmanager
 def _staff(address: str, stage: Making[Result]) -> Iterator[Runs[Result]]:
     """Connect, send the content of all runs to all workers, and make runs there.
 
     Raises:
+        RunError: the scheduler goes meanwhile.
         UsageError: nobody answers, the workers are of another version, or there is too much
             to send.
     """
     stage.pack()
     client = _connected(address)
     try:
-        _check(client, address)
+        _check_soon(client, address)
         # A task, as a worker that dies with data which no task makes would end them all.
         sent = client.submit(_given, stage, pure=False)
         yield lambda variants: _runs(client, sent, variants)
@@ -98,6 +118,22 @@ def _connected(address: str) -> Client:
             " Start them with: dask scheduler, and dask worker ADDRESS --nthreads 1."
         ) from None
     return client
+
+
+def _check_soon(client: Client, address: str) -> None:
+    """Check the workers; again, if one of them ends meanwhile.
+
+    Raises:
+        RunError: none stays, or the scheduler goes.
+        UsageError: one is of another kind.
+    """
+    for _ in range(TRIES):
+        try:
+            client.wait_for_workers(1, timeout=SECONDS)
+            return _check(client, address)
+        except OSError:
+            sleep(1)
+    raise RunError(f"--on {address}: its scheduler or its workers end before they answer.")
 
 
 def _check(client: Client, address: str) -> None:
@@ -132,10 +168,20 @@ def _runs(
     client: Client, sent: Future, variants: Iterable[Variant]
 ) -> Iterator[tuple[Variant, Any]]:
     """Results in the order of the variants; of a task whose workers died, one by one."""
-    from distributed import CancelledError, KilledWorker
+    from distributed import CancelledError
 
-    left = iter(variants)
-    lots = iter(lambda: list(islice(left, AT_ONCE)), [])
+    try:
+        yield from _lots(client, sent, iter(variants))
+    except (CancelledError, OSError):
+        raise RunError("the scheduler of Dask has gone.") from None
+
+
+def _lots(
+    client: Client, sent: Future, variants: Iterator[Variant]
+) -> Iterator[tuple[Variant, Any]]:
+    from distributed import KilledWorker
+
+    lots = iter(lambda: list(islice(variants, AT_ONCE)), [])
     most = AHEAD * max(len(client.nthreads()), 1)
     tasks: deque[tuple[list[Variant], Future]] = deque()
     while True:
@@ -148,8 +194,6 @@ def _runs(
             yield from zip(lot, task.result(), strict=True)
         except KilledWorker:
             yield from _one_by_one(client, sent, lot)
-        except (CancelledError, OSError):
-            raise RunError("the scheduler of Dask has gone.") from None
 
 
 def _one_by_one(

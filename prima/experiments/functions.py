@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 def sweep(
     scenarios: str | Path | Iterable[str | Path],
-    vary: Mapping[str, str | Sequence[Level]] | None = None,
-    policies: Iterable[str] | None = None,
+    vary: Mapping[str, Level | Sequence[Level]] | None = None,
+    policies: str | Iterable[str] | None = None,
     seeds: int | None = None,
     design: str | None = None,
     runs: int | None = None,
@@ -64,10 +64,12 @@ def sweep(
         UsageError: a factor, level, policy or file is wrong, or pyarrow is not installed.
         RunError: no process can be started.
     """
+    _check_numbers(seeds=seeds, runs=runs, workers=workers, bound=bound)
+    _check_numbers(0, patience=patience)
     question = question_of(
         _names(scenarios),
         {path: levels_text(levels) for path, levels in (vary or {}).items()},
-        policies=None if policies is None else tuple(policies),
+        policies=None if policies is None else _names(policies),
         seeds=seeds,
         design=design,
         runs=runs,
@@ -80,7 +82,7 @@ def sweep(
 
 def explore(
     scenario: str | Path,
-    moves: Iterable[str] = (),
+    moves: str | Iterable[str] = (),
     within: int = 5_000,
     depth: int = 2,
     step: int = 0,
@@ -116,6 +118,9 @@ def explore(
         UsageError: what is to be moved cannot be, or a file cannot be written.
         RunError: no process can be started.
     """
+    _check_numbers(within=within, depth=depth, runs=runs, workers=workers)
+    _check_numbers(0, step=step)
+    moves = (moves,) if isinstance(moves, str) else moves
     plan = Plan(os.fspath(scenario), tuple(moves), within, depth, step, runs, policy, isolate)
     exploration = Exploration(plan)
     if resume and output is None:
@@ -123,6 +128,17 @@ def explore(
     for _ in carried_out(exploration, pool_of(on, workers), output, resume):
         pass
     return Explored(exploration).data()
+
+
+def _check_numbers(least: int = 1, **given: int | None) -> None:
+    """Refuse what is no whole number, or too small a one.
+
+    Raises:
+        UsageError: one is.
+    """
+    for name, number in given.items():
+        if number is not None and (type(number) is not int or number < least):
+            raise UsageError(f"{name}={number!r}: write a whole number from {least}.")
 
 
 def _table(made: Sweep, output: str | Path | None, pool: Pool, resume: bool) -> pyarrow.Table:

@@ -28,6 +28,20 @@ from prima.markup.toml import parse_toml
 MOST_BYTES = 10_000_000
 """Size of a study file."""
 Level = str | int | float | bool
+_NUMBER = "write a whole number from 1"
+HOW = {
+    "scenarios": 'write a list of files, as ["visit.xml"]',
+    "policies": 'write a list of policies, as ["prima", "fifo"]',
+    "seeds": _NUMBER,
+    "runs": _NUMBER,
+    "bound": _NUMBER,
+    "design": 'write "full", "random" or "lhs"',
+    "patience": 'write a time, as "30s"',
+    "isolate": 'write "ea", "all" or "none"',
+    "vary": 'write what is varied below [vary], as touch = "0s..20s/1s"',
+}
+"""What to write, by keys."""
+LEVELS = 'write its levels, as "0s..20s/1s" or ["Yes.", "No."]; a path with a dot in quotes'
 
 
 class Study(BaseModel):
@@ -43,7 +57,7 @@ class Study(BaseModel):
     bound: Annotated[int, Field(ge=1)] | None = None
     patience: str | None = None
     isolate: Literal["ea", "all", "none"] = "ea"
-    vary: dict[str, str | list[Level]] = {}
+    vary: dict[str, Level | Annotated[list[Level], Field(min_length=1)]] = {}
 
 
 def question_of(scenarios: Sequence[str], vary: Mapping[str, str], **options: Any) -> Question:
@@ -64,7 +78,8 @@ def question_of(scenarios: Sequence[str], vary: Mapping[str, str], **options: An
         if len(scenarios) > 1:
             raise UsageError("A study file names its scenarios itself: name it alone.")
         study = read_study(scenarios[0])
-        asked = replace(study, vary={**study.vary, **vary})
+        places = {name: one for name, one in study.places.items() if name not in vary}
+        asked = replace(study, vary={**study.vary, **vary}, places=places)
     return replace(asked, **{name: one for name, one in options.items() if one is not None})
 
 
@@ -80,11 +95,17 @@ def read_study(path: str) -> Question:
         patience = None if study.patience is None else int(read_value("duration", study.patience))
     except ValidationError as error:
         raise _wrong(path, text, error) from None
-    except ValueError as error:
-        raise UsageError(f"{_place(path, text, 'patience')}: patience {error}") from None
+    except ValueError:
+        raise UsageError(
+            f"{_place(path, text, 'patience')}: patience: {HOW['patience']}."
+        ) from None
     folder = os.path.dirname(path)
+    scenarios = tuple(os.path.normpath(os.path.join(folder, one)) for one in study.scenarios)
+    places = {one: _place(path, text, one) for one in study.vary}
+    places |= dict.fromkeys(study.policies, _place(path, text, "policies"))
+    places |= dict.fromkeys(scenarios, _place(path, text, "scenarios"))
     return Question(
-        tuple(os.path.normpath(os.path.join(folder, one)) for one in study.scenarios),
+        scenarios,
         {name: levels_text(levels) for name, levels in study.vary.items()},
         tuple(study.policies),
         study.seeds,
@@ -94,11 +115,14 @@ def read_study(path: str) -> Question:
         patience,
         study.isolate,
         folder,
+        places,
     )
 
 
 def _read(path: str) -> str:
     try:
+        if Path(path).exists() and not Path(path).is_file():
+            raise UsageError(f"{path}: cannot be read: it is not a file.")
         with Path(path).open("rb") as stream:
             data = stream.read(MOST_BYTES + 1)
         if len(data) > MOST_BYTES:
@@ -119,10 +143,12 @@ def _parsed(path: str, text: str) -> dict[str, Any]:
         raise UsageError(f"{path}{where}: not TOML: {match[1] if match else error}.") from None
 
 
-def levels_text(given: str | Sequence[Level]) -> str:
+def levels_text(given: Level | Sequence[Level]) -> str:
     """Levels of a list as on the command line."""
     if isinstance(given, str):
         return given
+    if isinstance(given, int | float):
+        given = [given]
     texts = [str(one).lower() if isinstance(one, bool) else str(one) for one in given]
     return "|".join(one.replace("|", "\\|") for one in texts)
 
@@ -138,7 +164,7 @@ def _wrong(path: str, text: str, error: ValidationError) -> UsageError:
     elif first["type"] == "missing":
         return UsageError(f'{path}: a study needs {key}: write {key} = ["visit.xml"].')
     else:
-        why = f"{key}: {first['msg'][0].lower()}{first['msg'][1:]}."
+        why = f"{key}: {HOW[key] if names == [key] or names[0] != 'vary' else LEVELS}."
     return UsageError(f"{_place(path, text, key)}: {why}")
 
 

@@ -55,6 +55,16 @@ class Question:
     isolate: str = "ea"
     folder: str = ""
     """Where files of values are."""
+    places: Mapping[str, str] = field(default_factory=dict)
+    """Where in a study file its paths, policies and scenarios are written."""
+
+    def placed(self, error: UsageError) -> UsageError:
+        """A mistake with its place in the study file, if it is about something of it."""
+        told = str(error)
+        for name, place in self.places.items():
+            if told.startswith(f"{name}: ") or f'"{name}"' in told:
+                return UsageError(f"{place}: {told}")
+        return error
 
 
 class Sweep:
@@ -70,6 +80,12 @@ class Sweep:
         self.question = question
         if not question.scenarios:
             raise UsageError("Name a scenario to run.")
+        try:
+            self._plan(question)
+        except UsageError as error:
+            raise question.placed(error) from None
+
+    def _plan(self, question: Question) -> None:
         settings = Settings(question.bound, question.patience, question.isolate)
         paths = list(question.vary)
         self.stage = Stage.of(question.scenarios, paths, settings)
@@ -160,7 +176,7 @@ class Sweep:
     def key(self) -> dict[str, Json]:
         """What determines the table: for resuming."""
         question = asdict(self.question)
-        del question["folder"]
+        del question["folder"], question["places"]
         return {
             "prima": __version__,
             "question": json.loads(json.dumps(question)),

@@ -8,6 +8,7 @@ deviation of the logarithm; ``uniform(0s,20s)`` or ``0s..20s``; ``exponential(5s
 from __future__ import annotations
 
 import csv
+import io
 import math
 import re
 from collections.abc import Callable
@@ -23,6 +24,8 @@ MEASURED = ("duration", "number", "integer")
 """Kinds that may be drawn."""
 MOST_VALUES = 1_000_000
 """Values that a distribution's file may have."""
+MOST_BYTES = 100_000_000
+"""Size of such a file."""
 RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^/]+)(?:/(?P<step>.+))?")
 CALL = re.compile(r"(?P<name>[a-z]+)\((?P<arguments>.*)\)")
 EDGE = 1e-9
@@ -163,36 +166,52 @@ class Distributions:
         if self.folder is None:
             remedy = f"vary it: prima sweep --vary PATH=empirical({name})"
             raise ValueError(f"A document draws nothing from a file; {remedy}.")
-        values = sorted(self.value(one) for one in self._cells(name, column))
+        values = sorted(self._measured(name, *one) for one in self._cells(name, column))
         if not values:
             raise ValueError(f"{name} has no values.")
         return lambda share: values[int(share * len(values))]
 
-    def _cells(self, name: str, column: str) -> list[str]:
-        """The texts of a column of a CSV file; without its name, of the first one.
+    def _measured(self, name: str, line: int, text: str) -> float:
+        try:
+            return self.value(text)
+        except ValueError as error:
+            raise ValueError(f"{name}:{line}: {error}") from None
+
+    def _cells(self, name: str, column: str) -> list[tuple[int, str]]:
+        """The lines and texts of a column of a CSV file; without its name, of the first one.
 
         Bare numbers are seconds where times are wanted.
         """
-        lines = self._lines(name)
-        head = lines[0] if lines else []
+        rows = self._rows(name)
+        head = rows[0][1] if rows else []
         if column and column not in head:
-            raise ValueError(f'{name} has no column "{column}".')
+            hint = did_you_mean(column, head)
+            raise ValueError(f'{name} has no column "{column}". {hint}'.rstrip())
         place = head.index(column) if column else 0
         titled = column or (head and not re.match(r"[-+.\d]", head[0]))
-        texts = [row[place].strip() for row in lines[bool(titled) :] if place < len(row)]
-        return [self._with_unit(one) for one in texts if one]
+        texts = [(at, row[place].strip()) for at, row in rows[bool(titled) :] if place < len(row)]
+        return [(at, self._with_unit(one)) for at, one in texts if one]
 
     def _with_unit(self, text: str) -> str:
         return f"{text}s" if self.kind == "duration" and re.fullmatch(r"[\d.]+", text) else text
 
-    def _lines(self, name: str) -> list[list[str]]:
-        """The lines of a CSV file that are not empty."""
+    def _rows(self, name: str) -> list[tuple[int, list[str]]]:
+        """The rows of a CSV file that are not empty, with their lines."""
+        path = Path(self.folder or "") / name
         try:
-            with (Path(self.folder or "") / name).open(encoding="utf-8-sig", newline="") as stream:
-                lines = [row for row in islice(csv.reader(stream), MOST_VALUES + 2) if row]
+            if path.exists() and not path.is_file():
+                raise ValueError("it is not a file")
+            with path.open("rb") as stream:
+                data = stream.read(MOST_BYTES + 1)
+            if len(data) > MOST_BYTES:
+                raise ValueError(f"it is larger than {MOST_BYTES:,} bytes")
+            reader = csv.reader(io.StringIO(data.decode("utf-8-sig"), newline=""))
+            rows = [(reader.line_num, row) for row in islice(reader, MOST_VALUES + 2) if row]
+        except UnicodeDecodeError:
+            raise ValueError(f"{name} cannot be read: it is not UTF-8.") from None
         except (OSError, ValueError, csv.Error) as error:
             why = getattr(error, "strerror", None) or error
             raise ValueError(f"{name} cannot be read: {why}.") from None
-        if len(lines) > MOST_VALUES:
+        if len(rows) > MOST_VALUES:
             raise ValueError(f"{name} has more than {counted(MOST_VALUES, 'value')}.")
-        return lines
+        return rows

@@ -53,10 +53,15 @@ def set_text(node: Node, value: str) -> Edit:
 
 
 def edited(text: str, edits: Iterable[Edit]) -> bytes:
-    """A document's text with edits that do not overlap, in UTF-8.
+    """A document's text with edits, in UTF-8.
 
-    The declaration of XML goes, as it may name another encoding.
+    Edits inside an element that another one takes away go with it. The declaration of XML goes,
+    as it may name another encoding.
     """
-    for edit in sorted(edits, reverse=True):
+    whole: list[Edit] = []
+    for edit in sorted(edits):
+        if not (whole and whole[-1].start < edit.start < whole[-1].end):
+            whole.append(edit)
+    for edit in reversed(whole):
         text = text[: edit.start] + edit.text + text[edit.end :]
     return DECLARATION.sub("", text).encode()

@@ -140,7 +140,8 @@ class _Search:
             return there[0]
         if which.isascii() and which.isdigit():
             if not 1 <= int(which[:9]) <= len(there):
-                raise self.wrong(f"There are {len(there)} <{name}>.")
+                there_are = "There is one" if len(there) == 1 else f"There are {len(there)}"
+                raise self.wrong(f"{there_are} <{name}>.")
             return there[int(which) - 1]
         for one in there:
             if which in (one.get("id"), one.get("name"), one.get("to"), one.get("src")):

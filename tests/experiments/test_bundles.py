@@ -79,7 +79,9 @@ def test_its_metadata_name_every_file_as_ro_crate_does(folder: Path) -> None:
     ("words", "code", "why"),
     [
         (["--bundle", "t.zip"], 2, "--bundle needs the table"),
-        (["-o", "t.csv", "--bundle", "nowhere/t.zip"], 2, "nowhere"),
+        (["-o", "t.csv", "--bundle", "nowhere/t.zip"], 2, "there is no folder nowhere"),
+        (["-o", "t.csv", "--bundle", "t.csv"], 2, "the table is written there"),
+        (["-o", "t.csv", "--bundle", "worlds"], 2, "it is a folder"),
         (["-o", "t.csv", "--bundle", "visit.xml"], 2, "visit.xml"),
     ],
 )
@@ -90,6 +92,7 @@ def test_bundles_that_cannot_be_written(
     done = prima(*SWEEP, *words)
     assert done.returncode == code
     assert why in done.stderr
+    assert not Path("t.csv").exists(), "no run is made in vain"
     assert Path("visit.xml").read_bytes() == before
 
 

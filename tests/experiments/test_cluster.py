@@ -20,7 +20,7 @@ pytest.importorskip("distributed")
 from types import SimpleNamespace
 
 import prima as package
-from prima.errors import UsageError
+from prima.errors import RunError, UsageError
 from prima.experiments.cluster import cluster
 from prima.experiments.sweep import Question, Sweep
 from prima.experiments.variants import Made, Stage, Variant
@@ -158,6 +158,33 @@ def test_a_worker_that_dies_each_time_costs_that_run(dask: Cluster) -> None:
     assert results[4] == sweep.stage.run(list(sweep)[4])
     row = sweep.row(list(sweep)[3], results[3], "")
     assert "its process ended with code 1" in row
+
+
+def test_a_worker_that_ends_while_it_is_asked(
+    dask: Cluster, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    dask.worker()
+    calls: list[str] = []
+
+    def ending(client: Any, address: str) -> None:
+        calls.append(address)
+        if len(calls) < 2 or dask.address != address:
+            raise OSError("closed")
+
+    monkeypatch.setattr("prima.experiments.cluster._check", ending)
+    assert package.sweep("visit.xml", on=dask.address).num_rows == 1
+    assert len(calls) == 2
+    dask.address = ""
+    monkeypatch.setattr("prima.experiments.cluster.TRIES", 1)
+    with pytest.raises(RunError, match="its scheduler or its workers end before they answer"):
+        package.sweep("visit.xml", on=calls[0])
+
+
+def test_a_plan_counts_the_cluster_s_workers(dask: Cluster) -> None:
+    for _ in range(3):
+        dask.worker()
+    done = prima("sweep", "visit.xml", *VARY, "--plan", "--on", dask.address)
+    assert "322 runs: about" in done.stdout and "with 3 processes" in done.stdout, done.stderr
 
 
 def test_nobody_answers() -> None:

@@ -99,12 +99,16 @@ def test_values_measured_by_somebody(tmp_path: Path) -> None:
     (tmp_path / "named.csv").write_text("\ufeffwho,delay\nann,1\nbob,300ms\n", encoding="utf-8")
     assert set(drawn("touch", "empirical(named.csv:delay)", folder)) == {1, 0.3}
     for text, why in {
-        "empirical(named.csv:dely)": 'no column "dely"',
-        "empirical(named.csv)": '"ann"',
+        "empirical(named.csv:dely)": 'no column "dely". Did you mean "delay"',
+        "empirical(named.csv)": 'named.csv:2: "ann"',
+        "empirical(nan.csv:delay)": 'nan.csv:4: "nan"',
+        "empirical(.)": "it is not a file",
+        "empirical(/dev/zero)": "it is not a file",
         "empirical(empty.csv)": "has no values",
-        "empirical(bytes.csv)": "cannot be read",
+        "empirical(bytes.csv)": "cannot be read: it is not UTF-8",
     }.items():
         (tmp_path / "empty.csv").write_text("delay\n", encoding="utf-8")
+        (tmp_path / "nan.csv").write_text("delay\n1\n\nnan\n", encoding="utf-8")
         (tmp_path / "bytes.csv").write_bytes(b"\xff\xfe\x00")
         with pytest.raises(UsageError, match=why):
             factor("touch", text, folder)

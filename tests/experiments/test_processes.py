@@ -63,6 +63,16 @@ def test_a_module_beside_the_scenarios_is_not_taken_for_one_of_python(stage: Pat
     assert done.returncode == 0, done.stderr
 
 
+def test_a_script_needs_no_guard(stage: Path) -> None:
+    """The processes do not import the script that calls."""
+    write("script.py", "import prima\nprint(prima.sweep('a/one.xml', workers=2).num_rows)\n")
+    done = subprocess.run(
+        [sys.executable, "script.py"], capture_output=True, text=True, timeout=SECONDS, check=False,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    assert (done.stdout, done.stderr) == ("1\n", "")
+
+
 def test_how_the_death_of_a_process_is_told(stage: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     fates: list[Row | Died] = [Died(-9), Died(3), Died(11), Row("b/one.xml", "prima")]
 

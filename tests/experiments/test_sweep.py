@@ -97,6 +97,13 @@ def test_an_empty_level_takes_the_answer_away() -> None:
     assert none["reply"] == "" and none["seconds"] > yes["seconds"] + 2
 
 
+def test_an_answer_that_is_taken_away_has_no_delay() -> None:
+    vary = {"reply": "Yes.|", "reply.after": "1s|2s"}
+    made = rows(vary=vary)
+    assert [one["exit"] for one in made] == [0, 0, 0, 0], made
+    assert made[2]["order"] == made[3]["order"] == rows(vary={"reply": ""})[0]["order"]
+
+
 def test_seeds_draw_and_the_same_seed_is_the_same_run() -> None:
     made = rows(vary={"touch": "normal(3s,2s)", "reply": "Yes.|No."}, seeds=5)
     times = [one["touch"] for one in made]
@@ -231,3 +238,32 @@ def test_the_function_of_python_gives_the_same_table() -> None:
         package.sweep("visit.xml", resume=True)
     with pytest.raises(UsageError, match="Name a scenario"):
         package.sweep([])
+
+
+@pytest.mark.parametrize(
+    ("given", "why"),
+    [
+        ({"workers": -1}, "workers=-1: write a whole number from 1"),
+        ({"seeds": 1.5}, "seeds=1.5: write a whole number from 1"),
+        ({"seeds": "3"}, "seeds='3': write a whole number from 1"),
+        ({"patience": "3s"}, "patience='3s': write a whole number from 0"),
+        ({"vary": {"touch": 5}}, 'touch: "5" is not a time'),
+        ({"policies": "pirma"}, 'Did you mean "prima"'),
+    ],
+)
+def test_mistakes_in_python(given: dict[str, Any], why: str) -> None:
+    import prima as package
+
+    with pytest.raises(UsageError, match=why):
+        package.sweep("visit.xml", **given)
+
+
+def test_what_python_may_leave_out() -> None:
+    import prima as package
+
+    pytest.importorskip("pyarrow")
+    table = package.sweep("visit.xml", {"person.speed": 0.5}, policies="fifo", workers=1)
+    assert table.column("policy").to_pylist() == ["fifo"]
+    for wrong in ({"within": 0}, {"workers": -1}, {"step": -1}, {"runs": True}):
+        with pytest.raises(UsageError, match="write a whole number"):
+            package.explore("visit.xml", "touch", **wrong)
