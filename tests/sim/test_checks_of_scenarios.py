@@ -9,6 +9,7 @@ import pytest
 
 from prima import api, loading
 from prima.errors import DocumentError
+from prima.loading.scenarios import load_whole
 from tests import ROOT
 from tests.helpers.validating import VXML, in_the_passage
 
@@ -56,7 +57,7 @@ def test_a_scenario_with_any_attribute_wrong_is_looked_at() -> None:
         for written in re.finditer(r'([\w-]+)="([^"]*)"', text):
             for wrong in ("", f'{written[1]}=""', f'{written[1]}="?!"', f'{written[1]}x="1"'):
                 try:
-                    loading._load(
+                    load_whole(
                         path, (text[: written.start()] + wrong + text[written.end() :]).encode()
                     )
                 except DocumentError as error:

@@ -1,0 +1,168 @@
+"""Applications of both languages, with the files of their folder that they name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from prima.errors import (
+    DocumentError,
+    Hint,
+    Problem,
+    Span,
+    meant,
+)
+from prima.interpreter.elements import Document
+from prima.interpreter.events import near
+from prima.interpreter.reader import read_document
+from prima.loading.files import Folder, path_of, read_file
+from prima.loading.kinds import is_voicexml
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from prima.devices.endpoints import Endpoint
+    from prima.grammar import Grammar
+    from prima.session import AnyDocument
+    from prima.voicexml.site import Site
+
+
+Taken = Callable[[str, bytes], object]
+"""Is told the name and the bytes of each file that a document takes in."""
+
+
+def read_application(
+    path: str,
+    data: bytes,
+    name: str = "",
+    kind: str = "",
+    site: Site | None = None,
+    taken: Taken | None = None,
+) -> tuple[AnyDocument, list[Problem]]:
+    """Read an application of either language; a VoiceXML document is named after its file.
+
+    ``kind`` is ``fa`` or ``ea`` where the run says so; it counts, whatever the document says.
+    ``site`` says where a VoiceXML document and its folder are served. ``taken`` is told of the
+    grammars that a document of PRIMA's own language names.
+
+    Raises:
+        DocumentError: no document at all can be given.
+    """
+    if not is_voicexml(data):
+        native, problems = read_native(path, data, taken)
+        if kind and native.kind != kind:
+            from dataclasses import replace
+
+            native = replace(native, kind=kind)  # others may run the same document as it is
+        return native, problems
+    from prima.voicexml.document import VoiceDocument
+    from prima.voicexml.reading import read_page
+
+    file = path_of(path)
+    page = read_page(site.name(site.uri) if site else file.name, path, data, site)
+    own = name or re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "voice"
+    folder = Folder(site.folder if site else str(file.parent))
+    return VoiceDocument(
+        own, kind or "ea", path, page, folder.fetch, page.root, folder.glance
+    ), page.problems
+
+
+def read_native(
+    path: str, data: bytes, taken: Taken | None = None
+) -> tuple[Document, list[Problem]]:
+    """An application in PRIMA's own language, with the grammars of its folder that it names."""
+
+    def fetch(uri: str) -> bytes:
+        found = fetcher(path_of(path).parent)(uri)
+        if taken is not None:
+            taken(uri, found)
+        return found
+
+    return read_document(path, data, fetch)
+
+
+def load(path: str | Path) -> Document:
+    """Load an application.
+
+    Raises:
+        DocumentError: with all problems, if any is an error.
+        UsageError: the file cannot be read.
+    """
+    document, problems = read_native(str(path), read_file(path))
+    if any(problem.severity == "error" for problem in problems):
+        raise DocumentError(problems)
+    return document
+
+
+def fetcher(folder: Path, site: Site | None = None) -> Callable[[str], bytes]:
+    """Gives the bytes of grammars in a folder, of one that was copied from a site by their URIs."""
+    from prima.voicexml.document import FetchError
+
+    def fetch(uri: str) -> bytes:
+        try:
+            return Folder(str(folder)).fetch(site.name(uri) if site else uri)
+        except FetchError as error:
+            raise LookupError(str(error).rstrip(".")) from None
+
+    return fetch
+
+
+def in_folder(folder: Path, problem: Problem) -> Problem:
+    """A problem of a file that is named by its place in a folder."""
+    return problem._replace(place=problem.place._replace(file=str(folder / problem.place.file)))
+
+
+def digest(data: bytes) -> str:
+    """The SHA-256 of a file's bytes, in hexadecimal."""
+    import hashlib
+
+    return hashlib.sha256(data).hexdigest()
+
+
+def load_services(path: str) -> tuple[list[Endpoint], str]:
+    """Load a document of services; gives its digest, too.
+
+    Raises:
+        DocumentError: with all its problems.
+        UsageError: the file cannot be read.
+    """
+    data = read_file(path)
+    return services_of(path, data), digest(data)
+
+
+def services_of(path: str, data: bytes) -> list[Endpoint]:
+    """Read a document of services, with the grammars of its folder that it names.
+
+    Raises:
+        DocumentError: with all its problems.
+    """
+    from prima.devices.endpoints import read_services
+    from prima.grammar import load
+
+    folder = path_of(path).parent
+    fetch = fetcher(folder)
+
+    def grammar(name: str) -> Grammar:
+        try:
+            return load(fetch(name), base=name, fetch=fetch)
+        except DocumentError as error:
+            raise DocumentError([in_folder(folder, one) for one in error.problems]) from None
+
+    return read_services(path, data, grammar)
+
+
+MOST_BESIDE = 300
+"""How many files of a folder are looked at for one that was meant."""
+
+
+def nearby(path: Path, *spans: Span) -> Hint:
+    """The file beside that a name which leads nowhere most likely means: its ending says little."""
+    try:
+        beside = sorted(islice(path.parent.iterdir(), MOST_BESIDE))
+    except (OSError, ValueError):
+        return Hint()
+    alike = sorted(beside, key=lambda one: one.suffix == path.suffix)  # the last one counts
+    stems = {one.stem: one.name for one in alike if one.name != path.name}
+    return meant(stems.get(near(path.stem, stems), ""), *spans)

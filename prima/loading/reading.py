@@ -1,0 +1,271 @@
+"""What a scenario names: read, with all that is wrong with it."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from functools import partial
+from os.path import normpath
+from typing import TYPE_CHECKING, TypeVar
+
+from prima.errors import (
+    DocumentError,
+    Hint,
+    Place,
+    Problem,
+    Span,
+    UsageError,
+    one_of,
+    replaced,
+    suggestion,
+)
+from prima.interpreter.checks import check_commands
+from prima.interpreter.elements import Document
+from prima.loading.applications import digest, nearby, read_application
+from prima.loading.diagnoses import (
+    BAD_POLICY,
+    BAD_SITE,
+    NEEDS_URI,
+    NO_AREA,
+    NO_FAVOURITE,
+    NOT_SERVED,
+    RUNS_AS_OTHER,
+    UNREADABLE,
+)
+from prima.loading.files import path_of, read_file
+from prima.loading.kinds import is_voicexml
+from prima.loading.voicedocuments import voicexml_problems
+from prima.markup.check import kind_of
+from prima.markup.reader import parse
+from prima.markup.spans import value_span
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from prima.devices.profile import Profile
+    from prima.markup.tree import Node
+    from prima.session import AnyDocument
+    from prima.sim.map import Area, Map
+    from prima.sim.scenario import Scenario
+    from prima.voicexml.site import Site
+
+
+Made = TypeVar("Made")
+
+
+@dataclass(slots=True)
+class Reading:
+    """What has been read of a scenario, and all that is wrong with it."""
+
+    path: Path
+    files: dict[str, str]
+    problems: list[Problem] = field(default_factory=list)
+    documents: list[AnyDocument] = field(default_factory=list)
+    whole: bool = False
+    """Whether all documents of VoiceXML applications are looked into, not only the first."""
+    answered: tuple[str, ...] = ()
+    """How URIs begin that the scenario's services answer."""
+
+    def read(self, name: str, place: Place, made_of: Callable[[str, bytes], Made]) -> Made | None:
+        """A document that the scenario names, or None where it cannot be had."""
+        if not name:
+            return None  # told already, as a problem of the schema
+        target = path_of(normpath(self.path.parent / name))
+        content = b""
+        try:
+            content = read_file(target)
+            self.files[name] = digest(content)
+            return made_of(str(target), content)
+        except UsageError as error:
+            wrong = str(error).removeprefix(f"{target}: ")
+            at = place._replace(column=place.column + len(name) - len(target.name))
+            hint = nearby(target, Span.of(at, target.name))
+            self.problems.append(UNREADABLE.at(place, hint, name=name, wrong=wrong))
+        except DocumentError as error:
+            self.problems += [_named_wrongly(name, place, one, content) for one in error.problems]
+        return None
+
+    def application(self, src: str, place: Place, node: Node | None = None) -> AnyDocument | None:
+        """An application, with its problems."""
+        said = node.get("kind") if node is not None else "ea"  # what a place offers is an EA
+        own = (node.get("id") if node is not None else "", said or "ea")
+        site = self.site(src, node) if node is not None else None
+
+        def take(uri: str, data: bytes) -> None:
+            beside = posixpath.join(posixpath.dirname(src), uri)
+            self.files[posixpath.normpath(beside)] = digest(data)
+
+        def made_of(path: str, data: bytes) -> tuple[AnyDocument, list[Problem]]:
+            document, problems = read_application(path, data, *own, site, take)
+            further: Iterable[Problem] = ()
+            if self.whole and is_voicexml(data):
+                further = voicexml_problems(path, data, site, self.answered)
+            return document, [*problems, *further]
+
+        read = self.read(src, place, made_of)
+        if read is None:
+            return None
+        document, problems = read
+        self.problems += problems
+        self.documents.append(document)
+        if node is not None:
+            who = "this scenario says EA" if said == "ea" else "this scenario does not say so"
+            who = "this scenario says FA" if said == "fa" else who
+            remedy = f'Write kind="{document.node.get("kind")}" here, or change the document.'
+            self.problems += other_kind(document, f'"{src}"', who, place, remedy)
+        if site is not None and node is not None and isinstance(document, Document):
+            where = node.attribute_place("uri", value=False)
+            self.problems.append(NOT_SERVED.at(where, src=src))
+        return document
+
+    def site(self, src: str, node: Node) -> Site | None:
+        """Where an application is served, if the scenario says so; a wrong one is a problem."""
+        from prima.voicexml.site import site_of
+
+        uri, folder = node.get("uri").strip(), node.get("folder")
+        if not uri and not folder:
+            return None
+        if not uri:
+            self.problems.append(NEEDS_URI.at(node.attribute_place("folder")))
+            return None
+        try:
+            above = normpath(self.path.parent / folder) if folder else ""
+            return site_of(normpath(self.path.parent / src), uri, above)
+        except ValueError as error:
+            wrong, *remedies = error.args
+            hint = Hint("".join(remedies))
+            self.problems.append(BAD_SITE.at(node.attribute_place("uri"), hint, wrong=wrong))
+            return None
+
+    def world(self, scenario: Scenario) -> tuple[Map | None, list[tuple[Area, str]]]:
+        """The scenario's world, and what its areas offer if the robot takes it up."""
+        from prima.sim.map import read_world
+
+        world = self.read(scenario.world, scenario.node.attribute_place("world"), read_world)
+        if world is None:
+            return None, []
+        self.problems += world.warnings
+        return world, self.offers(scenario, world) if scenario.entrances else []
+
+    def robot(self, scenario: Scenario) -> Profile | None:
+        """The scenario's robot, with the Commands that it cannot do."""
+        from prima.devices.profile import read_robot
+
+        profile = self.read(scenario.robot, scenario.node.attribute_place("robot"), read_robot)
+        if profile is not None:
+            self.check_commands(profile)
+            self.problems += profile.warnings
+        return profile
+
+    def offers(self, scenario: Scenario, world: Map) -> list[tuple[Area, str]]:
+        """The applications that a world's areas offer, but those that the scenario runs itself."""
+        if not world.areas:
+            place = scenario.node.attribute_place("entrances")
+            self.problems.append(NO_AREA.at(place, world=world.id))
+        beside = {posixpath.normpath(src) for src, _, _ in scenario.applications}
+        known: dict[str, AnyDocument | None] = {}
+        made = []
+        for area in world.areas:
+            folder = posixpath.dirname(scenario.world)
+            name = posixpath.normpath(posixpath.join(folder, area.src))
+            if name in beside:
+                continue  # the scenario itself says when it runs
+            if name not in known:
+                known[name] = self.offered(name, area)
+            document = known[name]
+            if document is not None:
+                made.append((area, document.id))
+        return made
+
+    def users(self, scenario: Scenario) -> None:
+        """The documents of how persons behave."""
+        from prima.sim.user import read_user
+
+        wrong: set[str] = set()
+        for person in scenario.persons:
+            if person.user and person.user not in wrong and person.node is not None:
+                place = person.node.attribute_place("user")
+                user = self.read(person.user, place, partial(read_user, person=person.name))
+                if user is None:
+                    wrong.add(person.user)  # told once
+                else:
+                    scenario.take(person.name, user)
+
+    def replies(self, scenario: Scenario) -> None:
+        """What services answer fetches with."""
+        for service in scenario.services:
+            for reply in service.replies:
+                if reply.src and reply.node is not None:
+                    place = reply.node.attribute_place("src")
+                    reply.body = self.read(reply.src, place, lambda _, data: data) or b""
+
+    def offered(self, name: str, area: Area) -> AnyDocument | None:
+        """What an area offers: an EA."""
+        place = area.node.attribute_place("application")
+        document = self.application(name, place)
+        if document is not None:
+            who, remedy = "a place offers EAs", 'Write kind="ea" in the document.'
+            self.problems += other_kind(document, f'"{area.src}"', who, place, remedy)
+        return document
+
+    def check_commands(self, robot: Profile) -> None:
+        """Commands that the robot cannot do."""
+        for document in self.documents:
+            if isinstance(document, Document):
+                self.problems += check_commands(document, robot.commands, robot.devices)
+            else:
+                from prima.voicexml import checks, sketched
+
+                self.problems += checks.check_commands(document.page.root, robot.commands)
+                self.problems += sketched.added_in_units(document.page, robot.commands)
+
+    def check_policy(self, scenario: Scenario) -> None:
+        """A policy that is none, or prefers an application that is not there."""
+        from prima.scheduler.policy import UnknownPolicy, policy_named
+
+        place = scenario.node.attribute_place("policy")
+        try:
+            policy_named(scenario.policy)
+        except UnknownPolicy as error:
+            spans = value_span(scenario.node, "policy", error.word) if error.meant else ()
+            hint = replaced(f"{error.remedy} {FAVOURITE}", error.meant, *spans)
+            self.problems.append(BAD_POLICY.at(place, hint, wrong=error.wrong))
+        if problem := favourite_problem(scenario.policy, self.documents, scenario.node):
+            wrong, hint = problem
+            self.problems.append(NO_FAVOURITE.at(place, hint, wrong=wrong))
+
+
+def other_kind(
+    document: AnyDocument, name: str, who: str, place: Place, remedy: str
+) -> list[Problem]:
+    """Warn of a document that says it is of another kind than the run does, which counts."""
+    own = document.node.get("kind")
+    if not isinstance(document, Document) or own in ("", document.kind):
+        return []
+    kind = document.kind.upper()
+    return [RUNS_AS_OTHER.at(place, Hint(remedy), name=name, own=own.upper(), who=who, kind=kind)]
+
+
+def _named_wrongly(name: str, place: Place, problem: Problem, content: bytes) -> Problem:
+    """A document of another kind than the scenario needs is the mistake of who names it."""
+    if problem.code != "wrong-namespace" or not kind_of(parse(name, content)):
+        return problem
+    return problem._replace(place=place, message=f'"{name}": {problem.message}', fixes=())
+
+
+FAVOURITE = "fixed:APP prefers the application APP."
+"""What to write for a policy that prefers one application."""
+
+
+def favourite_problem(
+    policy: str, documents: list[AnyDocument], node: Node | None = None
+) -> tuple[str, Hint] | None:
+    """What is wrong with the application that ``fixed:APP`` names, and what was meant."""
+    kind, _, first = policy.partition(":")
+    names = [document.id for document in documents]
+    if kind != "fixed" or not first or first in names:
+        return None
+    spans = value_span(node, "policy", first) if node is not None else ()
+    hint = suggestion(first, names, *spans) or Hint(f"Write {one_of(names)}.")
+    return f'The policy "{policy}" names an application that is not in the scenario.', hint

@@ -1,0 +1,131 @@
+"""Scenarios, with their worlds, robots and applications."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from prima.checks.ignores import Ignores
+from prima.errors import (
+    DocumentError,
+    Problem,
+    few_guesses,
+    in_order,
+)
+from prima.loading.applications import digest
+from prima.loading.files import path_of, read_file
+from prima.loading.reading import Reading
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from prima.sim.devices import Cast
+
+
+@dataclass(slots=True)
+class Loaded:
+    """A scenario with everything it names; ``files`` are paths with digests of their bytes."""
+
+    cast: Cast
+    files: dict[str, str]
+    problems: list[Problem] = field(default_factory=list)
+
+
+def load_scenario(path: str | Path, robot: str = "") -> Loaded:
+    """Load a scenario with its world, robot and applications.
+
+    Args:
+        path: the scenario's.
+        robot: the path of another robot than the scenario's.
+
+    Raises:
+        DocumentError: with the problems of all files, if any is an error.
+        UsageError: the scenario's file cannot be read.
+    """
+    return load_text(path, read_file(path), robot)
+
+
+def load_text(path: str | Path, data: bytes, robot: str = "") -> Loaded:
+    """Load a scenario from memory; see :func:`load_scenario`.
+
+    Args:
+        path: the file whose folder its paths begin at; it is not read.
+        data: the scenario's text.
+        robot: the path of another robot than the scenario's.
+
+    Raises:
+        DocumentError: with the problems of all files, if any is an error.
+    """
+    return without_ignored(load_whole(path_of(path), data, robot=robot))
+
+
+def with_scenario(loaded: Loaded, path: str | Path, data: bytes) -> Loaded:
+    """What was loaded, with another text of its scenario that names the same files.
+
+    Raises:
+        DocumentError: the text has errors.
+    """
+    from dataclasses import replace
+
+    from prima.sim.scenario import read_scenario
+
+    scenario = read_scenario(str(path), data)
+    for service, before in zip(scenario.services, loaded.cast.scenario.services, strict=True):
+        for reply, old in zip(service.replies, before.replies, strict=True):
+            reply.body = old.body
+    for name, user in loaded.cast.scenario.users.items():
+        scenario.take(name, user)
+    files = {**loaded.files, path_of(path).name: digest(data)}
+    return Loaded(replace(loaded.cast, scenario=scenario), files, loaded.problems)
+
+
+def seeded(loaded: Loaded, seed: int | None) -> Loaded:
+    """What was loaded, drawn by another seed; None for the scenario's own."""
+    from dataclasses import replace
+
+    if seed is None:
+        return loaded
+    scenario = replace(loaded.cast.scenario, seed=seed)
+    return Loaded(replace(loaded.cast, scenario=scenario), loaded.files, loaded.problems)
+
+
+def without_ignored(loaded: Loaded) -> Loaded:
+    """What has been loaded, without the problems that authors ignore."""
+    loaded.problems = Ignores(read_file).left(loaded.problems)
+    return loaded
+
+
+@few_guesses()
+def load_whole(path: Path, data: bytes, whole: bool = False, robot: str = "") -> Loaded:
+    """Load a scenario; ``whole`` looks into all documents of its VoiceXML applications as well."""
+    from prima.sim.devices import Cast
+    from prima.sim.hearing import check_hearing
+    from prima.sim.rehearsal import check_cast, check_names
+    from prima.sim.scenario import look_at_scenario
+
+    scenario, told = look_at_scenario(str(path), data)
+    if robot:
+        scenario.robot = os.path.relpath(robot, path.parent)
+    reading = Reading(path, {path.name: digest(data)}, [*told], whole=whole)
+    reading.answered = tuple(one.uri for one in scenario.services if one.uri)
+    for src, _, node in scenario.applications:
+        reading.application(src, node.attribute_place("src"), node)
+    reading.users(scenario)
+    world, offers = reading.world(scenario)
+    profile = reading.robot(scenario)
+    reading.check_policy(scenario)
+    reading.replies(scenario)
+    offered = {name for _, name in offers}
+    complete = len(reading.documents) == len(scenario.applications) + len(offered)
+    if world is None or profile is None or not complete:
+        documents = reading.documents if complete else None
+        names = check_names(scenario, world, profile, documents)
+        raise DocumentError(in_order([*reading.problems, *names]))
+    cast = Cast(scenario, reading.documents, world, profile, offers)
+    problems = in_order([*reading.problems, *check_cast(cast)])
+    if not any(problem.severity == "error" for problem in told):
+        problems = in_order([*problems, *check_hearing(cast)])
+    if any(problem.severity == "error" for problem in problems):
+        raise DocumentError(problems)
+    return Loaded(cast, reading.files, problems)

@@ -1,0 +1,148 @@
+"""Applications on a robot without a scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from prima.errors import (
+    DocumentError,
+    UsageError,
+)
+from prima.loading.applications import read_application
+from prima.loading.files import path_of, read_file
+from prima.loading.folders import documents_folder
+from prima.loading.reading import other_kind
+from prima.loading.scenarios import Loaded, load_whole, without_ignored
+from prima.loading.voicedocuments import mappings
+
+
+def stage(
+    fas: Iterable[str],
+    eas: Iterable[str],
+    says: Iterable[str] = (),
+    world: str | None = None,
+    robot: str | None = None,
+    maps: Iterable[str] = (),
+    entrances: bool = False,
+) -> Loaded:
+    """Put applications on a robot in an empty room, with a user in front of it.
+
+    Args:
+        fas: paths of the robot's own applications.
+        eas: paths of the place's.
+        says: what the user says to the questions, one after the other.
+        world: path of another world; the robot is at its first place.
+        robot: path of another robot's profile.
+        maps: folders of VoiceXML documents and where they are served, as ``URI=FOLDER``.
+        entrances: whether the robot takes up what areas of the world offer.
+
+    Raises:
+        DocumentError: with the problems of all files, if any is an error.
+        UsageError: a file cannot be read, or two of the applications have one id.
+    """
+    from html import escape
+
+    given = [(kind, path) for kind, paths in (("fa", fas), ("ea", eas)) for path in paths]
+    for path in (*(path for _, path in given), *filter(None, (robot, world))):
+        read_file(path)  # what is not there is no fault of a document
+    demo = documents_folder()
+    world = world or str(demo / "worlds" / "room.xml")
+    robot = robot or str(demo / "robots" / "papero.xml")
+    taken_up = ' entrances="open"' if entrances else ""
+    text = (
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="stage"'
+        f' world="{escape(world)}" robot="{escape(robot)}"{taken_up}>'
+        f"{_standing(world)}{_applications(given, maps)}{_answers(says)}</scenario>"
+    )
+    try:
+        loaded = load_whole(path_of("stage.xml"), text.encode())
+    except DocumentError as error:
+        stage_own = [one for one in error.problems if one.place.file == "stage.xml"]
+        if any(one.code == "duplicate-id" for one in stage_own):
+            _refuse_same_id(given)
+        raise
+    problems = [one for one in loaded.problems if one.code != "other-kind"]
+    for (kind, _), document in zip(given, loaded.cast.documents, strict=False):
+        own, place = document.node.get("kind"), document.node.attribute_place("kind")
+        remedy = f'Name it with --{own}, or write kind="{kind}".'
+        problems += other_kind(document, "The document", f"--{kind} names it", place, remedy)
+    loaded.problems = sorted(problems)
+    return without_ignored(loaded)
+
+
+def _applications(given: list[tuple[str, str]], maps: Iterable[str]) -> str:
+    """The applications of a scenario, by their kinds and paths."""
+    from html import escape
+
+    served = _served([path for _, path in given], maps)
+    return "".join(
+        f'<application src="{escape(path)}" kind="{kind}"{served.get(path, "")}/>'
+        for kind, path in given
+    )
+
+
+def _answers(says: Iterable[str]) -> str:
+    """What the user says to the questions, one after the other."""
+    from html import escape
+
+    return "".join(
+        f'<when asked="" count="{number}" after="1s"><say>{escape(text)}</say></when>'
+        for number, text in enumerate(says, 1)
+    )
+
+
+def _standing(world: str) -> str:
+    """The robot at a world's first place, and the user a metre in front of it.
+
+    Raises:
+        DocumentError: the world is wrong.
+        UsageError: it cannot be read, or has no place.
+    """
+    from html import escape
+    from math import cos, radians, sin
+
+    from prima.sim.map import read_world
+
+    there = read_world(world, read_file(world))
+    if not there.places:
+        raise UsageError(f"{world}: this world has no place for the robot; write a <place> in it.")
+    name, (x, y) = next(iter(there.places.items()))
+    angle = radians(there.headings[name])
+    return (
+        f'<robot at="{escape(name)}"/><person x="{x + cos(angle):.3f}" y="{y + sin(angle):.3f}"/>'
+    )
+
+
+def _served(paths: list[str], maps: Iterable[str]) -> dict[str, str]:
+    """What a scenario says of applications whose folders are mapped to URIs.
+
+    Raises:
+        UsageError: a mapping is none, or no application is in its folder.
+    """
+    from html import escape
+
+    from prima.voicexml.site import mapped
+
+    held = mappings(maps, paths)
+    served: dict[str, str] = {}
+    for path in paths:
+        if found := mapped(path, held):
+            served[path] = f' uri="{escape(found[0])}" folder="{escape(found[1])}"'
+    return served
+
+
+def _refuse_same_id(given: list[tuple[str, str]]) -> None:
+    """Name the two applications of one id, by their options: the stage's own text is no file.
+
+    Raises:
+        UsageError: there are two.
+    """
+    seen: dict[str, str] = {}
+    for kind, path in given:
+        name, option = read_application(path, read_file(path))[0].id, f"--{kind} {path}"
+        if name in seen:
+            both = f"{option} is given twice"
+            if seen[name] != option:
+                both = f'{seen[name]} and {option} have the same id, "{name}"'
+            raise UsageError(f"{both}. Leave one out, or run a copy with another id.")
+        seen[name] = option

@@ -1,0 +1,168 @@
+"""All problems of documents of any kind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
+from prima.checks.ignores import Ignores
+from prima.errors import (
+    DocumentError,
+    Problem,
+    few_guesses,
+    in_order,
+    listed,
+)
+from prima.interpreter.elements import Document
+from prima.interpreter.vocabulary import DIALOGUE
+from prima.loading.applications import fetcher, in_folder, read_native, services_of
+from prima.loading.files import path_of, read_file
+from prima.loading.folders import documents_folder
+from prima.loading.kinds import GRAMMAR_FILES, is_grammar, is_surely_ours, is_voicexml
+from prima.loading.reading import Reading
+from prima.loading.scenarios import load_whole
+from prima.loading.voicedocuments import mapped_site, mappings, voicexml_problems
+from prima.markup.check import check_root
+from prima.markup.limits import LIMITS
+from prima.markup.reader import parse
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def validate(paths: Iterable[str | Path], maps: Iterable[str] = ()) -> list[Problem]:
+    """Give all problems of documents of any kind; a scenario's also those of what it names.
+
+    Those that authors ignore, in a document or in ``prima.toml``, are left out. Of very many the
+    last says only how many there are more (:func:`prima.errors.listed`).
+
+    Args:
+        paths: the documents.
+        maps: folders of VoiceXML documents and where they are served, as ``URI=FOLDER``.
+
+    Raises:
+        UsageError: a file cannot be read, or a mapping is none.
+    """
+    paths = list(paths)
+    validation = Validation(mappings(maps, map(str, paths)))
+    problems = [problem for path in paths for problem in validation.problems(path)]
+    return listed(sorted(once([*problems, *validation.ignored()])), LIMITS.problems)
+
+
+def once(problems: Iterable[Problem]) -> list[Problem]:
+    """Problems once each: an error in a file is not repeated as a warning of the documents that name it."""
+    found = dict.fromkeys(problems)
+    warned = {one.place for one in found if one.severity != "error"}
+    errors = {
+        (one.place, one.message) for one in found if one.severity == "error" and one.place in warned
+    }
+    return [
+        one for one in found if one.severity == "error" or (one.place, one.message) not in errors
+    ]
+
+
+class Validation:
+    """Checks documents one after the other, and in the end what their authors ignore.
+
+    Args:
+        maps: folders of VoiceXML documents by the URIs at which they are served.
+    """
+
+    def __init__(self, maps: Mapping[str, str] | None = None) -> None:
+        self._maps = maps or {}
+        self._ignores = Ignores(read_file)
+
+    def problems(self, path: str | Path) -> list[Problem]:
+        """The problems of a document that nobody ignores.
+
+        Raises:
+            UsageError: the file cannot be read.
+        """
+        with few_guesses():
+            found = self._ignores.left(_validate_one(str(path), self._maps))
+        self._ignores.check(str(path))
+        return in_order(found)
+
+    def ignored(self) -> list[Problem]:
+        """What is wrong with ignores of the documents checked: no reason, or nothing to ignore."""
+        return in_order(self._ignores.told())
+
+
+def _validate_one(path: str, maps: Mapping[str, str]) -> list[Problem]:
+    try:
+        data = read_file(path)
+        if is_surely_ours(data):
+            return _application_problems(path, data)
+        if is_voicexml(data):
+            return list(voicexml_problems(path, data, mapped_site(path, maps)))
+        if is_grammar(data) or path.lower().endswith(GRAMMAR_FILES):
+            return _grammar_problems(path_of(path), data)
+        return _problems_by_kind(path, data)
+    except DocumentError as error:
+        return error.problems
+
+
+def _problems_by_kind(path: str, data: bytes) -> list[Problem]:
+    """The problems of one of PRIMA's own documents.
+
+    Raises:
+        DocumentError: with its problems, if any is an error.
+    """
+    from prima.devices.profile import read_robot
+    from prima.devices.vocabulary import ROBOT, SERVICES
+    from prima.sim.user import read_user
+    from prima.sim.vocabulary import SCENARIO, USER, WORLD
+
+    kinds = (DIALOGUE, WORLD, ROBOT, SCENARIO, USER, SERVICES)
+    match check_root(parse(path, data, kinds), kinds).namespace:
+        case DIALOGUE.namespace:
+            return _application_problems(path, data)
+        case WORLD.namespace:
+            return _world_problems(path, data)
+        case ROBOT.namespace:
+            return read_robot(path, data).warnings
+        case SERVICES.namespace:
+            services_of(path, data)
+        case USER.namespace:
+            read_user(path, data)
+        case _:
+            return load_whole(path_of(path), data, whole=True).problems
+    return []
+
+
+def _world_problems(path: str, data: bytes) -> list[Problem]:
+    """The problems of a world, and of the applications that its areas offer."""
+    from prima.sim.map import read_world
+
+    world = read_world(path, data)
+    reading = Reading(path_of(path), {}, [*world.warnings])
+    for area in world.areas:
+        if area.src not in reading.files:
+            reading.offered(area.src, area)
+    return reading.problems
+
+
+def _application_problems(path: str, data: bytes) -> list[Problem]:
+    """The problems of an application in PRIMA's own language."""
+    document, problems = read_native(path, data)
+    return problems + _prices(document) if b"<iu" in data else problems
+
+
+def _grammar_problems(path: Path, data: bytes) -> list[Problem]:
+    """What is wrong with a grammar, and with those of its folder that it refers to."""
+    from prima.grammar import load
+
+    try:
+        problems = load(data, base=path.name, fetch=fetcher(path.parent)).warnings()
+    except DocumentError as error:
+        problems = error.problems
+    return [in_folder(path.parent, problem) for problem in problems]
+
+
+def _prices(document: Document) -> list[Problem]:
+    """What an application's units cost others, on the demo's robot, as notes."""
+    from prima.checks.prices import notes
+    from prima.devices.profile import read_robot
+
+    robot = documents_folder() / "robots" / "papero.xml"
+    return notes(document, read_robot(str(robot), read_file(robot)))

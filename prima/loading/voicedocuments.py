@@ -1,0 +1,144 @@
+"""What is wrong with a VoiceXML document and with those that it leads to."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from os.path import exists
+from typing import TYPE_CHECKING
+
+from prima.errors import (
+    Problem,
+    UsageError,
+)
+from prima.loading.applications import fetcher, in_folder, nearby
+from prima.loading.diagnoses import (
+    NO_FILE_HERE,
+)
+from prima.loading.files import Folder, path_of
+from prima.markup.spans import value_span
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from prima.markup.tree import Node
+    from prima.voicexml.document import Page
+    from prima.voicexml.site import Site
+
+
+def mappings(maps: Iterable[str], paths: Iterable[str]) -> dict[str, str]:
+    """Folders by the URIs at which they are served, of ``URI=FOLDER``.
+
+    Raises:
+        UsageError: a mapping is none, or none of the applications is in its folder.
+    """
+    from prima.voicexml.site import mapped, mapping_of
+
+    held: dict[str, str] = {}
+    paths = list(paths)
+    for text in maps:
+        try:
+            uri, folder = mapping_of(text)
+        except ValueError as error:
+            raise UsageError(f"--map {' '.join(error.args)}") from None
+        held[uri] = folder
+        if not any(mapped(path, {uri: folder}) for path in paths):
+            raise UsageError(f"--map {text}: no application is in the folder {folder}.")
+    return held
+
+
+def mapped_site(path: str, maps: Mapping[str, str]) -> Site | None:
+    """Where a document is served by the mapping of its folder, if there is one."""
+    if not maps:
+        return None
+    from prima.voicexml.site import mapped, site_of
+
+    found = mapped(path, maps)
+    return site_of(path, *found) if found else None
+
+
+def voicexml_problems(
+    path: str, data: bytes, site: Site | None = None, answered: tuple[str, ...] = ()
+) -> Iterator[Problem]:
+    """The problems of a VoiceXML document, and of those of its folder that it leads to.
+
+    URIs that begin like one of ``answered`` are a service's.
+    """
+    from prima.voicexml.caught import check_caught
+    from prima.voicexml.document import FetchError
+    from prima.voicexml.listening import check_listening
+    from prima.voicexml.pages import Pages
+    from prima.voicexml.reading import read_page
+    from prima.voicexml.sketched import check_sketched
+    from prima.voicexml.variables import check_variables
+
+    folder = path_of(site.folder) if site else path_of(path).parent
+    first = read_page(site.name(site.uri) if site else path_of(path).name, path, data, site)
+    pages = Pages(first, path, Folder(str(folder)).fetch)
+
+    def script(page: Page, node: Node) -> str | None:
+        try:
+            source = page.resolve(node.get("src"), node) if node.get("src") else ""
+            return Folder(str(folder)).fetch(source).decode("utf-8") if source else None
+        except (FetchError, ValueError):
+            return None
+
+    for page in pages:
+        yield from (*page.problems, *page.warnings(), *_not_there(page, folder, answered))
+        yield from (*_grammars_of(page, folder), *check_variables(page, pages.root(page), script))
+        yield from check_caught(page.root, pages.thrown)
+        yield from check_listening(page, pages.root(page))
+    yield from check_sketched((page, pages.root(page)) for page in pages)
+    yield from (*pages.problems, *pages.between())
+
+
+NAMING_FILES = {
+    "src": frozenset(["script", "grammar", "data", "subdialog"]),
+    "next": frozenset(["goto", "link", "choice", "submit"]),
+    "application": frozenset(["vxml"]),
+}
+"""Attributes of VoiceXML elements that name a file, where they name nothing else."""
+
+
+SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:|//")
+"""How a URI begins that is no file's name."""
+
+
+def _not_there(page: Page, folder: Path, answered: tuple[str, ...]) -> Iterator[Problem]:
+    """Warn of files that a VoiceXML document names and that are not in its folder."""
+    from urllib.parse import unquote
+
+    for node in page.root.walk():
+        for name, tags in NAMING_FILES.items():
+            uri = node.get(name).strip()
+            if node.tag not in tags or not uri or uri.startswith("#"):
+                continue
+            whole = page.resolve(uri, node)
+            file = unquote(whole.partition("#")[0].partition("?")[0])
+            inside = not file.startswith(("/", "../"))
+            if page.site is not None and page.site.whole(whole).startswith(answered):
+                continue
+            if SCHEME.match(whole) or not file or (inside and exists(folder / file)):
+                continue
+            spans = value_span(node, name, file.rpartition("/")[2])
+            hint = nearby(folder / file, *spans)
+            yield NO_FILE_HERE.at(node.attribute_place(name), hint, file=file[:80])
+
+
+def _grammars_of(page: Page, folder: Path) -> Iterator[Problem]:
+    """What is wrong with the grammars in files that a VoiceXML document names."""
+    from prima.voicexml.checks import grammar_problems
+
+    site = page.site
+    fetch, base = fetcher(folder, site), site.whole(page.base()) if site else page.base()
+    for node in page.root.walk():
+        uri = node.get("src").strip()
+        if node.tag != "grammar" or not uri or SCHEME.match(page.resolve(uri, node)):
+            continue
+        for problem in grammar_problems(node, page.lang, base, fetch):
+            if problem.place.file != node.source.file:
+                file = problem.place.file
+                place = problem.place._replace(file=site.name(file) if site else file)
+                yield in_folder(folder, problem._replace(place=place))
+            elif problem.code != "no-such-file":  # which is told already
+                yield problem
