@@ -37,6 +37,7 @@ from prima.interpreter.elements import Document
 from prima.interpreter.events import near
 from prima.interpreter.reader import read_document
 from prima.interpreter.vocabulary import DIALOGUE
+from prima.loading.collecting import seldom_collected
 from prima.loading.diagnoses import (
     BAD_POLICY,
     BAD_SITE,
@@ -222,7 +223,7 @@ class Validation:
         Raises:
             UsageError: the file cannot be read.
         """
-        with few_guesses():
+        with few_guesses(), seldom_collected():
             found = self._ignores.left(_validate_one(str(path), self._maps))
         self._ignores.check(str(path))
         return in_order(found)
@@ -669,6 +670,7 @@ def _refuse_same_id(given: list[tuple[str, str]]) -> None:
 
 
 @few_guesses()
+@seldom_collected()
 def _load(path: Path, data: bytes, whole: bool = False, robot: str = "") -> Loaded:
     """Load a scenario; ``whole`` looks into all documents of its VoiceXML applications as well."""
     from prima.devices.profile import read_robot

@@ -68,7 +68,7 @@ INSIDE = {
         {"__init__"},
     ],
     "language": [{"values"}, {"commands", "distributions"}, {"arguments"}, {"__init__"}],
-    "loading": [{"diagnoses", "files", "web", "writing"}, {"__init__"}, {"heads"}],
+    "loading": [{"collecting", "diagnoses", "files", "web", "writing"}, {"__init__"}, {"heads"}],
     "experiments": [
         {"levels", "plan", "study", "variants"},
         {"design", "examine", "ledger", "pools", "rows", "table"},
