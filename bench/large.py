@@ -130,6 +130,18 @@ FAMILIES: dict[str, Family] = {
         lambda i, n: f'<form id="f{i}"><block name="b"/></form>'
         f'<on event="touch.s{i}"><clear/><goto nextitem="b"/></on>\n'
     ),
+    "reactions to own events": _ours(
+        lambda i, n: '<on event="end.speak" reactive="true"><speak>A</speak></on>\n', after=FORM
+    ),
+    "reactions to own events beside forms": _ours(
+        lambda i, n: f'<on event="end.speak" reactive="true"><speak>A</speak></on><form id="f{i}"><block/></form>\n'
+    ),
+    "reactions that lead on": _ours(
+        lambda i, n: f'<on event="e{i}" reactive="true"><throw event="e{(i + 1) % n}"/></on>\n', after=FORM
+    ),
+    "Commands in a unit": _inside("form block iu", lambda i, n: "<speak>A</speak>\n"),
+    "names of a filled": _inside("form", lambda i, n: ('<filled namelist="' if i == 0 else "") + f"a{i} " + ('"/>' if i == n - 1 else "")),
+    "names of a clear": _inside("form block", lambda i, n: ('<clear namelist="' if i == 0 else "") + f"a{i} " + ('"/>' if i == n - 1 else "")),
     "items with subdialogs": _inside("form", lambda i, n: f'<subdialog name="s{i}" src="#last"/><filled namelist="s{i}"><log>A</log></filled>\n',
         '<on event="touch"><goto next="#f"/></on>' + FORM.replace("exit", "return")
     ),

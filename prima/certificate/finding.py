@@ -2,14 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import cached_property
+from itertools import islice
 
 from prima.certificate.model import Delay, Starving
 from prima.checks.prices import Gap, Outline, Price, Reaction, worst
-from prima.checks.prices.bounds import Busy, busy_after_each, busy_at_all, closure, loops
-from prima.checks.prices.model import Loop, State, devices_of
-from prima.interpreter.selection import takes
+from prima.checks.prices.bounds import (
+    MOST_COMPARED,
+    Busy,
+    busy_after_each,
+    busy_at_all,
+    closure,
+    loops,
+    size,
+)
+from prima.checks.prices.model import Loop, devices_of
+from prima.interpreter.selection import prefixes, takes
+
+ANY_EVENT = "any event"
+"""Stands for each event of an application that has too many to look at every one."""
+MOST_ENDLESS = 100
+"""Loops that are told of one reaction to events of its own."""
 
 
 def related(one: Reaction, other: Reaction) -> bool:
@@ -20,25 +35,83 @@ def related(one: Reaction, other: Reaction) -> bool:
     return any(takes(name, its) or takes(its, name) for name, its in pairs)
 
 
+class _Other:
+    """An application for which another waits, and what all waits for it have in common."""
+
+    def __init__(self, outline: Outline) -> None:
+        self.outline = outline
+        self.parts, self.gaps = outline.parts, outline.gaps
+        self.foreign = [one for one in outline.reactions if one.often is None]
+        """The reactions to events that it does not make for itself."""
+
+    @cached_property
+    def size(self) -> int:
+        """How much there is to look at for each event."""
+        return size(self.outline) + sum(len(one.events) for one in self.outline.reactions)
+
+    @cached_property
+    def at_all(self) -> Busy:
+        """How long it is busy at most, whatever begins it."""
+        return busy_at_all(self.outline)
+
+    @cached_property
+    def after(self) -> list[Busy]:
+        """How long it is busy because of each event that it does not make for itself."""
+        return busy_after_each(self.outline, self.foreign)
+
+    @cached_property
+    def later(self) -> list[Gap]:
+        """Why anything of it may take longer."""
+        does = [one.does for one in self.outline.reactions]
+        states = [*self.outline.states.values(), *does, *self.outline.wakes]
+        return list(dict.fromkeys(gap for state in states for gap in state.unknown))
+
+    @cached_property
+    def rounds(self) -> list[list[Gap]]:
+        """For each reaction what goes on without an end and makes its event again and again."""
+        raising: dict[str, dict[int, Loop]] = {}
+        for number, loop in enumerate(loops(self.outline)):
+            raised = {name for one in loop.states for name in self.outline.states[one].raises}
+            for event in {under for name in raised for under in prefixes(name)}:
+                raising.setdefault(event, {})[number] = loop
+        return [
+            [Gap(loop.place, loop.what) for loop in _some(raising, one)]
+            for one in self.outline.reactions
+        ]
+
+
+def _some(raising: dict[str, dict[int, Loop]], reaction: Reaction) -> Iterable[Loop]:
+    """The first loops that make the event of a reaction which the application makes for itself."""
+    if reaction.often is None:
+        return ()
+    found: dict[int, Loop] = {}
+    for event in reaction.events:
+        found |= dict(islice(raising.get(event, {}).items(), MOST_ENDLESS))
+    return [found[number] for number in sorted(found)[:MOST_ENDLESS]]
+
+
 def delays(own: Outline, theirs: Outline) -> list[Delay]:
-    """The waits of each reaction of ``own`` for ``theirs``."""
-    mine: dict[str, list[Reaction]] = {}
-    for reaction in own.reactions:
-        for event in reaction.events:
-            if reaction.firsts:
-                one = replace(reaction, events=(event,))
-                mine.setdefault(event, []).append(one)
-    found = [_delay(event, reactions, theirs) for event, reactions in sorted(mine.items())]
+    """The waits of each reaction of ``own`` for ``theirs``; of very many, one that holds for all."""
+    other, told = _Other(theirs), [one for one in own.reactions if one.firsts]
+    held = [len(one.events) * (1 + len(one.firsts) + len(one.responds)) for one in told]
+    if sum(held) * other.size > MOST_COMPARED:
+        mine = {ANY_EVENT: told}
+    else:
+        mine = {}
+        for reaction in told:
+            for event in reaction.events:
+                mine.setdefault(event, []).append(replace(reaction, events=(event,)))
+    found = [_delay(event, reactions, other) for event, reactions in sorted(mine.items())]
     return [one for one in found if one is not None]
 
 
-def _delay(event: str, mine: list[Reaction], theirs: Outline) -> Delay | None:
+def _delay(event: str, mine: list[Reaction], theirs: _Other) -> Delay | None:
     """How long the first Commands about an event may wait, and its response; None for not at all."""
     first = _first_delay(event, mine, theirs)
     firsts = [price for one in mine for price in one.firsts]
     until = [price for one in mine for price in one.responds]
     found = first or Delay(event, (), 0, "", None)
-    if {id(one.node) for one in until} <= {id(one.node) for one in firsts}:
+    if all(_same(one) for one in mine):
         found.response = replace(found) if until else None
         return first
     found.response = _response(found, firsts, until, theirs)
@@ -46,26 +119,35 @@ def _delay(event: str, mine: list[Reaction], theirs: Outline) -> Delay | None:
     return found if first or found.response != replace(found, response=None) else None
 
 
-def _first_delay(event: str, mine: list[Reaction], theirs: Outline) -> Delay | None:
+def _same(reaction: Reaction) -> bool:
+    """Whether a reaction's first word or movement towards the user is its first Command."""
+    firsts = {id(one.node) for one in reaction.firsts}
+    return all(id(one.node) in firsts for one in reaction.responds)
+
+
+def _first_delay(event: str, mine: list[Reaction], theirs: _Other) -> Delay | None:
     firsts = [price for one in mine for price in one.firsts]
     needed = devices_of(firsts)
-    foreign = _foreign(theirs)
-    same = [one for one in foreign if any(related(each, one) for each in mine)]
-    whole = _whole(firsts, theirs, same)
+    same = [
+        (one, busy)
+        for one, busy in zip(theirs.foreign, theirs.after, strict=True)
+        if event == ANY_EVENT or any(related(each, one) for each in mine)
+    ]
+    whole = _whole(firsts, theirs, [busy for _, busy in same])
     if not theirs.gaps and whole is None and worst(theirs.parts, needed) is None:
         return None
     delay = Delay(event, (), 0, "", None, unknown=list(theirs.gaps))
     _add_longest(delay, theirs, needed)
-    delay.each = max((_first(one, needed) for one in foreign), default=0)
+    delay.each = max((_first(one, needed) for one in theirs.foreign), default=0)
     _add_own(delay, theirs, needed)
     delay.everything = whole is not None and _drives(firsts, theirs)
     if whole is not None:
-        delay.after = [one.node.place for one in same]
+        delay.after = [one.node.place for one, _ in same]
         _wait_for_all(delay, whole, theirs)
     return _once(delay)
 
 
-def _response(first: Delay, firsts: list[Price], until: list[Price], theirs: Outline) -> Delay:
+def _response(first: Delay, firsts: list[Price], until: list[Price], theirs: _Other) -> Delay:
     """How long the first word or movement towards the user may wait, behind other Commands.
 
     The reaction has the floor by then (F1): what the other has begun before goes to its end, and
@@ -78,14 +160,14 @@ def _response(first: Delay, firsts: list[Price], until: list[Price], theirs: Out
     delay.lasts = max(delay.lasts, first.lasts + _begun_meanwhile(first, firsts, needed, theirs))
     if _drives(until, theirs):
         delay.everything = True
-        _wait_for_all(delay, busy_at_all(theirs), theirs)
+        _wait_for_all(delay, theirs.at_all, theirs)
     _add_own(delay, theirs, None)
     _add_further(delay, theirs)
     return _once(delay)
 
 
 def _begun_meanwhile(
-    first: Delay, firsts: list[Price], needed: frozenset[str], theirs: Outline
+    first: Delay, firsts: list[Price], needed: frozenset[str], theirs: _Other
 ) -> int:
     """The longest part of the other that may begin while a reaction waits for its first Command.
 
@@ -107,12 +189,7 @@ def _once(delay: Delay) -> Delay:
     return delay
 
 
-def _foreign(theirs: Outline) -> list[Reaction]:
-    """The reactions of the other to events that it does not make for itself."""
-    return [one for one in theirs.reactions if one.often is None]
-
-
-def _add_longest(delay: Delay, theirs: Outline, needed: frozenset[str]) -> None:
+def _add_longest(delay: Delay, theirs: _Other, needed: frozenset[str]) -> None:
     """The longest part of the other on devices, which goes to its end (U1)."""
     fitting = [part for part in theirs.parts if part.devices & needed]
     longest = worst(fitting, needed)
@@ -125,55 +202,40 @@ def _add_longest(delay: Delay, theirs: Outline, needed: frozenset[str]) -> None:
     delay.unknown += [Gap(part.place, part.unknown) for part in fitting if part.unknown]
 
 
-def _add_own(delay: Delay, theirs: Outline, needed: frozenset[str] | None) -> None:
+def _add_own(delay: Delay, theirs: _Other, needed: frozenset[str] | None) -> None:
     """Reactions of the other to events that it makes for itself: each goes first (S2b).
 
     Those count that begin on some devices; without these, all, as each may take the floor.
     """
-    for one in theirs.reactions:
+    for one, again in zip(theirs.outline.reactions, theirs.rounds, strict=True):
         if needed is not None and not devices_of(one.firsts) & needed:
             continue
-        delay.endless += [one.made] if one.made else []
-        if one.often is None:
-            continue
-        again = [Gap(loop.place, loop.what) for loop in loops(theirs) if _raises(loop, one, theirs)]
-        delay.endless += again if not one.made else []
-        delay.unknown += [one.often] if not again and not one.made else []
+        delay.endless += [one.made] if one.made else again
+        if one.often is not None and not again and not one.made:
+            delay.unknown.append(one.often)
 
 
-def _raises(loop: Loop, reaction: Reaction, theirs: Outline) -> bool:
-    """Whether what goes on without an end makes the event of a reaction again and again."""
-    raised = {name for state in loop.states for name in theirs.states[state].raises}
-    return any(takes(event, name) for event in reaction.events for name in raised)
-
-
-def _whole(firsts: list[Price], theirs: Outline, same: list[Reaction]) -> Busy | None:
+def _whole(firsts: list[Price], theirs: _Other, same: list[Busy]) -> Busy | None:
     """What of the other is waited for as a whole (F2, K1, K2); None where nothing is."""
     if _drives(firsts, theirs):
-        return busy_at_all(theirs)
-    told = [one for one in busy_after_each(theirs, same) if one.lasts]
+        return theirs.at_all
+    told = [one for one in same if one.lasts]
     if not told:
         return None
-    later = [gap for state in _doings(theirs) for gap in state.unknown]
     different = {id(one): one for one in told}.values()
     return Busy(
         sum(one.lasts for one in told),
         [gap for one in different for gap in one.endless],
-        [*(gap for one in different for gap in one.unknown), *later],
+        [*(gap for one in different for gap in one.unknown), *theirs.later],
     )
 
 
-def _drives(mine: list[Price], theirs: Outline) -> bool:
+def _drives(mine: list[Price], theirs: _Other) -> bool:
     """Whether a Command leaves the user, and the other may prevent it (K1, K2)."""
     return any(one.leaves for one in mine) and any(not one.leaves for one in theirs.parts)
 
 
-def _doings(theirs: Outline) -> Iterable[State]:
-    does = [one.does for one in theirs.reactions]
-    return [*theirs.states.values(), *does, *theirs.wakes]
-
-
-def _wait_for_all(delay: Delay, whole: Busy, theirs: Outline) -> None:
+def _wait_for_all(delay: Delay, whole: Busy, theirs: _Other) -> None:
     """Add all activity without a wait, and that of further events."""
     delay.lasts += whole.lasts
     delay.unknown += whole.unknown
@@ -182,12 +244,11 @@ def _wait_for_all(delay: Delay, whole: Busy, theirs: Outline) -> None:
     _add_further(delay, theirs)
 
 
-def _add_further(delay: Delay, theirs: Outline) -> None:
+def _add_further(delay: Delay, theirs: _Other) -> None:
     """All that the other does about each further event, and each that it has not done with."""
     delay.whole = True
-    others = busy_after_each(theirs, _foreign(theirs))
-    delay.each = max((one.lasts for one in others), default=0)
-    if any(one.endless or one.unknown for one in others):
+    delay.each = max((one.lasts for one in theirs.after), default=0)
+    if any(one.endless or one.unknown for one in theirs.after):
         delay.each = None
 
 
@@ -202,15 +263,18 @@ def _first(reaction: Reaction, needed: frozenset[str]) -> int:
 def starving(own: Outline, theirs: Outline) -> list[Starving]:
     """The parts of ``theirs`` that may starve Commands of ``own`` other than reactions."""
     drives = any(part.leaves for part in own.parts)
+    everything = tuple(sorted(own.devices))
+    held = {
+        leaves: devices_of([one for one in own.parts if one.leaves or not leaves])
+        for leaves in (False, True)
+    }
+    """The devices of Commands that are equal to one that leaves the user or does not (K2)."""
     floors = _floors(theirs) if not drives else set(theirs.states)
     floor = {part for name in _floors(theirs) for part in theirs.states[name].parts}
     floor |= {part for one in theirs.reactions for part in one.does.parts}
-    found = [_by_loops(part, own, part in floor, drives) for part in theirs.parts]
-    found += [_by_cycle(loop, own, floors, drives) for loop in loops(theirs)]
-    found += [
-        Starving(gap.place, gap.reason, "", tuple(sorted(own.devices)), drives, True)
-        for gap in theirs.gaps
-    ]
+    found = [_by_loops(part, held, part in floor, drives) for part in theirs.parts]
+    found += [_by_cycle(loop, held, floors, drives) for loop in loops(theirs)]
+    found += [Starving(gap.place, gap.reason, "", everything, drives, True) for gap in theirs.gaps]
     return [one for one in found if one is not None]
 
 
@@ -224,12 +288,14 @@ def _floors(theirs: Outline) -> set[str]:
     return {state.name for state in closure(theirs, starts)}
 
 
-def _by_loops(part: Price, own: Outline, floored: bool, drives: bool) -> Starving | None:
+Held = Mapping[bool, frozenset[str]]
+
+
+def _by_loops(part: Price, equal: Held, floored: bool, drives: bool) -> Starving | None:
     """A Command that works in loops: the next one goes before others' equal Commands (E4)."""
     if not part.loops:
         return None
-    equal = [one for one in own.parts if one.leaves or not part.leaves]
-    held = part.devices & devices_of(equal)
+    held = part.devices & equal[part.leaves]
     engages = part.engages and drives
     floor = not part.leaves and (drives or floored)
     if not held and not engages and not floor:
@@ -238,10 +304,9 @@ def _by_loops(part: Price, own: Outline, floored: bool, drives: bool) -> Starvin
     return Starving(part.place, what, "E4", tuple(sorted(held)), engages, floor)
 
 
-def _by_cycle(loop: Loop, own: Outline, floors: set[str], drives: bool) -> Starving | None:
+def _by_cycle(loop: Loop, equal: Held, floors: set[str], drives: bool) -> Starving | None:
     """What follows itself without a wait: the active stream goes on before others (S2c)."""
-    equal = [one for one in own.parts if one.leaves or not loop.leaves]
-    held = loop.devices & devices_of(equal)
+    held = loop.devices & equal[loop.leaves]
     engages = loop.engages and drives
     floor = bool(loop.states & floors)
     if not held and not engages and not floor:

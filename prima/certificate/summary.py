@@ -17,7 +17,7 @@ MOST_REASONS = 5
 
 def format_certificate(one: Certificate) -> str:
     """A certificate as text."""
-    lines = [f"What {one.ea} can do to {one.fa}, on {one.robot}"]
+    lines = [f"What {one.ea} can do to {one.fa}, on {one.robot}, under the policy prima"]
     lines += ["", "Devices", f"  both use      {_list(one.both)}"]
     lines += [f"  {one.fa} alone  {_list(one.only_fa)}", f"  {one.ea} alone  {_list(one.only_ea)}"]
     lines += _reasons(one.gaps, "not known")
@@ -81,7 +81,9 @@ def _causes(delay: Delay, one: Certificate) -> Iterable[str]:
     if delay.place is not None:
         yield f"for the {delay.what} at {delay.place}"
     if delay.after:
-        places = " and ".join(map(str, delay.after))
+        places = " and ".join(map(str, delay.after[:MOST_REASONS]))
+        if len(delay.after) > MOST_REASONS:
+            places += f" and {len(delay.after) - MOST_REASONS} more such places"
         yield f"for what {one.ea} does about the same event at {places} (F2)"
     if delay.everything:
         yield f"for all that {one.ea} does (K1, K2)"
@@ -145,6 +147,7 @@ def certificate_data(one: Certificate) -> dict[str, Any]:
         "fa": one.fa,
         "ea": one.ea,
         "robot": one.robot,
+        "policy": "prima",
         "devices": {
             "both": one.both,
             "fa": one.only_fa,

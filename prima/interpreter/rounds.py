@@ -18,8 +18,8 @@ from prima.interpreter.acts import (
     Throw,
     all_acts,
 )
-from prima.interpreter.elements import Document, Form, all_items
-from prima.interpreter.selection import takes
+from prima.interpreter.elements import Document, all_items
+from prima.interpreter.selection import prefixes
 
 AGAIN = ENDLESS.says(
     "This reaction to {event} leads to itself again without a wait: no other application has a turn.",
@@ -29,26 +29,64 @@ AGAIN = ENDLESS.says(
 PAUSE = "pause"
 
 
+MOST_FOLLOWED = 100_000
+"""Handlers and events that are followed for one document."""
+
 Raised = Callable[[Sequence[Act]], set[str]]
 """Finds the events that content raises."""
 
 
-def leads_round(handler: Handler, handlers: Sequence[Handler], raised: Raised) -> bool:
-    """Whether what a handler does ends in events that lead, by others perhaps, to itself again."""
-    return handler in _led_to(handler, handlers, raised)
+class Leads:
+    """Which handlers others lead to by the events that they raise; only so many are followed.
 
+    Args:
+        raised: finds the events that content raises.
+    """
 
-def _led_to(handler: Handler, handlers: Sequence[Handler], raised: Raised) -> list[Handler]:
-    """The handlers of the events that a handler raises, by others perhaps."""
-    found: list[Handler] = []
-    left = [handler]
-    while left:
-        names = raised(left.pop().content)
-        for one in handlers:
-            if one not in found and any(takes(own, name) for own in one.events for name in names):
-                found.append(one)
-                left.append(one)
-    return found
+    def __init__(self, raised: Raised) -> None:
+        self._raised = raised
+        self._by_event: dict[str, list[Handler]] = {}
+        self._events: dict[int, list[str]] = {}
+        """The names under which the events of handlers count that have been followed."""
+        self.left = MOST_FOLLOWED
+        """How many more handlers and events are followed; below 0 nothing is certain."""
+
+    def among(self, handlers: Sequence[Handler]) -> None:
+        """Look only at some handlers from now on."""
+        self.left -= len(handlers)
+        self._by_event = {}
+        for one in handlers if self.left > 0 else ():
+            for event in dict.fromkeys(one.events):
+                self._by_event.setdefault(event, []).append(one)
+
+    def of(self, handler: Handler) -> Iterator[Handler]:
+        """The handlers of the events that a handler raises, by others perhaps, once each."""
+        events: set[str] = set()
+        found: set[int] = set()
+        left = [handler]
+        while left:
+            taken = [one for one in self._raised_by(left.pop()) if one not in events]
+            events.update(taken)
+            for one in (one for event in taken for one in self._by_event.get(event, ())):
+                self.left -= 1
+                if self.left < 0:
+                    return
+                if one.node.index not in found:
+                    found.add(one.node.index)
+                    left.append(one)
+                    yield one
+
+    def _raised_by(self, handler: Handler) -> list[str]:
+        if handler.node.index not in self._events:
+            raised = self._raised(handler.content)
+            under = {one for name in raised for one in prefixes(name)}
+            self._events[handler.node.index] = sorted(under)
+        self.left -= len(self._events[handler.node.index])
+        return self._events[handler.node.index]
+
+    def round(self, handler: Handler) -> bool:
+        """Whether what a handler does leads to itself again, as far as that is followed."""
+        return any(one is handler for one in self.of(handler)) or self.left < 0
 
 
 def raised_in(content: Sequence[Act]) -> set[str]:
@@ -74,26 +112,39 @@ def endless_reactions(document: Document) -> Iterator[Problem]:
     Only what is certain: without a condition, and with nothing in between for which a reaction of
     another application would go first, as a question, a pause or a second Command.
     """
-    told: list[Handler] = []
+    told: set[int] = set()
+    leads, everywhere = Leads(raised_first), _certain(document.handlers)
+    alone = False
     for form in document.forms.values():
-        scope = _reacting(document, form)
-        for handler in scope:
-            led_to = _led_to(handler, scope, raised_first)
-            if handler in led_to and not any(one in told for one in led_to):
-                told.append(handler)
-                yield _problem(handler)
+        before = _certain(form.handlers)
+        behind = [one for item in all_items(form.items) for one in _certain(item.handlers)]
+        if before or behind or not alone:  # the document's own alone need only be looked at once
+            leads.among([*before, *everywhere, *behind])
+            yield from _endless([*before, *everywhere, *behind], leads, told)
+        alone = alone or not (before or behind)
 
 
-def _problem(handler: Handler) -> Problem:
-    return AGAIN.at(handler.node.attribute_place("reactive"), event=handler.events[0])
+def _endless(scope: Sequence[Handler], leads: Leads, told: set[int]) -> Iterator[Problem]:
+    """Those of a scope that lead to themselves, and to none that is told already."""
+    behind: set[int] = set()
+    """Those that lead to one that is told."""
+    for handler in scope:
+        again = False
+        for one in leads.of(handler):
+            again = again or one is handler
+            if one.node.index in told or one.node.index in behind:
+                behind.add(handler.node.index)
+                break
+        if leads.left < 0:
+            return
+        if again and handler.node.index not in behind:
+            told.add(handler.node.index)
+            yield AGAIN.at(handler.node.attribute_place("reactive"), event=handler.events[0])
 
 
-def _reacting(document: Document, form: Form) -> list[Handler]:
-    """The handlers in a form's scope whose Commands are reactions because they say so."""
-    scope = [*form.handlers, *document.handlers]
-    for item in all_items(form.items):
-        scope += item.handlers
-    return [one for one in scope if one.reactive and one.cond is None and one.count <= 1]
+def _certain(handlers: Sequence[Handler]) -> list[Handler]:
+    """Handlers whose Commands are reactions because they say so, whatever has happened."""
+    return [one for one in handlers if one.reactive and one.cond is None and one.count <= 1]
 
 
 def raised_first(content: Sequence[Act]) -> set[str]:

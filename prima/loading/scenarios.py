@@ -14,6 +14,7 @@ from prima.errors import (
     in_order,
 )
 from prima.loading.applications import digest
+from prima.loading.collecting import seldom_collected
 from prima.loading.files import path_of, read_file
 from prima.loading.reading import Reading
 
@@ -97,6 +98,7 @@ def without_ignored(loaded: Loaded) -> Loaded:
 
 
 @few_guesses()
+@seldom_collected()
 def load_whole(path: Path, data: bytes, whole: bool = False, robot: str = "") -> Loaded:
     """Load a scenario; ``whole`` looks into all documents of its VoiceXML applications as well."""
     from prima.sim.devices import Cast

@@ -16,6 +16,7 @@ from prima.errors import (
 from prima.interpreter.elements import Document
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.loading.applications import fetcher, in_folder, read_native, services_of
+from prima.loading.collecting import seldom_collected
 from prima.loading.files import path_of, read_file
 from prima.loading.folders import documents_folder
 from prima.loading.kinds import GRAMMAR_FILES, is_grammar, is_surely_ours, is_voicexml
@@ -78,7 +79,7 @@ class Validation:
         Raises:
             UsageError: the file cannot be read.
         """
-        with few_guesses():
+        with few_guesses(), seldom_collected():
             found = self._ignores.left(_validate_one(str(path), self._maps))
         self._ignores.check(str(path))
         return in_order(found)

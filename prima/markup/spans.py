@@ -6,8 +6,11 @@ import re
 from bisect import bisect_right
 
 from prima.errors import Edit, Fix, Hint, Span, replaced
-from prima.markup.tree import MARKUP, NAME, Node
+from prima.markup.tree import MARKUP, NAME, WORD, Node
 from prima.markup.vocabulary import Attribute
+
+LONG = 1_000
+"""Characters of a value beyond which only whole words are found in it."""
 
 
 def value_span(node: Node, attribute: str, word: str = "") -> tuple[Span, ...]:
@@ -16,13 +19,21 @@ def value_span(node: Node, attribute: str, word: str = "") -> tuple[Span, ...]:
     first = source.offset(node.index, attribute, value=True)
     if first <= source.tag(node.index):
         return ()
-    last = source.text.find(source.text[first - 1], first)
-    found = _word(word).search(source.text, first, last) if word else None
-    return (source.span(*(found.span() if found else (first, last))),)
+    last, words = source.words(first)
+    at = words.get(word, -1)
+    if word and at < 0 and last - first <= LONG:
+        at = _found(source.text, word, first, last)
+    return (source.span(*((at, at + len(word)) if at >= 0 else (first, last))),)
 
 
-def _word(word: str) -> re.Pattern[str]:
-    return re.compile(rf"(?<![\w.\-]){re.escape(word)}(?![\w\-])")
+def _found(text: str, word: str, first: int, last: int) -> int:
+    """Where a word stands that may be the beginning of a longer name, such as ``a`` of ``a.b``; or -1."""
+    at = text.find(word, first, last)
+    while at >= 0 and (
+        WORD.match(text[at - 1]) or re.match(r"[\w\-]", text[at + len(word) : at + len(word) + 1])
+    ):
+        at = text.find(word, at + 1, last)
+    return at
 
 
 def attribute_span(node: Node, attribute: str) -> Span:

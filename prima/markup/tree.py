@@ -26,6 +26,8 @@ AS_IT_IS = re.compile(r"[^<&]+\Z")
 """Text without references and markup."""
 NEAR = 100
 """Characters of a text up to which one of them is looked for anew each time."""
+WORD = re.compile(r"[\w.\-]+")
+"""A word of a value, such as a name."""
 
 
 @dataclass(slots=True)
@@ -40,6 +42,8 @@ class Source:
     """Where every line begins."""
     _attributes: tuple[int, dict[str, tuple[int, int]]] = (-1, {})
     """The element whose attributes were looked for last: where each begins, and its value."""
+    _words: tuple[int, int, dict[str, int]] = (-1, -1, {})
+    """The value in which words were looked for last: where it begins and ends, and where each does."""
     _closes: dict[int, int] | None = None
     _written: _Written | None = None
     """The text or value in which a character was looked for last: problems often come in groups."""
@@ -87,6 +91,16 @@ class Source:
             self._attributes = index, dict(self._attributes_of(start))
         name, text = self._attributes[1].get(attribute, (start, start))
         return text if value else name
+
+    def words(self, first: int) -> tuple[int, dict[str, int]]:
+        """Where a value ends that begins at ``first``, and where each word in it begins."""
+        if self._words[0] != first:
+            last = self.text.find(self.text[first - 1], first)
+            found: dict[str, int] = {}
+            for match in WORD.finditer(self.text, first, last):
+                found.setdefault(match[0], match.start())
+            self._words = first, last, found
+        return self._words[1:]
 
     def _attributes_of(self, start: int) -> Iterator[tuple[str, tuple[int, int]]]:
         """The attributes of a start tag: where each begins, and where its value does."""

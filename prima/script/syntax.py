@@ -24,12 +24,15 @@ FAILURES = (
 """What the engine raises, and the binding itself for values that it cannot give to Python."""
 
 
+CALLED = re.compile(r"<input>:(\d+):(\d+)")
+
+
 def script_error(error: Exception) -> ScriptError:
     """What the engine raised, in our words, with the places of the functions being called."""
     text = str(error)
     message = reason(text or type(error).__name__, TIME_LIMIT)
     # The outermost place is in this code; inner ones may be in a function declared elsewhere.
-    found = re.findall(r"<input>:(\d+):(\d+)", text)
+    found = CALLED.findall(text)
     return ScriptError(message, [(max(int(line) - 1, 1), int(column)) for line, column in found])
 
 

@@ -18,6 +18,7 @@ from prima.checks.ignores import Ignores
 from prima.errors import Place, Problem, did_you_mean, few_guesses, in_order
 from prima.errors.guesses import MANY_WORDS
 from prima.interpreter.reader import read_document
+from prima.loading.collecting import OBJECTS, seldom_collected
 from prima.lsp import naming
 from prima.lsp.complete import complete
 from prima.lsp.fixes import fixes
@@ -102,6 +103,33 @@ def test_an_editors_questions_grow_with_the_size_of_a_document(name: str, tmp_pa
 def test_a_certificate_grows_with_the_size_of_a_document(name: str, tmp_path: Path) -> None:
     fa = str(ROOT / "documents" / "fa" / "follow.xml")
     assert grown(FAMILIES[name], tmp_path, lambda path: certificates([fa], [str(path)])) < MOST
+
+
+def test_a_certificate_of_two_large_documents_grows_with_their_size(tmp_path: Path) -> None:
+    def both(path: Path) -> object:
+        ea = path.with_name("ea.xml")
+        ea.write_text(path.read_text(encoding="utf-8").replace('"large"', '"other"'))
+        path.write_text(path.read_text(encoding="utf-8").replace('kind="ea"', 'kind="fa"'))
+        return certificates([str(path)], [str(ea)])
+
+    family = FAMILIES["forms in a ring beside handlers that go on"]
+    assert grown(family, tmp_path, both) < MOST
+
+
+def test_the_collector_looks_less_often_while_a_document_is_read(tmp_path: Path) -> None:
+    before, seen = gc.get_threshold(), []
+    path = tmp_path / "a.xml"
+    path.write_text(FAMILIES["declared names"].text(1_000), encoding="utf-8")
+    with seldom_collected():
+        loading.validate([path])
+        seen.append(gc.get_threshold()[0])
+    assert seen == [OBJECTS] and gc.get_threshold() == before
+    gc.disable()
+    try:
+        loading.validate([path])
+        assert not gc.isenabled() and gc.get_threshold() == before
+    finally:
+        gc.enable()
 
 
 def test_an_expression_is_compiled_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

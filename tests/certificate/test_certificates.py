@@ -88,7 +88,10 @@ def test_the_command_line_prints_a_certificate(tmp_path: Path) -> None:
         )  # fmt: skip
 
     done = call("--with", fa, ea)
-    assert done.returncode == 0 and "What theirs can do to mine, on papero" in done.stdout
+    assert (
+        done.returncode == 0
+        and "What theirs can do to mine, on papero, under the policy prima" in done.stdout
+    )
     assert json.loads(call("--with", fa, ea, "--format", "json").stdout)[0]["ea"] == "theirs"
     assert call("--with", "none.xml", ea).returncode == 2
     assert call("--robot", str(ROBOT), ea).returncode == 2

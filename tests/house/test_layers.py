@@ -69,7 +69,7 @@ INSIDE = {
     ],
     "language": [{"values"}, {"commands", "distributions"}, {"arguments"}, {"__init__"}],
     "loading": [
-        {"diagnoses", "files", "web", "writing"},
+        {"collecting", "diagnoses", "files", "web", "writing"},
         {"folders"},
         {"kinds"},
         {"applications"},

@@ -38,6 +38,10 @@ UNIT_WAITS = UNIT_PRICE.says(
 
 def prices(document: Document | VoiceDocument, profile: Profile) -> list[Price]:
     """All indivisible parts of an application, in document order."""
+    if isinstance(document, Document):
+        from prima.checks.prices import dialogue
+
+        return dialogue.parts(document, profile)
     return outline(document, profile).parts
 
 

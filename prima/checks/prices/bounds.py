@@ -11,8 +11,8 @@ from prima.markup.tree import Node
 
 MANY_STATES = 8
 """Maximum number of states named in a loop."""
-MOST_COMPARED = 1_000_000
-"""Limit of reactions times states above which reactions are not followed separately."""
+MOST_COMPARED = 200_000
+"""Limit of reactions times what they may lead to, above which they are not followed separately."""
 
 
 @dataclass(slots=True)
@@ -31,7 +31,9 @@ def closure(outline: Outline, starts: Iterable[str]) -> list[State]:
 
     A subdialog returns to all its possible callers.
     """
-    before, callers = _backwards(outline)
+    if outline.backwards is None:
+        outline.backwards = _backwards(outline)
+    before, callers = outline.backwards
     found: set[str] = set()
     leading: set[str] = set()
     """States that lead to one that has been found; they may return to their callers."""
@@ -80,9 +82,15 @@ def busy_after_each(outline: Outline, reactions: Sequence[Reaction]) -> list[Bus
 
     Of very many, what it takes at most whatever begins it, for each.
     """
-    if len(reactions) * len(outline.states) > MOST_COMPARED:
+    if len(reactions) * size(outline) > MOST_COMPARED:
         return [busy_at_all(outline)] * len(reactions)
     return [busy_after(outline, one) for one in reactions]
+
+
+def size(outline: Outline) -> int:
+    """How much there is to look at in an application."""
+    held = sum(len(state.parts) + len(state.unknown) for state in outline.states.values())
+    return len(outline.states) + len(outline.parts) + len(outline.gaps) + held
 
 
 def busy_at_all(outline: Outline) -> Busy:

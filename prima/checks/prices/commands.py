@@ -83,10 +83,13 @@ def unit_price(node: Node, devices: frozenset[str], lasts: int, inner: Sequence[
 def _together(prices: Sequence[Price], afters: Sequence[tuple[int, ...]]) -> int:
     """The duration of a unit's steps; those that share a device run in sequence."""
     ends: list[int] = []
-    for index, (price, after) in enumerate(zip(prices, afters, strict=True)):
+    free: dict[str, int] = {}
+    """When the steps before have ended that occupy a device."""
+    for price, after in zip(prices, afters, strict=True):
         before = [ends[one] for one in after]
-        before += [ends[one] for one in range(index) if prices[one].devices & price.devices]
+        before += [free.get(device, 0) for device in price.devices]
         ends.append(max(before, default=0) + price.lasts)
+        free |= {device: max(free.get(device, 0), ends[-1]) for device in price.devices}
     return max(ends, default=0)
 
 

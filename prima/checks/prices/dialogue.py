@@ -23,7 +23,7 @@ from prima.checks.prices.times import (
     is_inner,
 )
 from prima.devices.profile import Profile
-from prima.errors import Place
+from prima.errors import Place, UsageError
 from prima.interpreter.acts import (
     Act,
     Assign,
@@ -36,13 +36,22 @@ from prima.interpreter.acts import (
     all_acts,
 )
 from prima.interpreter.elements import Document, Field, Form, Item, Link, Subdialog, Unit, all_items
-from prima.interpreter.rounds import leads_round, raised_in
+from prima.interpreter.rounds import Leads, raised_in
 from prima.interpreter.selection import takes
+
+MOST_INNER, MOST_SCOPES = 40_000, 16_000_000
+"""Pairs of a form and a handler for all forms that are followed: of events of the application's own,
+and of any."""
 
 
 def outline(document: Document, profile: Profile) -> Outline:
     """The outline of an application in PRIMA's language."""
     return _Reader(document, profile).outline()
+
+
+def parts(document: Document, profile: Profile) -> list[Price]:
+    """All indivisible parts of an application in PRIMA's language, in document order."""
+    return _Reader(document, profile).parts
 
 
 class _Reader(Times):
@@ -62,6 +71,10 @@ class _Reader(Times):
         self.firsts = Firsts(document, self.of_items, self.step)
         self.responses = Firsts(document, self.of_items, self.step, response=True)
         self.own = OwnEvents(document, self.parts, self.steps)
+        self._leads = Leads(raised_in)
+        self._inner = {one.node.index for _, one in handlers_of(document) if self.takes_inner(one)}
+        """The handlers of events that the application makes for itself."""
+        self._everywhere = [one for one in document.handlers if one.node.index in self._inner]
 
     def _item(self, item: Item, form: Form) -> None:
         if isinstance(item, Field):
@@ -75,8 +88,13 @@ class _Reader(Times):
     # States -----------------------------------------------------------------------------
 
     def outline(self) -> Outline:
-        """All that is known of the application."""
+        """All that is known of the application.
+
+        Raises:
+            UsageError: it has too many forms and handlers.
+        """
         forms = self.document.forms.values()
+        self._check_size(len(forms), sum(1 for _ in handlers_of(self.document)))
         states = {form.id: self._state(form) for form in forms}
         reactions: list[Reaction] = []
         for form, handler in handlers_of(self.document):
@@ -87,6 +105,14 @@ class _Reader(Times):
         reactions += [self._link(link, form) for form in forms for link in form.links]
         holds = [hold for form in forms for hold in _holds(form)]
         return Outline(self.parts, states, reactions, self._wakes(), holds, [])
+
+    def _check_size(self, forms: int, handlers: int) -> None:
+        scopes = (forms + handlers) * len(self.document.handlers)
+        if forms * len(self._everywhere) > MOST_INNER or scopes > MOST_SCOPES:
+            raise UsageError(
+                f"{self.document.node.place.file}: there are {forms:,} forms and {handlers:,} handlers,"
+                " too many to follow what leads where. Split the document."
+            )
 
     def _link(self, link: Link, form: Form | None) -> Reaction:
         """What a link does, in a form or in all."""
@@ -133,16 +159,17 @@ class _Reader(Times):
         """What a form does, and what its answers and its own events lead to."""
         state = State(form.id, form.node)
         contents: list[Sequence[Act]] = [filled.content for filled in form.filled]
-        handlers = [*form.handlers, *self.document.handlers]
+        handlers = [*form.handlers, *self._everywhere]
         for item in all_items(form.items):
             handlers += item.handlers
             self._add_item(state, item, form)
             contents += [] if item.node.index in self.inside else own_contents(item)
-        inner = [one for one in handlers if self.takes_inner(one)]
+        inner = [one for one in handlers if one.node.index in self._inner]
+        self._leads.among(inner)
         state.repeats += [
             Gap(one.node.place, f"what is done about {one.events[0]} leads to it again")
             for one in inner
-            if leads_round(one, inner, raised_in)
+            if self._leads.round(one)
         ]
         contents += [one.content for one in inner]
         return self._content(state, contents, form)

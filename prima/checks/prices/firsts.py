@@ -22,7 +22,7 @@ from prima.interpreter.acts import (
 )
 from prima.interpreter.elements import Block, Document, Field, Form, Item, Subdialog, all_items
 from prima.interpreter.rounds import raised_in
-from prima.interpreter.selection import takes
+from prima.interpreter.selection import prefixes
 from prima.markup.tree import Node
 
 
@@ -182,13 +182,11 @@ class Firsts:
         if node.index in self._seen:
             return
         self._seen.add(node.index)
+        every = any(isinstance(event, Expression) for event in events)
+        names = {under for one in events if isinstance(one, str) for under in prefixes(one)}
         for handler in _all_handlers(self._document, form):
-            if any(_fits(handler, event) for event in events):
+            if every or not names.isdisjoint(handler.events):
                 self._go_through(handler.content, form)
-
-
-def _fits(handler: Handler, event: str | Expression) -> bool:
-    return isinstance(event, Expression) or any(takes(name, event) for name in handler.events)
 
 
 def _all_handlers(document: Document, form: Form | None) -> list[Handler]:

@@ -133,6 +133,8 @@ class Outline:
     gaps: list[Gap]
     loops: list[Loop] | None = None
     """What may go on without an end, once somebody has looked."""
+    backwards: tuple[dict[str, list[str]], dict[str, list[str]]] | None = None
+    """The predecessors and the callers of each state, once somebody has looked."""
 
     @property
     def devices(self) -> set[str]:

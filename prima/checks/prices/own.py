@@ -7,9 +7,9 @@ from itertools import takewhile
 
 from prima.checks.prices.model import Price
 from prima.interpreter.acts import Act, Assign, Handler, Run, Script, SendOut, all_acts
-from prima.interpreter.elements import Document, Form, Watch
-from prima.interpreter.rounds import leads_round, raised_in
-from prima.interpreter.selection import takes
+from prima.interpreter.elements import Document, Form
+from prima.interpreter.rounds import Leads, raised_in
+from prima.interpreter.selection import prefixes
 from prima.interpreter.sensors import sensors_of
 
 MOVED = ("human", "moving", "position")
@@ -33,14 +33,21 @@ class OwnEvents:
             *document.watches,
             *(one for form in document.forms.values() for one in form.watches),
         ]
+        sensors = [(one.name, sensors_of(one.when.code)) for one in self._watches]
+        self._named = {under for one in self._watches for under in prefixes(one.name)}
+        """All names under which events of watches count."""
+        self._anything = {name for name, of in sensors if of is None}
+        """The watches that may look at variables."""
+        self._moved = {name for name, of in sensors if of is None or not of.isdisjoint(MOVED)}
+        """The watches that may look at where the robot is."""
+        self._leads = Leads(self.raised)
 
     def leads_round(self, handler: Handler, form: Form | None) -> bool:
         """Whether what a handler does makes its event come again before others have had a turn."""
-        watched = any(takes(name, one.name) for name in handler.events for one in self._watches)
-        if not (handler.reactive or watched):
+        if not handler.reactive and self._named.isdisjoint(handler.events):
             return False
-        scope = [*(form.handlers if form else ()), *self._document.handlers, handler]
-        return leads_round(handler, scope, self.raised)
+        self._leads.among([*(form.handlers if form else ()), *self._document.handlers, handler])
+        return self._leads.round(handler)
 
     def raised(self, content: Sequence[Act]) -> set[str]:
         """The events that content may raise before others have had a turn.
@@ -51,12 +58,8 @@ class OwnEvents:
         for act in all_acts(tuple(takewhile(lambda one: not isinstance(one, Run), content))):
             if isinstance(act, SendOut) and isinstance(act.delay, int) and act.delay < self._takes:
                 found.add(act.event)
-        return found | {one.name for one in self._watches if self._turns(one, content)}
-
-    def _turns(self, watch: Watch, content: Sequence[Act]) -> bool:
-        """Whether content may make a watched condition true: by moving the robot, or a variable."""
-        sensors = sensors_of(watch.when.code)
-        moves = any("locomotion" in part.devices for part in self._steps(content))
-        if sensors is None:
-            return moves or any(isinstance(one, Assign | Script) for one in all_acts(content))
-        return moves and not sensors.isdisjoint(MOVED)
+        if any("locomotion" in part.devices for part in self._steps(content)):
+            return found | self._moved
+        if any(isinstance(one, Assign | Script) for one in all_acts(content)):
+            return found | self._anything
+        return found

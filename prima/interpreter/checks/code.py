@@ -182,7 +182,8 @@ def _compiled(expr: Expression, script: bool) -> Problem | None:
         if isinstance(error, EngineLost):  # perhaps from outside: a run may still go well
             return NOT_CHECKED.at(place, code=shown, error=error)
         found = NOT_ECMASCRIPT.at(place, code=shown, error=error)
-        return found._replace(remedy=_remedy(expr.code))
+        remedy = _remedy(expr.code)
+        return found._replace(remedy=remedy) if remedy else found
     return None
 
 

@@ -12,7 +12,7 @@ from prima.interpreter.checks.facts import document_commands
 from prima.interpreter.elements import Document, runs_of
 from prima.interpreter.elements import Unit as ItemUnit
 from prima.interpreter.events import handlers_of
-from prima.interpreter.selection import takes
+from prima.interpreter.selection import prefixes
 from prima.interpreter.units import Finder, Reached, unit_problem, units_of
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.spans import value_span
@@ -57,7 +57,7 @@ def _cannot(
     lacking = sorted(TABLE_4_2[name].devices - devices) if devices else []
     event = f"error.unsupported.{name}"
     takes_place = f" With the extension x6 {row.substitute} takes its place." if row else ""
-    handled = any(takes(one, event) for one in heard)
+    handled = not heard.isdisjoint(prefixes(event))
     return (CANNOT_HANDLED if handled else CANNOT).at(
         place,
         command=name,
