@@ -70,6 +70,17 @@ class Motion:
         return (0.0, 0.0)
 
 
+def _read_parts(reader: Reader, profile: Profile) -> None:
+    """The camera, voices and gestures."""
+    for node in reader.root.all("camera"):
+        profile.camera_angle = reader.get(node, "angle") or 60.0
+        profile.camera_range = reader.get(node, "range") or 4.0
+    for node in reader.root.all("voice"):
+        profile.voices[node.get("lang").lower()] = reader.get(node, "rate") or 14.0
+    for node in reader.root.all("gesture"):
+        profile.gestures[node.get("name")] = reader.get(node, "duration") or 1000
+
+
 def read_robot(file: str, data: bytes) -> Profile:
     """Read a robot profile; its ``commands`` are those it can do.
 
@@ -91,13 +102,7 @@ def read_robot(file: str, data: bytes) -> Profile:
         place=root.place,
     )
     _check_devices(reader, profile)
-    for node in root.all("camera"):
-        profile.camera_angle = reader.get(node, "angle") or 60.0
-        profile.camera_range = reader.get(node, "range") or 4.0
-    for node in root.all("voice"):
-        profile.voices[node.get("lang").lower()] = reader.get(node, "rate") or 14.0
-    for node in root.all("gesture"):
-        profile.gestures[node.get("name")] = reader.get(node, "duration") or 1000
+    _read_parts(reader, profile)
     rows = dict(TABLE_4_2)
     for node in root.all("adds"):
         _add(reader, node, rows, profile)

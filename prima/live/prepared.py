@@ -22,23 +22,23 @@ def check_usage(
     Raises:
         UsageError: there is some.
     """
-    given = chosen.scenario or chosen.fas or chosen.eas
+    own = [chosen.fas, chosen.eas, chosen.world, chosen.maps]
     if resume is not None:
-        if given or chosen.robot or chosen.world or chosen.maps or chosen.services or output:
+        if any((chosen.scenario, *own, chosen.robot, chosen.services, output)):
             raise UsageError("--resume goes on with what the journal names; leave out the rest.")
         return
-    if chosen.scenario and (chosen.fas or chosen.eas or chosen.world or chosen.maps):
+    if chosen.scenario and any(own):
         message = "A scenario names its own applications and world;"
         raise UsageError(f"{message} leave out --fa, --ea, --world and --map.")
     if chosen.scenario and chosen.services:
         raise UsageError("A scenario has its own services; leave out --services.")
-    if checks and not chosen.robot:
-        raise UsageError("Name the robot to be checked with --robot.")
     if checks:
+        if not chosen.robot:
+            raise UsageError("Name the robot to be checked with --robot.")
         return
-    if not given and not chosen.world:
+    if not any((chosen.scenario, chosen.fas, chosen.eas, chosen.world)):
         raise UsageError("Name applications with --fa and --ea, or a scenario.")
-    if not chosen.scenario and not chosen.robot:
+    if not (chosen.scenario or chosen.robot):
         hint = "documents/robots/simulated.xml is one without hardware."
         raise UsageError(f"Name the robot with --robot; {hint}")
 

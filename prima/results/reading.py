@@ -84,14 +84,25 @@ def table_of(path: Path) -> Path:
         if path.suffix not in SUFFIXES:
             raise UsageError(f"{path}: name a table that ends with {one_of(SUFFIXES)}.")
         return path
-    if (path / DICTIONARY).is_file():
-        beside = [path.with_suffix(one) for one in SUFFIXES]
-        named = (_beside(path, DICTIONARY) or {}).get("path")
-        if isinstance(named, str) and Path(named).name == named:
-            beside.insert(0, path.parent / named)
-        for one in beside:
-            if one.suffix in SUFFIXES and one.is_file():
-                return one
+    beside = _table_beside(path) if (path / DICTIONARY).is_file() else None
+    return beside or _table_in(path)
+
+
+def _table_beside(folder: Path) -> Path | None:
+    """The table whose folder this is: as its dictionary says, or by the folder's name."""
+    beside = [folder.with_suffix(one) for one in SUFFIXES]
+    named = (_beside(folder, DICTIONARY) or {}).get("path")
+    if isinstance(named, str) and Path(named).name == named:
+        beside.insert(0, folder.parent / named)
+    return next((one for one in beside if one.suffix in SUFFIXES and one.is_file()), None)
+
+
+def _table_in(path: Path) -> Path:
+    """The only table in a folder.
+
+    Raises:
+        UsageError: there is none, or more than one.
+    """
     try:
         found = sorted(one for one in path.iterdir() if one.suffix in SUFFIXES)
     except OSError as error:

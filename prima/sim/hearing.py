@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
-from prima.errors import Hint, Problem, Span, meant, one_of, suggestion
+from prima.errors import Hint, Place, Problem, Span, meant, one_of, suggestion
 from prima.interpreter.elements import Document
 from prima.interpreter.events import STANDARD, Events, beginnings, event_place, near
 from prima.interpreter.surroundings import (
@@ -71,20 +71,12 @@ def _corners(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[Pr
     """A corner's event that is waited for and that no corner of the world raises: likely a slip."""
     corners = {corner.event for corner in cast.world.corners} - {"corner"}
     pages = [one.page.root for one in cast.documents if not isinstance(one, Document)]
-    known = {*STANDARD, *corners, *(node.get("name") for node in nodes if node.tag == "event")}
-    known |= {raised.name for one in events for raised in one.raised}
+    known = {*corners, *_raised(nodes, events)}
     known.update(*(thrown_in(root) for root in pages))
     begins = {name for one in known for name in beginnings(one)}
-    handled = [(handler.node, name) for one in events for handler in one.handlers
-               for name in handler.events]  # fmt: skip
-    handled += [one for root in pages for one in caught_in(root)]
-    waiting = [(event_place(node, name), name) for node, name in handled if name not in begins]
-    waiting += [
-        (node.attribute_place(attribute), name)
-        for node, attribute, name in _awaited(nodes)
-        if name not in begins
-    ]
-    for place, name in waiting:
+    for place, name in _waiting(nodes, events, pages):
+        if name in begins:
+            continue
         other = "" if name.startswith(OPEN) else near(name, corners)
         if other or name.startswith("corner."):
             message = f'No corner of the world raises the event "{name}".'
@@ -92,6 +84,25 @@ def _corners(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[Pr
             hint = meant(other, span) or nearest(name, corners, span)
             remedy = hint or "Write corner, or name the corner's event in the world."
             yield Problem(place, "warning", "unknown-event", message, remedy)
+
+
+def _raised(nodes: list[Node], events: list[Events]) -> set[str]:
+    """The events of the language, of the scenario, and those that applications raise."""
+    known = {*STANDARD, *(node.get("name") for node in nodes if node.tag == "event")}
+    return known | {raised.name for one in events for raised in one.raised}
+
+
+def _waiting(
+    nodes: list[Node], events: list[Events], pages: list[Node]
+) -> Iterator[tuple[Place, str]]:
+    """The events that handlers, triggers and expectations name, each with its place."""
+    for handler in chain.from_iterable(one.handlers for one in events):
+        for name in handler.events:
+            yield event_place(handler.node, name), name
+    for node, name in chain.from_iterable(caught_in(root) for root in pages):
+        yield event_place(node, name), name
+    for node, attribute, name in _awaited(nodes):
+        yield node.attribute_place(attribute), name
 
 
 def _awaited(nodes: list[Node]) -> Iterator[tuple[Node, str, str]]:
@@ -141,25 +152,28 @@ def _words(nodes: list[Node], cast: Cast) -> Iterator[Problem]:
     if found is None:
         return
     questions, sayings = found
-    for tag, name, asked in (
-        ("answer", "to", True),
-        ("when", "asked", True),
-        ("when", "said", False),
-        ("never", "says", False),
-    ):
+    for tag, name, asked in WORDS:
+        said = questions if asked else sayings
         for node in [one for one in nodes if one.tag == tag][:MOST]:
             words = node.get(name)
-            said = questions if asked else sayings
-            if words.strip() and not said.may_hold(words):
-                what = "asks" if asked else "says"
-                message = f'No application {what} anything with "{words}".'
-                remedy: str | Hint = suggestion(words, said.lines, *value_span(node, name))
-                if asked and not remedy and sayings.may_hold(words):
-                    remedy = 'It is said, not asked: write said="...".' if tag == "when" else ""
-                if not remedy and (tag == "never" or not said.certain):
-                    continue  # what nobody says is just what is expected, or only a run tells it
-                place = node.attribute_place(name)
-                yield Problem(place, "warning", "never-said", message, remedy)
+            if not words.strip() or said.may_hold(words):
+                continue
+            remedy: str | Hint = suggestion(words, said.lines, *value_span(node, name))
+            if not remedy and tag == "when" and asked and sayings.may_hold(words):
+                remedy = 'It is said, not asked: write said="...".'
+            if not remedy and (tag == "never" or not said.certain):
+                continue  # what nobody says is just what is expected, or only a run tells it
+            message = f'No application {"asks" if asked else "says"} anything with "{words}".'
+            yield Problem(node.attribute_place(name), "warning", "never-said", message, remedy)
+
+
+WORDS = (
+    ("answer", "to", True),
+    ("when", "asked", True),
+    ("when", "said", False),
+    ("never", "says", False),
+)
+"""What names words: its tag, its attribute, and whether they are asked, not said."""
 
 
 def _unheard(nodes: list[Node], events: list[Events]) -> Iterator[Problem]:
@@ -177,10 +191,8 @@ def _unheard(nodes: list[Node], events: list[Events]) -> Iterator[Problem]:
 
 def _triggers(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[Problem]:
     """Triggers and expectations of an event whose name is most likely a slip."""
-    known = set(STANDARD) | {f"touch.{sensor}" for sensor in cast.robot.touch}
+    known = _raised(nodes, events) | {f"touch.{sensor}" for sensor in cast.robot.touch}
     known |= {corner.event for corner in cast.world.corners}
-    known |= {node.get("name") for node in nodes if node.tag == "event"}
-    known |= {raised.name for one in events for raised in one.raised}
     begins = {name for one in known for name in beginnings(one)}
     for node, attribute, name in _awaited(nodes):
         ending = ENDINGS if attribute == "reason" else frozenset()

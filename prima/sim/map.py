@@ -75,11 +75,33 @@ def read_world(file: str, data: bytes) -> Map:
     reader = Reader(WORLD, file, data)
     world = Map(reader.root.get("id"))
     seen: set[str] = set()
+    _read_points(reader, world, seen)
+    _read_ways(reader, world)
+    for node in reader.root.all("wall"):
+        x1, y1, x2, y2 = _ends(reader, node)
+        world.walls.append(((x1, y1), (x2, y2)))
+    _read_areas(reader, world, seen)
+    world.plan = _plan(reader.root, world)
+    errors = {problem.code for problem in reader.problems if problem.severity == "error"}
+    if errors <= {"no-such-name"}:  # others may be about what stands where
+        reader.problems += world.plan.problems(whole=not errors)
+    reader.finish()
+    world.warnings = reader.problems
+    return world
+
+
+def _named_once(reader: Reader, node: Node, seen: set[str]) -> str:
+    name = node.get("id")
+    if name in seen:
+        reader.problem(node, "duplicate-id", f'"{name}" is there twice.', "id", RENAME)
+    seen.add(name)
+    return name
+
+
+def _read_points(reader: Reader, world: Map, seen: set[str]) -> None:
+    """Places, things and corners."""
     for node in reader.root.all("place", "thing", "corner"):
-        name = node.get("id")
-        if name in seen:
-            reader.problem(node, "duplicate-id", f'"{name}" is there twice.', "id", RENAME)
-        seen.add(name)
+        name = _named_once(reader, node, seen)
         at = (reader.get(node, "x") or 0.0, reader.get(node, "y") or 0.0)
         if node.tag == "place":
             world.places[name] = at
@@ -90,6 +112,9 @@ def read_world(file: str, data: bytes) -> Map:
             world.corners.append(
                 Corner(name, at, reader.get(node, "radius") or 0.8, node.get("event", "corner"))
             )
+
+
+def _read_ways(reader: Reader, world: Map) -> None:
     for node in reader.root.all("way"):
         for end in ("from", "to"):
             reader.known(node, end, world.places, "place")
@@ -97,29 +122,24 @@ def read_world(file: str, data: bytes) -> Map:
             message = f'The way goes from "{node.get("from")}" to itself.'
             reader.problem(node, "bad-value", message, "to", "Name another place.")
         world.ways.append((node.get("from"), node.get("to")))
-    for node in reader.root.all("wall"):
-        x1, y1, x2, y2 = (reader.get(node, name) or 0.0 for name in ("x1", "y1", "x2", "y2"))
-        world.walls.append(((x1, y1), (x2, y2)))
+
+
+def _ends(reader: Reader, node: Node) -> tuple[float, float, float, float]:
+    x1, y1, x2, y2 = (reader.get(node, name) or 0.0 for name in ("x1", "y1", "x2", "y2"))
+    return x1, y1, x2, y2
+
+
+def _read_areas(reader: Reader, world: Map, seen: set[str]) -> None:
     areas = reader.root.all("area")
     for node in areas[MAX_AREAS:][:1]:
         message = f"There are more than {MAX_AREAS} areas."
         reader.problem(node, "too-large", message, "", "Divide the world.")
     for node in areas[:MAX_AREAS]:
-        if node.get("id") in seen:
-            message = f'"{node.get("id")}" is there twice.'
-            reader.problem(node, "duplicate-id", message, "id", RENAME)
-        seen.add(node.get("id"))
-        x1, y1, x2, y2 = (reader.get(node, name) or 0.0 for name in ("x1", "y1", "x2", "y2"))
-        title = node.get("title", node.get("id"))
+        name = _named_once(reader, node, seen)
+        x1, y1, x2, y2 = _ends(reader, node)
         low, high = (min(x1, x2), min(y1, y2)), (max(x1, x2), max(y1, y2))
-        world.areas.append(Area(node.get("id"), title, low, high, node.get("application"), node))
-    world.plan = _plan(reader.root, world)
-    errors = {problem.code for problem in reader.problems if problem.severity == "error"}
-    if errors <= {"no-such-name"}:  # others may be about what stands where
-        reader.problems += world.plan.problems(whole=not errors)
-    reader.finish()
-    world.warnings = reader.problems
-    return world
+        title, offered = node.get("title", name), node.get("application")
+        world.areas.append(Area(name, title, low, high, offered, node))
 
 
 def _plan(root: Node, world: Map) -> Plan:
