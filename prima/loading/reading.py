@@ -138,25 +138,17 @@ class Reading:
             self.problems.append(BAD_SITE.at(node.attribute_place("uri"), hint, wrong=wrong))
             return None
 
-    def world(self, scenario: Scenario) -> tuple[Map | None, list[tuple[Area, str]]]:
-        """The scenario's world, and what its areas offer if the robot takes it up."""
+    def surroundings(self, scenario: Scenario) -> tuple[Map | None, Profile | None]:
+        """The scenario's world and robot."""
+        from prima.devices.profile import read_robot
         from prima.sim.map import read_world
 
-        world = self.read(scenario.world, scenario.node.attribute_place("world"), read_world)
-        if world is None:
-            return None, []
-        self.problems += world.warnings
-        return world, self.offers(scenario, world) if scenario.entrances else []
-
-    def robot(self, scenario: Scenario) -> Profile | None:
-        """The scenario's robot, with the Commands that it cannot do."""
-        from prima.devices.profile import read_robot
-
-        profile = self.read(scenario.robot, scenario.node.attribute_place("robot"), read_robot)
-        if profile is not None:
-            self.check_commands(profile)
-            self.problems += profile.warnings
-        return profile
+        root = scenario.node
+        world = self.read(scenario.world, root.attribute_place("world"), read_world)
+        profile = self.read(scenario.robot, root.attribute_place("robot"), read_robot)
+        for made in (world, profile):
+            self.problems += made.warnings if made is not None else ()
+        return world, profile
 
     def offers(self, scenario: Scenario, world: Map) -> list[tuple[Area, str]]:
         """The applications that a world's areas offer, but those that the scenario runs itself."""

@@ -114,8 +114,10 @@ def load_whole(path: Path, data: bytes, whole: bool = False, robot: str = "") ->
     for src, _, node in scenario.applications:
         reading.application(src, node.attribute_place("src"), node)
     reading.users(scenario)
-    world, offers = reading.world(scenario)
-    profile = reading.robot(scenario)
+    world, profile = reading.surroundings(scenario)
+    offers = reading.offers(scenario, world) if world is not None and scenario.entrances else []
+    if profile is not None:
+        reading.check_commands(profile)
     reading.check_policy(scenario)
     reading.replies(scenario)
     offered = {name for _, name in offers}
