@@ -38,6 +38,13 @@ OPEN = (
 """Beginnings of events that go on with a name that is not the language's own."""
 MOST = 500
 """So many triggers of a kind are looked at: each is compared with all that may be said."""
+WORDS = (
+    ("answer", "to", True),
+    ("when", "asked", True),
+    ("when", "said", False),
+    ("never", "says", False),
+)
+"""What names words: its tag, its attribute, and whether they are asked, not said."""
 
 
 def check_hearing(cast: Cast) -> list[Problem]:
@@ -165,15 +172,6 @@ def _words(nodes: list[Node], cast: Cast) -> Iterator[Problem]:
                 continue  # what nobody says is just what is expected, or only a run tells it
             message = f'No application {"asks" if asked else "says"} anything with "{words}".'
             yield Problem(node.attribute_place(name), "warning", "never-said", message, remedy)
-
-
-WORDS = (
-    ("answer", "to", True),
-    ("when", "asked", True),
-    ("when", "said", False),
-    ("never", "says", False),
-)
-"""What names words: its tag, its attribute, and whether they are asked, not said."""
 
 
 def _unheard(nodes: list[Node], events: list[Events]) -> Iterator[Problem]:
