@@ -43,7 +43,12 @@ def u3(mediation: Mediation, app: Application, asked: Request) -> None:
             check_command(asked.words, app, mediation.table)
     except Refused as refused:
         e3(mediation, app, asked, refused)
-        return
+    else:
+        _take_in(mediation, app, asked, unit)
+
+
+def _take_in(mediation: Mediation, app: Application, asked: Request, unit: Behavior | None) -> None:
+    """U3: make ABs of Commands that are right, in the stream that they belong to."""
     first = asked.steps[0].what
     reaction = asked.cause if unit is None else None
     if isinstance(first, Command) and first.now:

@@ -158,20 +158,24 @@ def _words(nodes: list[Node], cast: Cast) -> Iterator[Problem]:
     found = _sayings(cast) if waiting or answers else None
     if found is None:
         return
-    questions, sayings = found
     for tag, name, asked in WORDS:
-        said = questions if asked else sayings
         for node in [one for one in nodes if one.tag == tag][:MOST]:
-            words = node.get(name)
-            if not words.strip() or said.may_hold(words):
-                continue
-            remedy: str | Hint = suggestion(words, said.lines, *value_span(node, name))
-            if not remedy and tag == "when" and asked and sayings.may_hold(words):
-                remedy = 'It is said, not asked: write said="...".'
-            if not remedy and (tag == "never" or not said.certain):
-                continue  # what nobody says is just what is expected, or only a run tells it
-            message = f'No application {"asks" if asked else "says"} anything with "{words}".'
-            yield Problem(node.attribute_place(name), "warning", "never-said", message, remedy)
+            yield from _never_said(node, name, asked, *found)
+
+
+def _never_said(
+    node: Node, name: str, asked: bool, questions: Sayings, sayings: Sayings
+) -> Iterator[Problem]:
+    """Words that no application asks or says; what only a run tells is no problem."""
+    words, said = node.get(name), questions if asked else sayings
+    if not words.strip() or said.may_hold(words):
+        return
+    remedy: str | Hint = suggestion(words, said.lines, *value_span(node, name))
+    if not remedy and node.tag == "when" and asked and sayings.may_hold(words):
+        remedy = 'It is said, not asked: write said="...".'
+    if remedy or (node.tag != "never" and said.certain):
+        message = f'No application {"asks" if asked else "says"} anything with "{words}".'
+        yield Problem(node.attribute_place(name), "warning", "never-said", message, remedy)
 
 
 def _unheard(nodes: list[Node], events: list[Events]) -> Iterator[Problem]:
