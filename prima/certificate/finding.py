@@ -24,7 +24,7 @@ from prima.interpreter.selection import prefixes, takes
 ANY_EVENT = "any event"
 """Stands for each event of an application that has too many to look at every one."""
 MOST_ENDLESS = 100
-"""Loops that are told of one reaction to events of its own."""
+"""Maximum number of loops listed for one reaction to its own events."""
 
 
 def related(one: Reaction, other: Reaction) -> bool:

@@ -93,7 +93,7 @@ def built_in(uri: str, mode: str, lang: str) -> BuiltIn:
     """The built-in type that a URI names.
 
     Raises:
-        ValueError: there is no type of that name, or it does not have such parameters.
+        ValueError: unknown type, or parameters that it does not have.
     """
     match = _URI.fullmatch(uri)
     name = match[1] if match else ""

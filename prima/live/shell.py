@@ -156,7 +156,7 @@ class Shell:
         await asyncio.gather(*(self._end(driver, driver.close) for driver in self._drivers))
 
     async def _end(self, driver: Driver, end: Callable[[], Coroutine[Any, Any, None]]) -> None:
-        """Let a driver end something; one that does not is told of."""
+        """Let a driver end something; warn if it fails to."""
         try:
             async with asyncio.timeout(SAFE_S):
                 await end()

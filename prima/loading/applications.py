@@ -44,8 +44,8 @@ def read_application(
     """Read an application of either language; a VoiceXML document is named after its file.
 
     ``kind`` is ``fa`` or ``ea`` where the run says so; it counts, whatever the document says.
-    ``site`` says where a VoiceXML document and its folder are served. ``taken`` is told of the
-    grammars that a document of PRIMA's own language names.
+    ``site`` says where a VoiceXML document and its folder are served. ``taken`` is called with
+    each grammar that a document of PRIMA's own language names.
 
     Raises:
         DocumentError: no document at all can be given.

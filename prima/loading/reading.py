@@ -213,7 +213,7 @@ class Reading:
                 self.problems += sketched.added_in_units(document.page, robot.commands)
 
     def check_policy(self, scenario: Scenario) -> None:
-        """A policy that is none, or prefers an application that is not there."""
+        """Check the policy: an unknown one, or one that prefers a missing application."""
         from prima.scheduler.policy import UnknownPolicy, policy_named
 
         place = scenario.node.attribute_place("policy")

@@ -44,7 +44,7 @@ def stage(
 
     given = [(kind, path) for kind, paths in (("fa", fas), ("ea", eas)) for path in paths]
     for path in (*(path for _, path in given), *filter(None, (robot, world))):
-        read_file(path)  # what is not there is no fault of a document
+        read_file(path)  # a missing file is a wrong option, not a wrong document
     demo = documents_folder()
     world = world or str(demo / "worlds" / "room.xml")
     robot = robot or str(demo / "robots" / "papero.xml")

@@ -310,7 +310,7 @@ class Session:
             self._look(app, value.values)
 
     def _look(self, app: AnyApp, values: Data) -> None:
-        """C6: an application is told of sensors, and its conditions on them may have turned true."""
+        """C6: give an application sensor values; raise the events of conditions that turn true."""
         raised: list[str] = []
         with self._apps.contained(app):
             raised = app.sensed(self.recorder.now, values)
