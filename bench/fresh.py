@@ -51,7 +51,9 @@ def fresh(function: Callable[..., float], *args: Any) -> Figure:
     Raises:
         WrongAnswer: the process ended by an error.
     """
-    given = [function.__module__, function.__name__, json.dumps(args)]
+    main = sys.modules["__main__"].__spec__
+    module = main.name if main and function.__module__ == "__main__" else function.__module__
+    given = [module, function.__name__, json.dumps(args)]
     done = subprocess.run(
         [sys.executable, "-c", RUN, *given], capture_output=True, text=True, cwd=ROOT, check=False
     )

@@ -6,6 +6,7 @@ import re
 from bisect import bisect_right
 
 from prima.errors import Edit, Fix, Hint, Span, replaced
+from prima.markup.limits import LIMITS
 from prima.markup.tree import MARKUP, NAME, WORD, Node
 from prima.markup.vocabulary import Attribute
 
@@ -100,26 +101,42 @@ def instead(text: str, node: Node, attribute: str, name: str, value: str) -> Hin
 
 
 class Declarations:
-    """Where variables of a document may be declared: at the beginning of a form, or of all."""
+    """Where variables of a document may be declared: at the beginning of a form, or of all.
+
+    Only as many problems have fixes as are listed of a document.
+    """
 
     def __init__(self, root: Node) -> None:
         self.root = root
         self.nodes = root.nodes
         self.starts = [one.index for one in self.nodes]
+        self._beginnings: dict[int, tuple[Span, str] | None] = {}
+        """By element: where its content begins, and the space before its first child."""
+        self._left = LIMITS.problems
 
     def hint(self, text: str, name: str, node: Node) -> Hint:
         """A sentence, with fixes that declare a variable which an element uses."""
+        self._left -= 1
+        if self._left < 0:
+            return Hint(text)
         at = bisect_right(self.starts, node.index) - 1
         holders = [("document", self.root)]
         if at >= 0 and self.nodes[at].tag == "form":
             holders.insert(0, ("form", self.nodes[at]))
         fixes = []
         for where, holder in holders:
-            span = first_inside(holder)
-            if span is not None:
-                line = f'\n{indent(holder)}<var name="{name}"/>'
-                fixes.append(Fix(f"Declare it in the {where}", (Edit(span, line),)))
+            beginning = self._beginning(holder)
+            if beginning is not None:
+                span, space = beginning
+                edit = Edit(span, f'\n{space}<var name="{name}"/>')
+                fixes.append(Fix(f"Declare it in the {where}", (edit,)))
         return Hint(text, tuple(fixes))
+
+    def _beginning(self, holder: Node) -> tuple[Span, str] | None:
+        if holder.index not in self._beginnings:
+            span = first_inside(holder)
+            self._beginnings[holder.index] = span and (span, indent(holder))
+        return self._beginnings[holder.index]
 
 
 def first_inside(node: Node) -> Span | None:

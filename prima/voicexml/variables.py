@@ -215,10 +215,11 @@ class _Look:
         return Declarations(self.page.root)
 
     def _undeclared(self, read: Read, known: Known) -> Problem:
-        hint = suggestion(read.name, known.written(), Span.of(read.place, read.name))
+        place = read.place
+        hint = suggestion(read.name, known.written(), Span.of(place, read.name))
         declare = f'Declare it: <var name="{read.name}"/>.'
         hint = hint or self._declarations.hint(declare, read.name, read.node)
-        return NOT_DECLARED.at(read.place, hint, name=read.name)
+        return NOT_DECLARED.at(place, hint, name=read.name)
 
     def check(
         self, nodes: Iterable[Node], level: Level, outer: Known, members: Mapping[str, Scope]
