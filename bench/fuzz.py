@@ -279,7 +279,9 @@ def main() -> None:
     how, count = sys.argv[1], int(sys.argv[2])
     seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1
     total: Counter[str] = Counter()
-    for job, found in spread(several, jobs(how, count, seed), cores()):
+    from bench import fuzz  # processes of their own find its functions by this name
+
+    for job, found in spread(fuzz.several, jobs(how, count, seed), cores()):
         total += found if isinstance(found, Counter) else Counter({f"died at {job}": SHARE})
         print(f"\r{total.total():,} {dict(total)}", end="", file=sys.stderr, flush=True)
     print()
