@@ -31,10 +31,10 @@ WARM = 8
 
 
 def _sweep(runs: int, seed: int = 1) -> Sweep:
-    from prima.experiments.sweep import Question, Sweep
+    from prima.experiments.sweep import Sweep, SweepQuestion
 
     vary = {"when.at": "uniform(0s,20s)"}
-    return Sweep(Question((SCENARIO,), vary, seeds=seed, design="random", runs=runs))
+    return Sweep(SweepQuestion((SCENARIO,), vary, seeds=seed, design="random", runs=runs))
 
 
 def _rate(runs: int, pool: Pool) -> float:
@@ -149,9 +149,9 @@ def _begin(begun: list[subprocess.Popen[str]], said: str, *words: str) -> str:
 
 
 def _exploration(within: int) -> Exploration:
-    from prima.experiments.explore import Exploration, Plan
+    from prima.experiments.explore import Exploration, ExplorationPlan
 
-    return Exploration(Plan(SCENARIO, ("when",), within))
+    return Exploration(ExplorationPlan(SCENARIO, ("when",), within))
 
 
 def explored(within: int) -> float:

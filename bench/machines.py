@@ -39,14 +39,14 @@ class Prima:
     def __init__(self, text: str) -> None:
         from prima.interpreter.reader import read_document
         from prima.language.commands import TABLE_4_2
-        from prima.messages import Loaded
+        from prima.messages import ApplicationLoaded
         from prima.scheduler.policy import policy_named
         from prima.session import Session
 
         document, problems = read_document("ring.xml", text.encode())
         assert not problems, problems
         self.session = Session([document], policy_named("prima"), TABLE_4_2)
-        self.session.step(0, [Loaded("ring")])
+        self.session.step(0, [ApplicationLoaded("ring")])
         self.now = 0
 
     def tick(self, times: int) -> None:

@@ -256,13 +256,13 @@ def _lxml() -> Callable[[bytes], None]:
 def _prima_voice(data: bytes) -> None:
     from prima.language.commands import TABLE_4_2
     from prima.loading import read_application
-    from prima.messages import Loaded
+    from prima.messages import ApplicationLoaded
     from prima.scheduler.policy import policy_named
     from prima.session import Session
 
     document, problems = read_application("bench.vxml", data)
     check(not problems, str(problems[:1]))
     session = Session([document], policy_named("prima"), TABLE_4_2)
-    (order,) = session.step(0, [Loaded(document.id)])
+    (order,) = session.step(0, [ApplicationLoaded(document.id)])
     asked = order.command.text if order.command else None
     check(asked == "Question 0 of 0: what is it?", f"the first question is {asked!r}")

@@ -31,7 +31,7 @@ from prima.messages import Record
 
 if TYPE_CHECKING:
     from prima.exports import Exported
-    from prima.interpreter.bounds import Visit
+    from prima.interpreter.bounds import ElementVisit
     from prima.scheduler.behavior import Application
     from prima.sim.rehearsal import Rehearsal
     from prima.sim.services import Web
@@ -67,7 +67,7 @@ class Transcript:
     """If the run was stopped at ``until``, the activity of each application still running."""
     cut: str = ""
     """The error in the line at which a partial transcript ends."""
-    visits: list[Visit] = field(default_factory=list)
+    visits: list[ElementVisit] = field(default_factory=list)
     """The elements that applications reached in their documents, if they were kept."""
     measure: Measure | None = None
     """Counts made during the run."""
@@ -489,7 +489,7 @@ def run_live(
         KeyboardInterrupt: Ctrl-C or a signal has ended the run; the journal can be resumed.
     """
     from prima.live.prepared import prepared
-    from prima.live.visit import Chosen, Settings
+    from prima.live.visit import Chosen, LiveSettings
     from prima.transcript.lines import finished, line
 
     def names(paths: Iterable[str | Path]) -> tuple[str, ...]:
@@ -502,7 +502,7 @@ def run_live(
     if not 0 < speed <= FASTEST:
         raise UsageError(f"The speed is {speed:g}: write a number above 0, up to {FASTEST:g}.")
     web = fetcher(list(hosts), len(chosen.fas) + len(chosen.eas) + 1)
-    settings = Settings(
+    settings = LiveSettings(
         policy, bound, patience, isolate, speed, until, sync, late, redact, names(drivers), web
     )
     given = [None if path is None else str(path) for path in (output, resume)]

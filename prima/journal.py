@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from prima.errors import UsageError
 from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
 from prima.messages import (
+    ApplicationLoaded,
+    ApplicationUnloaded,
     Delayed,
     Emergency,
     Ended,
@@ -16,14 +18,12 @@ from prima.messages import (
     Heard,
     Inbound,
     Listening,
-    Loaded,
     Narrated,
     Occurred,
     Presence,
     Record,
     Sensed,
     Transferred,
-    Unloaded,
 )
 from prima.scheduler.policy import policy_named
 from prima.script.sandbox import START
@@ -58,10 +58,10 @@ INBOUND: dict[str, Callable[[Record, Record], Inbound]] = {
     "emergency": lambda record, data: Emergency(
         record["outcome"] == "pressed", bool(data.get("resume", True))
     ),
-    "load": lambda record, data: Loaded(
+    "load": lambda record, data: ApplicationLoaded(
         record["app"], str(data.get("place", "")), data.get("connection", {})
     ),
-    "unload": lambda record, data: Unloaded(record["app"], str(data.get("place", ""))),
+    "unload": lambda record, data: ApplicationUnloaded(record["app"], str(data.get("place", ""))),
 }
 """The inbound value of a record of each phase, from the record and its data."""
 
@@ -132,7 +132,7 @@ def replay_instants(session: Session, records: list[Record], name: str = "") -> 
         except WRONG:
             raise UsageError(f"{name}:{number}: {DAMAGED}") from None
         if value is not None:
-            if isinstance(value, Loaded) and value.app not in session.apps:
+            if isinstance(value, ApplicationLoaded) and value.app not in session.apps:
                 message = f'it loads an application that is not there: "{value.app}".'
                 raise UsageError(f"{name}:{number}: {message}")
             now = _milliseconds(record["time"])

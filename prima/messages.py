@@ -406,7 +406,7 @@ class Emergency:
 
 
 @dataclass(slots=True)
-class Loaded:
+class ApplicationLoaded:
     """An application starts; ``place`` is where the robot has entered, if that is why."""
 
     app: str
@@ -416,7 +416,7 @@ class Loaded:
 
 
 @dataclass(slots=True)
-class Unloaded:
+class ApplicationUnloaded:
     """An application is taken out of the robot (rule E2); ``place`` is what it has left."""
 
     app: str
@@ -437,8 +437,8 @@ Inbound = (
     | Sensed
     | Narrated
     | Emergency
-    | Loaded
-    | Unloaded
+    | ApplicationLoaded
+    | ApplicationUnloaded
 )
 
 

@@ -68,10 +68,10 @@ class ScenarioItem(pytest.Item):
         """Run it and check the expectations."""
         import os
 
-        from prima.testing.running import Choice, run_one
+        from prima.testing.running import TestOptions, run_one
         from prima.testing.summary import format_result
 
-        self.result = run_one(os.path.relpath(self.path), Choice())
+        self.result = run_one(os.path.relpath(self.path), TestOptions())
         if self.result.status != "passed":
             raise ScenarioFailed(format_result(self.result))
 

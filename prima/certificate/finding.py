@@ -8,7 +8,7 @@ from functools import cached_property
 from itertools import islice
 
 from prima.certificate.model import Delay, Starving
-from prima.checks.prices import Gap, Outline, Price, Reaction, worst
+from prima.checks.prices import Gap, Outline, Price, PricedReaction, worst
 from prima.checks.prices.bounds import (
     MOST_COMPARED,
     Busy,
@@ -18,7 +18,7 @@ from prima.checks.prices.bounds import (
     loops,
     size,
 )
-from prima.checks.prices.model import Loop, devices_of
+from prima.checks.prices.model import EndlessLoop, devices_of
 from prima.interpreter.selection import prefixes, takes
 
 ANY_EVENT = "any event"
@@ -27,7 +27,7 @@ MOST_ENDLESS = 100
 """Maximum number of loops listed for one reaction to its own events."""
 
 
-def related(one: Reaction, other: Reaction) -> bool:
+def related(one: PricedReaction, other: PricedReaction) -> bool:
     """Whether two reactions may be to the same event."""
     if one.words is not None and other.words is not None and not one.words & other.words:
         return False  # no utterance is taken by both links
@@ -69,7 +69,7 @@ class _Other:
     @cached_property
     def rounds(self) -> list[list[Gap]]:
         """For each reaction what goes on without an end and makes its event again and again."""
-        raising: dict[str, dict[int, Loop]] = {}
+        raising: dict[str, dict[int, EndlessLoop]] = {}
         for number, loop in enumerate(loops(self.outline)):
             raised = {name for one in loop.states for name in self.outline.states[one].raises}
             for event in {under for name in raised for under in prefixes(name)}:
@@ -80,11 +80,13 @@ class _Other:
         ]
 
 
-def _some(raising: dict[str, dict[int, Loop]], reaction: Reaction) -> Iterable[Loop]:
+def _some(
+    raising: dict[str, dict[int, EndlessLoop]], reaction: PricedReaction
+) -> Iterable[EndlessLoop]:
     """The first loops that make the event of a reaction which the application makes for itself."""
     if reaction.often is None:
         return ()
-    found: dict[int, Loop] = {}
+    found: dict[int, EndlessLoop] = {}
     for event in reaction.events:
         found |= dict(islice(raising.get(event, {}).items(), MOST_ENDLESS))
     return [found[number] for number in sorted(found)[:MOST_ENDLESS]]
@@ -105,7 +107,7 @@ def delays(own: Outline, theirs: Outline) -> list[Delay]:
     return [one for one in found if one is not None]
 
 
-def _delay(event: str, mine: list[Reaction], theirs: _Other) -> Delay | None:
+def _delay(event: str, mine: list[PricedReaction], theirs: _Other) -> Delay | None:
     """How long the first Commands about an event may wait, and its response; None for not at all."""
     first = _first_delay(event, mine, theirs)
     firsts = [price for one in mine for price in one.firsts]
@@ -119,13 +121,13 @@ def _delay(event: str, mine: list[Reaction], theirs: _Other) -> Delay | None:
     return found if first or found.response != replace(found, response=None) else None
 
 
-def _same(reaction: Reaction) -> bool:
+def _same(reaction: PricedReaction) -> bool:
     """Whether a reaction's first word or movement towards the user is its first Command."""
     firsts = {id(one.node) for one in reaction.firsts}
     return all(id(one.node) in firsts for one in reaction.responds)
 
 
-def _first_delay(event: str, mine: list[Reaction], theirs: _Other) -> Delay | None:
+def _first_delay(event: str, mine: list[PricedReaction], theirs: _Other) -> Delay | None:
     firsts = [price for one in mine for price in one.firsts]
     needed = devices_of(firsts)
     same = [
@@ -252,7 +254,7 @@ def _add_further(delay: Delay, theirs: _Other) -> None:
         delay.each = None
 
 
-def _first(reaction: Reaction, needed: frozenset[str]) -> int:
+def _first(reaction: PricedReaction, needed: frozenset[str]) -> int:
     """How long the first Command of a reaction keeps devices."""
     return max((one.lasts for one in reaction.firsts if one.devices & needed), default=0)
 
@@ -304,7 +306,7 @@ def _by_loops(part: Price, equal: Held, floored: bool, drives: bool) -> Starving
     return Starving(part.place, what, "E4", tuple(sorted(held)), engages, floor)
 
 
-def _by_cycle(loop: Loop, equal: Held, floors: set[str], drives: bool) -> Starving | None:
+def _by_cycle(loop: EndlessLoop, equal: Held, floors: set[str], drives: bool) -> Starving | None:
     """What follows itself without a wait: the active stream goes on before others (S2c)."""
     held = loop.devices & equal[loop.leaves]
     engages = loop.engages and drives

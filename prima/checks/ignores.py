@@ -74,7 +74,7 @@ class Ignore:
             one.used, one = True, one.around
 
 
-class Inside:
+class DocumentIgnores:
     """The ignores of one document; two of the same code are nested or disjoint."""
 
     def __init__(self, ignores: Iterable[Ignore]) -> None:
@@ -115,7 +115,7 @@ def _backwards(position: Position) -> Position:
 
 
 @dataclass(slots=True)
-class Settings:
+class IgnoreSettings:
     """The ``[[ignore]]`` entries of a ``prima.toml``."""
 
     path: str
@@ -133,9 +133,9 @@ class Ignores:
 
     def __init__(self, read: Callable[[str], bytes]) -> None:
         self._read = read
-        self._documents: dict[str, tuple[Inside, list[Problem]]] = {}
+        self._documents: dict[str, tuple[DocumentIgnores, list[Problem]]] = {}
         self._paths: dict[str, str] = {}
-        self._settings: dict[str, Settings | None] = {}
+        self._settings: dict[str, IgnoreSettings | None] = {}
         self._checked: dict[str, str] = {}
         """The checked documents, by the names used in messages."""
         self._errors: dict[str, set[str]] = {}
@@ -156,7 +156,7 @@ class Ignores:
     def told(self) -> list[Problem]:
         """What is wrong with the ignores of the documents checked, those without use among it."""
         found: list[Problem] = []
-        settings: dict[str, Settings] = {}
+        settings: dict[str, IgnoreSettings] = {}
         for path, file in self._checked.items():
             ignores, problems = self._of_document(path, file)
             found += problems
@@ -182,7 +182,7 @@ class Ignores:
         empty = ignore.span[0] >= ignore.span[1]
         return not ignore.used and (empty or ignore.code not in OF_SCENARIOS)
 
-    def _is_over(self, ignore: Ignore, settings: Settings) -> bool:
+    def _is_over(self, ignore: Ignore, settings: IgnoreSettings) -> bool:
         """Whether an entry has no use, and all documents that it names are checked, and right."""
         if ignore.used:
             return False
@@ -216,16 +216,16 @@ class Ignores:
             self._paths[file] = absolute(file)
         return self._paths[file]
 
-    def _of_document(self, path: str, file: str) -> tuple[Inside, list[Problem]]:
+    def _of_document(self, path: str, file: str) -> tuple[DocumentIgnores, list[Problem]]:
         if path not in self._documents:
             try:
                 ignores, problems = in_document(file, self._read(file))
-                self._documents[path] = Inside(ignores), problems
+                self._documents[path] = DocumentIgnores(ignores), problems
             except (DocumentError, UsageError):
-                self._documents[path] = Inside(()), []  # reading it reports the error
+                self._documents[path] = DocumentIgnores(()), []  # reading it reports the error
         return self._documents[path]
 
-    def _of_folder(self, folder: str) -> Settings | None:
+    def _of_folder(self, folder: str) -> IgnoreSettings | None:
         """The settings that apply in a folder: only the nearest."""
         if folder not in self._settings:
             file = join(folder, SETTINGS)
@@ -309,9 +309,9 @@ def comments(text: str) -> Iterator[tuple[int, str, int]]:
 # Settings -----------------------------------------------------------------------------------
 
 
-def read_settings(file: str) -> Settings:
+def read_settings(file: str) -> IgnoreSettings:
     """Read a ``prima.toml``."""
-    settings = Settings(file)
+    settings = IgnoreSettings(file)
     try:
         with open(file, encoding="utf-8") as stream:
             tree = parse_toml(text := stream.read())
@@ -331,7 +331,7 @@ def read_settings(file: str) -> Settings:
     return settings
 
 
-def _entry(entry: Any, place: Place, settings: Settings) -> None:
+def _entry(entry: Any, place: Place, settings: IgnoreSettings) -> None:
     given = entry if isinstance(entry, dict) else {}
     files = given.get("files", "*")
     named = [files] if isinstance(files, str) else files

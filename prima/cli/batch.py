@@ -13,11 +13,11 @@ from click.exceptions import Exit
 
 from prima.cli import common
 from prima.cli.common import clean, coloured, put, tell
-from prima.cli.progress import Progress
+from prima.cli.progress import ProgressBar
 from prima.errors import UsageError, counted
 from prima.errors.visible import escaped
 from prima.experiments.batch import run_batch
-from prima.experiments.plan import Options, Plan, Row
+from prima.experiments.plan import BatchPlan, BatchRow, Options
 from prima.experiments.rows import format_counts, format_head, format_row, row_data
 from prima.pool import warm_up
 
@@ -63,8 +63,8 @@ def run_all(
         RunError: as there.
     """
     warm_up()
-    plan = Plan(paths, policies, output)
-    table, progress = _Table(plan, form), Progress(len(plan))
+    plan = BatchPlan(paths, policies, output)
+    table, progress = _Table(plan, form), ProgressBar(len(plan))
     exits: Counter[int] = Counter()
     earlier = 0
     try:
@@ -90,7 +90,7 @@ def run_all(
 class _Table:
     """Prints rows to stdout and messages to stderr."""
 
-    def __init__(self, plan: Plan, form: str) -> None:
+    def __init__(self, plan: BatchPlan, form: str) -> None:
         self.wide = min(max(map(len, ["scenario", *plan.scenarios])), WIDEST)
         self.form = form
         if form == "json":
@@ -98,7 +98,7 @@ class _Table:
         if form == "text":
             put(format_head(self.wide))
 
-    def put(self, row: Row) -> None:
+    def put(self, row: BatchRow) -> None:
         """Print a row."""
         if self.form == "json":
             text = json.dumps(row_data(row), ensure_ascii=False)

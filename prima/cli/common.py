@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from prima.errors import Problem
 
 
-class Choice(click.Choice[str]):
+class SuggestingChoice(click.Choice[str]):
     """A choice that suggests a word for a misspelt one."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
@@ -48,7 +48,7 @@ REFUSING = ("strict", "surrogateescape")
 format_option = click.option(
     "--format",
     "form",
-    type=Choice(["text", "json"]),
+    type=SuggestingChoice(["text", "json"]),
     default="text",
     help="What to print.",
 )

@@ -8,7 +8,7 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import (
-    Choice,
+    SuggestingChoice,
     check_output,
     coloured,
     or_stdout,
@@ -34,7 +34,7 @@ from prima.scheduler.policy import POLICIES, USAGE
 @click.option(
     "--format",
     "form",
-    type=Choice(["text", "json", "html"]),
+    type=SuggestingChoice(["text", "json", "html"]),
     default="text",
     help="What to print; html is a page for the browser.",
 )

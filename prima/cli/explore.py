@@ -20,7 +20,7 @@ from prima.cli.common import (
     workers_option,
     write_for_programs,
 )
-from prima.cli.progress import Progress
+from prima.cli.progress import ProgressBar
 from prima.errors import UsageError, counted
 from prima.scheduler.policy import POLICIES
 
@@ -77,13 +77,13 @@ def explore(
     prima explore visit.xml --move touch --move "when[2]" --within 5s -o explored/
     """
     from prima.experiments.cluster import pool_of
-    from prima.experiments.explore import Exploration, Plan
+    from prima.experiments.explore import Exploration, ExplorationPlan
     from prima.experiments.explored import Explored, carried_out
 
     raise_limits(limits)
     if resume and output is None:
         raise UsageError("--resume needs the folder: -o FOLDER.")
-    plan = Plan(
+    plan = ExplorationPlan(
         scenario,
         moves,
         5_000 if within is None else within,
@@ -94,7 +94,7 @@ def explore(
         isolate,
     )
     exploration = Exploration(plan)
-    progress = Progress(runs)
+    progress = ProgressBar(runs)
     numbers = carried_out(exploration, pool_of(address, workers), output, resume)
     try:
         kept = next(numbers)

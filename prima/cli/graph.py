@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from prima.cli.common import Choice, check_output, or_stdout, tell, tell_cut
+from prima.cli.common import SuggestingChoice, check_output, or_stdout, tell, tell_cut
 from prima.errors import UsageError
 
 if TYPE_CHECKING:
@@ -19,10 +19,12 @@ FORMATS = ["svg", "dot", "mermaid", "json"]
 
 @click.command()
 @click.argument("file", type=click.Path())
-@click.option("--to", type=Choice(FORMATS), help="By default according to OUTPUT's suffix, or svg.")
+@click.option(
+    "--to", type=SuggestingChoice(FORMATS), help="By default according to OUTPUT's suffix, or svg."
+)
 @click.option(
     "--what",
-    type=Choice(["states", "tree", "streams", "map"]),
+    type=SuggestingChoice(["states", "tree", "streams", "map"]),
     help="An application's states; a transcript's tree of Atomic Behaviors, or its streams;"
     " a world's map.",
 )

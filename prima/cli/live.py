@@ -33,7 +33,7 @@ from prima.cli.common import (
 from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
-    from prima.live.visit import Chosen, Settings, Visit
+    from prima.live.visit import Chosen, LiveSettings, Visit
     from prima.messages import Record
 
 INTERRUPTED = 130
@@ -130,13 +130,13 @@ def live(
     """
     from prima import api
     from prima.live.prepared import check_usage, prepared
-    from prima.live.visit import Chosen, Settings
+    from prima.live.visit import Chosen, LiveSettings
 
     raise_limits(limits)
     chosen = Chosen(robot or "", scenario or "", world or "", fas, eas, maps, services or "")
     check_usage(chosen, output, journal, checks)
     web = api.fetcher(list(hosts), len(fas) + len(eas) + 1)
-    settings = Settings(policy, bound, patience, isolate, speed, until, sync, web=web)
+    settings = LiveSettings(policy, bound, patience, isolate, speed, until, sync, web=web)
     settings.drivers, settings.redact = drivers, redact
     if late is not None:
         settings.late = late or None
@@ -152,7 +152,7 @@ def live(
     _run(visit, why, form == "json")
 
 
-def _check(chosen: Chosen, settings: Settings) -> None:
+def _check(chosen: Chosen, settings: LiveSettings) -> None:
     """Try the robot; exit code 2 if it is not set up, 3 if something of it does not work."""
     from prima.live.preflight import check_robot
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import click
 
-from prima.cli.common import Choice, tell
+from prima.cli.common import SuggestingChoice, tell
 
 KINDS = ("fa", "ea", "vxml", "scenario", "world", "robot")
 
 
 @click.command()
-@click.argument("kind", type=Choice(KINDS))
+@click.argument("kind", type=SuggestingChoice(KINDS))
 @click.argument("name", type=click.Path())
 def new(kind: str, name: str) -> None:
     """Start a document that is commented, valid, and runs.

@@ -65,7 +65,7 @@ def _with_progress(write: Callable[[str], object]) -> Callable[[str], None]:
     return note
 
 
-class Progress:
+class ProgressBar:
     """Shows the progress of many runs on a terminal."""
 
     def __init__(self, total: int) -> None:

@@ -11,14 +11,14 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import (
-    Choice,
+    SuggestingChoice,
     check_output,
     suggesting,
     tell,
     tell_cut,
     write_for_programs,
 )
-from prima.cli.runs import Run, is_markup, run_of
+from prima.cli.runs import GivenRun, is_markup, run_of
 from prima.errors import UsageError, counted, did_you_mean, one_of
 from prima.scheduler.policy import POLICIES, USAGE
 
@@ -56,7 +56,7 @@ if TYPE_CHECKING:
 @click.option(
     "--to",
     "form",
-    type=Choice(["html", "svg"]),
+    type=SuggestingChoice(["html", "svg"]),
     default="html",
     help="A page (html), or a sweep's figures as files (svg).",
 )
@@ -228,7 +228,7 @@ def _maps(runs: tuple[str, ...], scenarios: tuple[str, ...]) -> list[Loaded]:
     return [api.load_scenario(path) for path in scenarios]
 
 
-def _scenarios(shown: list[Run], maps: list[Loaded]) -> list[Loaded | None]:
+def _scenarios(shown: list[GivenRun], maps: list[Loaded]) -> list[Loaded | None]:
     """The scenario of each run: its own, or the next one after --scenario."""
     left = iter(maps if len(maps) > 1 else maps * len(shown))
     return [run.scenario or next(left, None) for run in shown]

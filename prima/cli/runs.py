@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from prima.loading import Loaded
 
 
-class Run(NamedTuple):
+class GivenRun(NamedTuple):
     """A transcript, and the scenario that was run for it, if any."""
 
     transcript: Transcript
@@ -29,7 +29,7 @@ def is_markup(path: str) -> bool:
         return False
 
 
-def run_of(path: str, policy: str | None = None, whole: bool = True) -> Run:
+def run_of(path: str, policy: str | None = None, whole: bool = True) -> GivenRun:
     """A transcript, or that of a scenario's run.
 
     Args:
@@ -49,10 +49,10 @@ def run_of(path: str, policy: str | None = None, whole: bool = True) -> Run:
         found = api.read(path, partial=True) if whole else api.skim(path)
         if policy is not None:
             raise UsageError(f"{path}: --policy works only with a scenario; this is a transcript.")
-        return Run(found, None)
+        return GivenRun(found, None)
     loaded = api.load_scenario(path)
     made = api.rehearse(loaded, policy)
     made.name = f"{path} ({policy})" if policy else path
     if made.outcome == "limit":
         raise RunError(f"{path}: {TOO_MUCH}")
-    return Run(made, loaded)
+    return GivenRun(made, loaded)

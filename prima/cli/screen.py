@@ -24,7 +24,7 @@ COLOURS = {"U": "cyan", "E": "yellow"}
 """Colours of rows, by who does it."""
 
 
-class Screen:
+class TerminalScreen:
     """Prints rows, answers and messages above the line being typed, if any."""
 
     def __init__(self, game: Game, why: bool, json: bool, interactive: bool) -> None:

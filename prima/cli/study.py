@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from prima.cli.common import Choice, print_json, put, write_for_programs
+from prima.cli.common import SuggestingChoice, print_json, put, write_for_programs
 
 
 @click.command()
@@ -15,7 +15,7 @@ from prima.cli.common import Choice, print_json, put, write_for_programs
 @click.option(
     "--format",
     "form",
-    type=Choice(["text", "json", "csv"]),
+    type=SuggestingChoice(["text", "json", "csv"]),
     default="text",
     help="What to print.",
 )

@@ -9,7 +9,7 @@ from click.exceptions import Exit
 
 from prima.cli.common import (
     PATIENCE,
-    Choice,
+    SuggestingChoice,
     bound_option,
     check_output,
     duration_option,
@@ -23,7 +23,7 @@ from prima.cli.common import (
     workers_option,
     write_for_programs,
 )
-from prima.cli.progress import Progress
+from prima.cli.progress import ProgressBar
 from prima.errors import UsageError, counted
 from prima.scheduler.policy import POLICIES, USAGE
 
@@ -54,7 +54,7 @@ MANY = 100_000
 @click.option("--seeds", type=click.IntRange(1), help="Runs of each combination. By default 1.")
 @click.option(
     "--design",
-    type=Choice(["full", "random", "lhs"]),
+    type=SuggestingChoice(["full", "random", "lhs"]),
     help="All combinations (full), random ones, or a Latin hypercube (lhs).",
 )
 @click.option("--runs", type=click.IntRange(1), help="Number of runs, for random and lhs.")
@@ -216,7 +216,7 @@ def _write(out: Output, resume: bool) -> None:
         Exit: a run was not fine.
     """
     total, begun = len(out.sweep), -1
-    progress = Progress(total)
+    progress = ProgressBar(total)
     try:
         for number in out.write(resume):
             begun = number if begun < 0 else begun

@@ -24,8 +24,8 @@ from prima.cli.common import (
     why_option,
     write_for_programs,
 )
-from prima.cli.screen import Screen
-from prima.cli.terminal import Clock, Keyboard, Piped, Typist, edit_lines, ending_well
+from prima.cli.screen import TerminalScreen
+from prima.cli.terminal import Keyboard, PausingClock, Piped, Typist, edit_lines, ending_well
 from prima.errors import TOO_MUCH, RunError, UsageError
 from prima.language.commands import PATIENCE_MS
 from prima.scheduler.policy import POLICIES, USAGE
@@ -106,7 +106,7 @@ def talk(
     web = fetcher(list(hosts), len(loaded.cast.documents))
     game = Game(loaded, folder, policy, scripted, web, _write if json else None)
     terminal = _is_terminal()
-    screen = Screen(game, why, json, terminal)
+    screen = TerminalScreen(game, why, json, terminal)
     names = loaded.files if scenario is not None else [*loaded.files][1:]
     sources = [os.path.join(folder, name) for name in names]
     conversation = Conversation(game, screen, real_time or (terminal and not step), sources)
@@ -218,7 +218,7 @@ def _head(game: Game, loaded: Loaded) -> Record:
     }
 
 
-def _greet(game: Game, screen: Screen) -> None:
+def _greet(game: Game, screen: TerminalScreen) -> None:
     if game.scene.left_out:
         tell(
             "You are the scenario's user: their scripted actions are left out; --scripted keeps them."
@@ -227,7 +227,7 @@ def _greet(game: Game, screen: Screen) -> None:
         tell("Type what you say, /help for commands, /quit to end.")
 
 
-def _converse(conversation: Conversation, screen: Screen) -> None:
+def _converse(conversation: Conversation, screen: TerminalScreen) -> None:
     """Read lines and carry them out until the session ends."""
     if screen.interactive:
         _edit_lines(conversation)
@@ -249,7 +249,7 @@ def _edit_lines(conversation: Conversation) -> None:
     edit_lines(lambda text: complete(text, conversation.game.names, conversation.options))
 
 
-def _step_by_step(conversation: Conversation, screen: Screen) -> None:
+def _step_by_step(conversation: Conversation, screen: TerminalScreen) -> None:
     """Read lines while time stands still."""
     piped = Piped()
     conversation.begin()
@@ -284,7 +284,7 @@ def _ask(prompt: str, piped: Piped, interactive: bool) -> str | None:
 def _real_time(conversation: Conversation, typist: Typist) -> None:
     """Read lines while time passes, except while the user types."""
     game = conversation.game
-    clock = Clock()
+    clock = PausingClock()
     while not conversation.done:
         due = conversation.pass_time(clock.now)
         if conversation.done:

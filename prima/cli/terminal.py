@@ -159,7 +159,7 @@ class Keyboard:
             sys.stdout.flush()
 
 
-class Clock:
+class PausingClock:
     """Real time, except that it stands still while a line is being typed."""
 
     def __init__(self) -> None:

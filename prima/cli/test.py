@@ -9,7 +9,7 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import (
-    Choice,
+    SuggestingChoice,
     check_output,
     coloured,
     format_option,
@@ -48,7 +48,7 @@ MOST_JOBS = 64
 @click.option(
     "--compare",
     "compare",
-    type=Choice(["text", "behavior"]),
+    type=SuggestingChoice(["text", "behavior"]),
     default="text",
     help="How to compare tables; behavior ignores differences in time below 0.5 s.",
 )
@@ -99,7 +99,7 @@ def test(
     """
     from prima.testing.coverage import merge
     from prima.testing.finding import find
-    from prima.testing.running import Choice as How
+    from prima.testing.running import TestOptions as How
     from prima.testing.running import run_all
 
     _check_options(update, yes, policy, form)

@@ -13,7 +13,7 @@ from click.exceptions import Exit
 
 from prima.checks.ignores import KINDS, SETTINGS
 from prima.cli.common import (
-    Choice,
+    SuggestingChoice,
     coloured,
     limit_option,
     map_option,
@@ -35,7 +35,7 @@ MANY = 50
 @click.option(
     "--format",
     "form",
-    type=Choice(["text", "short", "json", "sarif"]),
+    type=SuggestingChoice(["text", "short", "json", "sarif"]),
     default="text",
     help="What to print; short omits source lines.",
 )

@@ -21,13 +21,13 @@ from prima.devices.goals import (
     Again,
     Back,
     Begin,
-    Bounds,
     Broke,
     Call,
     Cancel,
     Done,
     Lost,
     Progress,
+    RecordingBounds,
     Report,
     Safe,
     Stand,
@@ -35,8 +35,8 @@ from prima.devices.goals import (
 )
 from prima.devices.profile import Profile
 from prima.devices.senses import Sensors, Sight
-from prima.devices.settings import FOREVER, Limits
-from prima.devices.speech import Marks, Utterance
+from prima.devices.settings import FOREVER, DriverLimits
+from prima.devices.speech import SpeechMarks, Utterance
 from prima.messages import (
     Command,
     Data,
@@ -73,7 +73,7 @@ class Goal:
     held: tuple[int, str] | None = None
     """Since when (ms) it is held back, and by which device that is still stopping."""
 
-    def late(self, limits: Limits) -> int | None:
+    def late(self, limits: DriverLimits) -> int | None:
         """When it will have taken too long (ms), if ever."""
         limit = limits.cancel if self.cancelled else limits.progress
         if not self.cancelled and not self.accepted:
@@ -142,7 +142,7 @@ class Conductor:
         self,
         profile: Profile,
         pose: Callable[[], dict[str, float]],
-        limits: Callable[[Begin], Limits] = lambda _: FOREVER,
+        limits: Callable[[Begin], DriverLimits] = lambda _: FOREVER,
         exclusive: bool = True,
         start: int = 0,
     ) -> None:
@@ -154,7 +154,7 @@ class Conductor:
         self._pose = pose
         self._limits = limits
         self._exclusive = exclusive
-        self._marks = Marks()
+        self._marks = SpeechMarks()
         self._calls: list[Call] = []
         self._inbound: list[Inbound] = []
         """What has still to be told."""
@@ -256,7 +256,7 @@ class Conductor:
             task.ends,
             self._loop(task.command),
             task.order.beside,
-            (bounds_of(task.command) if kind == RECORD else None) or Bounds(),
+            (bounds_of(task.command) if kind == RECORD else None) or RecordingBounds(),
         )
         goal = Goal(begin, task)
         task.goals.append(goal)

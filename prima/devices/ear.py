@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from prima.devices.goals import Bounds
+from prima.devices.goals import RecordingBounds
 from prima.messages import Command, Ended, Inbound
 
 
@@ -28,13 +28,13 @@ class Question:
     """Whether another Command has taken its recogniser (only without a mediator)."""
 
 
-def bounds_of(command: Command) -> Bounds | None:
+def bounds_of(command: Command) -> RecordingBounds | None:
     """The bounds of the answer to a question, if that is recorded."""
     if not command.cued("record"):
         return None
     kinds = ("record", "finalsilence")
     values = {cue.kind: int(cue.value or 0) for cue in command.cues if cue.kind in kinds}
-    return Bounds(values["record"], values.get("finalsilence", 0))
+    return RecordingBounds(values["record"], values.get("finalsilence", 0))
 
 
 class Ear:
@@ -114,7 +114,7 @@ class Ear:
             if question.listens and question.until is None:
                 self._wait(now, question)
 
-    def recording(self) -> Bounds | None:
+    def recording(self) -> RecordingBounds | None:
         """The bounds of an answer that is recorded; None if it is not recorded."""
         question = self.question
         return bounds_of(question.command) if question is not None else None

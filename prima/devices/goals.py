@@ -16,7 +16,7 @@ RECORD: Final = "record"
 
 
 @dataclass(frozen=True, slots=True)
-class Bounds:
+class RecordingBounds:
     """When a recording is over. Times are ms; 0 leaves them to the device."""
 
     longest: int = 0
@@ -46,7 +46,7 @@ class Begin:
     """How long (ms) each further loop takes."""
     beside: bool = False
     """Whether a motion is composed with another one that goes on (X5)."""
-    bounds: Bounds = Bounds()
+    bounds: RecordingBounds = RecordingBounds()
     """When what is to be recorded is over."""
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from prima.devices.protocol import Devices
-from prima.interpreter.bounds import Visit
+from prima.interpreter.bounds import ElementVisit
 from prima.messages import Record
 from prima.session import Session
 
@@ -36,7 +36,7 @@ class Loop:
         """The instant that was carried out last."""
         self.outcome = ""
         """Why the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
-        self.visits: list[Visit] = []
+        self.visits: list[ElementVisit] = []
         """What applications came to in the latest instant."""
         self._made = 0
         self._deadline = session.deadline()

@@ -20,7 +20,7 @@ DOES = ("command", "gesture")
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class DriverLimits:
     """How long (ms) a driver may take before it is given up; None for as long as it likes."""
 
     accept: int | None = None
@@ -30,17 +30,17 @@ class Limits:
     cancel: int | None = None
     """To confirm that a goal has stopped."""
 
-    def over(self, others: Limits) -> Limits:
+    def over(self, others: DriverLimits) -> DriverLimits:
         """These where they are given, else the others."""
-        return Limits(
+        return DriverLimits(
             others.accept if self.accept is None else self.accept,
             others.progress if self.progress is None else self.progress,
             others.cancel if self.cancel is None else self.cancel,
         )
 
 
-FOREVER = Limits()
-USUAL = Limits(accept=5_000, cancel=5_000)
+FOREVER = DriverLimits()
+USUAL = DriverLimits(accept=5_000, cancel=5_000)
 """What a driver has by default. Whether it has to report while a goal goes on is its own."""
 
 
@@ -54,7 +54,7 @@ class Does:
     type: str
     kind: str
     """``action``, ``service`` or ``topic``, where that has to be said."""
-    limits: Limits
+    limits: DriverLimits
     values: tuple[tuple[str, str], ...]
     """Names and values of the interface's arguments, as written."""
     place: Place
@@ -150,7 +150,7 @@ class DriverSettings:
     """The devices that it carries; empty until :func:`share_devices` has given it the rest."""
     open: int
     heartbeat: int
-    limits: Limits
+    limits: DriverLimits
     does: list[Does]
     senses: list[Senses]
     place: Place
@@ -188,8 +188,8 @@ def read_driver(reader: Reader, node: Node) -> DriverSettings:
     )
 
 
-def _limits(reader: Reader, node: Node) -> Limits:
-    return Limits(*(reader.get(node, name) for name in ("accept", "progress", "cancel")))
+def _limits(reader: Reader, node: Node) -> DriverLimits:
+    return DriverLimits(*(reader.get(node, name) for name in ("accept", "progress", "cancel")))
 
 
 def _does(reader: Reader, node: Node) -> Does:

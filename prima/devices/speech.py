@@ -19,7 +19,7 @@ class Utterance:
     command: Command
     began: int
     ends: int
-    timeline: voice.Timeline | None = None
+    timeline: voice.SpeechTimeline | None = None
     """When its letters and marks come, where it has cues."""
     skipped: int = 0
     """How much (ms) had been said before an interruption (X2)."""
@@ -125,7 +125,7 @@ def closed(cues: Iterable[Cue]) -> Iterator[Cue]:
             yield cue
 
 
-class Marks:
+class SpeechMarks:
     """The last mark that each application's speech has passed."""
 
     def __init__(self) -> None:

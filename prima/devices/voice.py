@@ -83,7 +83,7 @@ Beat = tuple[str, float | str]
 
 
 @dataclass(frozen=True, slots=True)
-class Timeline:
+class SpeechTimeline:
     """When the letters of a text have been said and its marks are passed, in ms from its start."""
 
     text: str
@@ -102,7 +102,9 @@ class Timeline:
         return sum(1 for when, _ in self.marks if when <= time)
 
 
-def timeline(text: str, lang: str, rates: dict[str, float], cues: tuple[Cue, ...]) -> Timeline:
+def timeline(
+    text: str, lang: str, rates: dict[str, float], cues: tuple[Cue, ...]
+) -> SpeechTimeline:
     """Lay a text out in time, with its pauses, rates and set times (SSML 1.0, 2.2.3 and 2.2.4).
 
     What lasts a set time is stretched or shortened as a whole, pauses in it included.
@@ -129,7 +131,7 @@ def timeline(text: str, lang: str, rates: dict[str, float], cues: tuple[Cue, ...
                     ends.append(now)
                     free = free or (float(value) > 0 and len(inside) == 1)
     total = max(round(now) + (PAUSE_MS if free else 0), 1)
-    return Timeline(text, total, tuple(ends), tuple(marks))
+    return SpeechTimeline(text, total, tuple(ends), tuple(marks))
 
 
 def _beats(text: str, lang: str, rates: dict[str, float], cues: tuple[Cue, ...]) -> Iterator[Beat]:

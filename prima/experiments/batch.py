@@ -19,8 +19,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from prima.errors import TOO_MUCH, DocumentError, PrimaError, UsageError
-from prima.experiments.ledger import KEPT, Inputs, earlier_row, key_of
-from prima.experiments.plan import LEDGER, TRANSCRIPT, Job, Options, Plan, Row
+from prima.experiments.ledger import KEPT, InputDigests, earlier_row, key_of
+from prima.experiments.plan import LEDGER, TRANSCRIPT, BatchPlan, BatchRow, Job, Options
 from prima.pool import Died, cores, spread
 
 if TYPE_CHECKING:
@@ -36,10 +36,10 @@ FULL = (errno.ENOSPC, errno.EROFS, getattr(errno, "EDQUOT", errno.ENOSPC))
 
 
 def run_batch(
-    plan: Plan,
+    plan: BatchPlan,
     options: Options,
     workers: int = 0,
-) -> Generator[Row, None, None]:
+) -> Generator[BatchRow, None, None]:
     """Make the runs of a plan; yield their rows in order. See :func:`prima.pool.spread`.
 
     Args:
@@ -67,7 +67,7 @@ def run_batch(
             yield from _rows(made)
 
 
-def _rows(made: Iterable[tuple[Job, Row | Died]]) -> Iterator[Row]:
+def _rows(made: Iterable[tuple[Job, BatchRow | Died]]) -> Iterator[BatchRow]:
     """The rows of results.
 
     Raises:
@@ -110,14 +110,14 @@ def _remove(parts: str) -> None:
         shutil.rmtree(parts, ignore_errors=True)
 
 
-def _dead(job: Job, died: Died) -> Row:
+def _dead(job: Job, died: Died) -> BatchRow:
     """The row of a run whose process died."""
     message = f"its process ended with code {died.code}."
     if died.code < 0:
         with suppress(ValueError):
             name = signal.Signals(-died.code).name
             message = f"its process was killed by the signal {name}; was there no memory left?"
-    return Row(job.scenario, job.policy, 3, messages=[message])
+    return BatchRow(job.scenario, job.policy, 3, messages=[message])
 
 
 # In worker processes -------------------------------------------------------------------------
@@ -132,7 +132,7 @@ def _begin(options: Options) -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
 
 
-def run_job(options: Options, job: Job) -> Row:
+def run_job(options: Options, job: Job) -> BatchRow:
     """Make one run, or find that it is up to date; errors are reported in its row."""
     try:
         if options.resume and job.stem and (row := earlier_row(options, job)):
@@ -142,12 +142,12 @@ def run_job(options: Options, job: Job) -> Row:
         return _failed(job, error)
 
 
-def _failed(job: Job, error: Exception) -> Row:
+def _failed(job: Job, error: Exception) -> BatchRow:
     """The row of a run that an exception ended."""
     match error:
         case DocumentError():
             told = [str(one) for one in error.problems if one.severity == "error"]
-            return Row(job.scenario, job.policy, 1, messages=_few(told))
+            return BatchRow(job.scenario, job.policy, 1, messages=_few(told))
         case UsageError():
             code, message = 2, str(error)
         case OSError():
@@ -162,7 +162,7 @@ def _failed(job: Job, error: Exception) -> Row:
         case _:
             code, message = 3, _defect(error)
     full = isinstance(error, OSError) and error.errno in FULL
-    return Row(job.scenario, job.policy, code, messages=[message], full=full)
+    return BatchRow(job.scenario, job.policy, code, messages=[message], full=full)
 
 
 def _defect(error: Exception) -> str:
@@ -178,14 +178,14 @@ def _few(messages: list[str]) -> list[str]:
     return messages if over <= 0 else [*messages[:MOST_MESSAGES], f"and {over} more."]
 
 
-def _run(options: Options, job: Job) -> Row:
+def _run(options: Options, job: Job) -> BatchRow:
     """Make a run; rename its transcript, then its ledger, once complete."""
     from prima import api
     from prima.loading.files import in_place_of_files
 
     if job.stem:
         _make_room(job)
-    inputs = Inputs(job.scenario)
+    inputs = InputDigests(job.scenario)
     with in_place_of_files(inputs):
         loaded = api.load_scenario(job.scenario)
         if not job.stem:
@@ -214,13 +214,13 @@ def _run(options: Options, job: Job) -> Row:
     return row
 
 
-def _row(job: Job, loaded: Loaded, made: Transcript) -> Row:
+def _row(job: Job, loaded: Loaded, made: Transcript) -> BatchRow:
     """The row of a run that ended."""
     measure, summary = made.measure, made.summary()
     messages = [told_failure(failure) for failure in made.failures]
     if made.outcome == "limit":
         messages.append(TOO_MUCH)
-    return Row(
+    return BatchRow(
         job.scenario,
         job.policy or loaded.cast.scenario.policy,
         3 if messages else 0,

@@ -16,7 +16,7 @@ import zipfile
 from pathlib import Path
 
 from prima.errors import UsageError
-from prima.experiments.sweep import Output, Question
+from prima.experiments.sweep import Output, SweepQuestion
 from prima.experiments.variants import Kept
 from prima.loading.writing import whole
 from prima.messages import Json
@@ -88,7 +88,7 @@ def check_bundle(path: str, out: Output) -> None:
             raise UsageError(f"{message} Call prima from a folder that holds all of them.")
 
 
-def study_text(question: Question) -> str:
+def study_text(question: SweepQuestion) -> str:
     """A question as a study file (:mod:`prima.experiments.studyfile`)."""
     said: dict[str, Json] = {
         "scenarios": list(question.scenarios),

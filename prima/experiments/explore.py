@@ -8,9 +8,18 @@ from typing import Any, TypeVar
 
 from prima.errors import UsageError
 from prima.experiments.examine import Examiner, Finding, Seen
-from prima.experiments.lines import Line, Piece, Point, Search, moved, pieces, shift, shrunk
+from prima.experiments.lines import (
+    EventLine,
+    LinePiece,
+    Point,
+    Search,
+    moved,
+    pieces,
+    shift,
+    shrunk,
+)
 from prima.experiments.pools import Pool, Runs
-from prima.experiments.variants import Made, Settings, Variant
+from prima.experiments.variants import ExperimentSettings, Made, Variant
 from prima.language.distributions import written
 from prima.language.values import LONGEST_MS, read_value
 from prima.pool import Died
@@ -28,7 +37,7 @@ class Enough(Exception):
 
 
 @dataclass(frozen=True)
-class Plan:
+class ExplorationPlan:
     """What an exploration is to do."""
 
     scenario: str
@@ -47,7 +56,7 @@ class Plan:
 
 
 @dataclass(slots=True)
-class Order:
+class FoundOrder:
     """An order of events: its signature, the smallest shift that brings it, and its runs."""
 
     signature: str
@@ -56,7 +65,7 @@ class Order:
 
 
 @dataclass(slots=True)
-class Problem:
+class FoundProblem:
     """A finding, and the smallest shift that brings it."""
 
     finding: Finding
@@ -67,7 +76,7 @@ class Problem:
 class Exploration:
     """All runs of one exploration, made as its searches ask for them."""
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: ExplorationPlan) -> None:
         """Plan it.
 
         Raises:
@@ -79,7 +88,7 @@ class Exploration:
             raise UsageError(f"--depth: write a number from 1 to {MOST_DEPTH}.")
         if not 1 <= plan.within <= LONGEST_MS:
             raise UsageError("--within: write a time above 0.")
-        settings = Settings(isolate=plan.isolate)
+        settings = ExperimentSettings(isolate=plan.isolate)
         moves = list(plan.moves) or _events(plan.scenario, settings)
         if not moves:
             raise UsageError(f"{plan.scenario}: there is nothing to move: no <when> has a time.")
@@ -96,9 +105,9 @@ class Exploration:
                 raise UsageError(f"{message} Write a time, such as 5s.")
         self.base: Point = tuple(int(read_value("duration", one.written)) for one in self.targets)
         self.seen: dict[Point, Seen] = {}
-        self.orders: list[Order] = []
+        self.orders: list[FoundOrder] = []
         """All orders, the smallest shifts first."""
-        self.problems: list[Problem] = []
+        self.problems: list[FoundProblem] = []
         self.complete = False
         """Whether all runs were made that the plan asks for."""
         self.most: int | None = plan.most
@@ -144,7 +153,7 @@ class Exploration:
         frontier = [self.base]
         for depth in range(1, self.plan.depth + 1):
             lines = [line for point in frontier for line in self._from(point, depth == 1)]
-            found: dict[Line, list[Piece]] = {}
+            found: dict[EventLine, list[LinePiece]] = {}
             yield from self._together({line: line.search() for line in lines}, found)
             frontier = []
             for line in lines:
@@ -157,7 +166,7 @@ class Exploration:
         if not seen.times:
             raise UsageError(f"{self.plan.scenario}: it cannot be run: {seen.failures}")
 
-    def _from(self, point: Point, exact: bool) -> Iterator[Line]:
+    def _from(self, point: Point, exact: bool) -> Iterator[EventLine]:
         """The lines along events that have not been moved."""
         for which, time in enumerate(self.base):
             if point[which] != time:
@@ -166,9 +175,9 @@ class Exploration:
             low = int(target.attribute.low or 0) if target.attribute else 0
             low = max(time - self.plan.within, low, 0)
             high = min(time + self.plan.within, LONGEST_MS)
-            yield Line(point, which, low, high, self.plan.step, exact)
+            yield EventLine(point, which, low, high, self.plan.step, exact)
 
-    def _next(self, line: Line, found: list[Piece]) -> Iterator[Point]:
+    def _next(self, line: EventLine, found: list[LinePiece]) -> Iterator[Point]:
         """Where to go on: one point of each piece, and those of the grid."""
         home = self.base[line.which]
         times = [one.nearest(home) for one in found]
@@ -255,19 +264,19 @@ class Exploration:
     def _has(self, finding: Finding) -> Callable[[Seen], bool]:
         return lambda seen: any(one[:2] == finding[:2] for one in self.findings(seen))
 
-    def _orders(self) -> list[Order]:
-        made: dict[str, Order] = {}
+    def _orders(self) -> list[FoundOrder]:
+        made: dict[str, FoundOrder] = {}
         for point in self._by_shift():
             seen = self.seen[point]
             if seen.order:
-                made.setdefault(seen.order, Order(seen.order, point, 0)).runs += 1
+                made.setdefault(seen.order, FoundOrder(seen.order, point, 0)).runs += 1
         return list(made.values())
 
-    def _problems(self) -> list[Problem]:
-        made: dict[tuple[str, str], Problem] = {}
+    def _problems(self) -> list[FoundProblem]:
+        made: dict[tuple[str, str], FoundProblem] = {}
         for point in self._by_shift():
             for finding in {one[:2]: one for one in self.findings(self.seen[point])}.values():
-                made.setdefault(finding[:2], Problem(finding, point, 0)).runs += 1
+                made.setdefault(finding[:2], FoundProblem(finding, point, 0)).runs += 1
         return list(made.values())
 
     def _by_shift(self) -> list[Point]:
@@ -280,7 +289,7 @@ class Exploration:
         moves = [one.path for one in self.targets]
         return {"prima": __version__, **runs, "moves": moves, "files": self.stage.digests()}
 
-    def boundaries(self, which: int) -> list[Piece]:
+    def boundaries(self, which: int) -> list[LinePiece]:
         """The pieces of one event's times, the others being as written."""
         times = {
             point[which]: seen.order
@@ -301,7 +310,7 @@ def _seen(made: Made | Died) -> Seen:
     return Seen(3, failures=told, found=[Finding("error", told, told)])
 
 
-def _events(scenario: str, settings: Settings) -> list[str]:
+def _events(scenario: str, settings: ExperimentSettings) -> list[str]:
     """The paths of all times of a scenario's events."""
     root = Examiner.of([scenario], [], settings).scripts[0].root
     paths = [f"when[{number}]" for number in range(1, len(root.all("when")) + 1)]

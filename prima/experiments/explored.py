@@ -14,8 +14,8 @@ from typing import Any
 from prima.errors import UsageError, counted
 from prima.errors.visible import visible
 from prima.experiments.examine import Finding, Seen
-from prima.experiments.explore import Exploration, Order, Problem
-from prima.experiments.lines import Piece, Point
+from prima.experiments.explore import Exploration, FoundOrder, FoundProblem
+from prima.experiments.lines import LinePiece, Point
 from prima.experiments.pools import Pool
 from prima.loading.writing import write_whole
 from prima.messages import Json
@@ -44,7 +44,7 @@ class Explored:
             made[order.signature] = stage.rehearsed(one, stage.loaded(one)).rows()
         return made
 
-    def difference(self, order: Order) -> str:
+    def difference(self, order: FoundOrder) -> str:
         """The first row that is another than in the run as written."""
         base = self._rows[self.exploration.seen[self.exploration.base].order]
         for row, same in zip(self._rows[order.signature], base, strict=False):
@@ -92,7 +92,7 @@ class Explored:
             ],
         }
 
-    def _order(self, order: Order) -> dict[str, Json]:
+    def _order(self, order: FoundOrder) -> dict[str, Json]:
         return {
             "order": order.signature,
             "runs": order.runs,
@@ -100,7 +100,7 @@ class Explored:
             "difference": self.difference(order),
         }
 
-    def _problem(self, number: int, problem: Problem) -> dict[str, Json]:
+    def _problem(self, number: int, problem: FoundProblem) -> dict[str, Json]:
         return {
             "kind": problem.finding.kind,
             "text": problem.finding.text,
@@ -110,7 +110,7 @@ class Explored:
         }
 
     @staticmethod
-    def name(number: int, problem: Problem) -> str:
+    def name(number: int, problem: FoundProblem) -> str:
         """The name of a problem's files."""
         return f"{number}-{problem.finding.kind}"
 
@@ -150,11 +150,11 @@ class Explored:
         return f"{runs}: {found}; complete for {events} moved at once by up to {one.plan.within / 1000:g} s"
 
 
-def _piece(piece: Piece) -> dict[str, Json]:
+def _piece(piece: LinePiece) -> dict[str, Json]:
     return {"from": piece.first / 1000, "to": piece.last / 1000, "order": piece.order}
 
 
-class Folder:
+class ExplorationFolder:
     """An exploration's folder: its runs, as they are made, and its results."""
 
     def __init__(self, exploration: Exploration, path: str) -> None:
@@ -238,7 +238,7 @@ def carried_out(
         yield 0
         yield from exploration.explore(pool)
         return
-    folder = Folder(exploration, os.fspath(output))
+    folder = ExplorationFolder(exploration, os.fspath(output))
     with folder.keeping(resume) as kept:
         yield kept
         yield from exploration.explore(pool)

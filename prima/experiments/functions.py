@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from prima.errors import UsageError
 from prima.experiments.cluster import pool_of
-from prima.experiments.explore import Exploration, Plan
+from prima.experiments.explore import Exploration, ExplorationPlan
 from prima.experiments.explored import Explored, carried_out
 from prima.experiments.pools import Pool
 from prima.experiments.studyfile import Level, levels_text, question_of
@@ -121,7 +121,9 @@ def explore(
     _check_numbers(within=within, depth=depth, runs=runs, workers=workers)
     _check_numbers(0, step=step)
     moves = (moves,) if isinstance(moves, str) else moves
-    plan = Plan(os.fspath(scenario), tuple(moves), within, depth, step, runs, policy, isolate)
+    plan = ExplorationPlan(
+        os.fspath(scenario), tuple(moves), within, depth, step, runs, policy, isolate
+    )
     exploration = Exploration(plan)
     if resume and output is None:
         raise UsageError("resume needs the output that it goes on with.")

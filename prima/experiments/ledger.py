@@ -9,7 +9,7 @@ import stat
 from pathlib import Path
 from typing import Any
 
-from prima.experiments.plan import LEDGER, TRANSCRIPT, Job, Options, Row
+from prima.experiments.plan import LEDGER, TRANSCRIPT, BatchRow, Job, Options
 from prima.version import __version__
 
 MOST_LEDGER = 1_000_000
@@ -24,7 +24,7 @@ KEPT = (
 """The fields of a row that a ledger keeps; the rest follows from the job."""
 
 
-class Inputs:
+class InputDigests:
     """Records the digest of every file that a run reads; provides none itself."""
 
     folder = ""
@@ -78,7 +78,7 @@ def key_of(options: Options, job: Job) -> dict[str, Any]:
     }
 
 
-def earlier_row(options: Options, job: Job) -> Row | None:
+def earlier_row(options: Options, job: Job) -> BatchRow | None:
     """The row of the same run in an earlier batch, if its inputs and transcript are unchanged."""
     try:
         with open(f"{job.stem}{LEDGER}", encoding="utf-8") as stream:
@@ -94,11 +94,11 @@ def earlier_row(options: Options, job: Job) -> Row | None:
         kept = {name: ledger["row"][name] for name in KEPT}
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
-    fresh = Row(job.scenario, transcript=f"{job.stem}{TRANSCRIPT}", earlier=True, **kept)
+    fresh = BatchRow(job.scenario, transcript=f"{job.stem}{TRANSCRIPT}", earlier=True, **kept)
     return fresh if _sound(fresh) else None
 
 
-def _sound(row: Row) -> bool:
+def _sound(row: BatchRow) -> bool:
     """Whether a row from a ledger has values of the right types."""
     whole = (
         row.exit,

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from prima.errors import UsageError, did_you_mean
 from prima.language.distributions import MEASURED, RANGE, Distributions, Quantile, written
 from prima.language.values import read_value
-from prima.sim.paths import Target
+from prima.sim.paths import ScenarioValue
 
 MOST_LEVELS = 100_000
 SPLIT = re.compile(r"(?<!\\)\|")
@@ -53,7 +53,7 @@ def cell(kind: str, text: str) -> str | float | int | None:
     return value / 1000 if kind == "duration" else value
 
 
-def read_factor(target: Target, text: str, folder: str = "") -> Factor:
+def read_factor(target: ScenarioValue, text: str, folder: str = "") -> Factor:
     """Read the levels of a value.
 
     Args:
@@ -70,7 +70,7 @@ def read_factor(target: Target, text: str, folder: str = "") -> Factor:
 class _Levels:
     """Reads the levels of one factor."""
 
-    def __init__(self, target: Target, folder: str) -> None:
+    def __init__(self, target: ScenarioValue, folder: str) -> None:
         self.target = target
         self.kind = target.kind
         bounds = target.attribute

@@ -24,7 +24,7 @@ Found = TypeVar("Found")
 Search = Generator[list[Point], Results, Found]
 
 
-class Piece(NamedTuple):
+class LinePiece(NamedTuple):
     """Times of one event, the first and last (ms) of neighbours with one order."""
 
     first: int
@@ -37,7 +37,7 @@ class Piece(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Line:
+class EventLine:
     """All times of one event, the others being where they are."""
 
     origin: Point
@@ -53,7 +53,7 @@ class Line:
         """The point with this time."""
         return moved(self.origin, self.which, time)
 
-    def search(self) -> Search[list[Piece]]:
+    def search(self) -> Search[list[LinePiece]]:
         """Try what may matter; find the pieces.
 
         An order can only change where the event comes just before, at or just after an instant
@@ -126,14 +126,14 @@ def _gaps(known: Mapping[int, Seen]) -> Iterable[int]:
             yield (one + two) // 2
 
 
-def pieces(orders: Mapping[int, str]) -> list[Piece]:
+def pieces(orders: Mapping[int, str]) -> list[LinePiece]:
     """Neighbours with one order, as one."""
-    made: list[Piece] = []
+    made: list[LinePiece] = []
     for time in sorted(orders):
         if made and made[-1].order == orders[time]:
             made[-1] = made[-1]._replace(last=time)
         else:
-            made.append(Piece(time, time, orders[time]))
+            made.append(LinePiece(time, time, orders[time]))
     return made
 
 

@@ -15,7 +15,7 @@ TRANSCRIPT, LEDGER = ".jsonl", ".run.json"
 
 
 @dataclass(slots=True)
-class Row:
+class BatchRow:
     """The result of one run."""
 
     scenario: str
@@ -71,7 +71,7 @@ class Options:
     """By which runs are drawn, if not by the scenario's own."""
 
 
-class Plan(Iterable[Job]):
+class BatchPlan(Iterable[Job]):
     """The runs of a batch: each scenario under each policy, in order."""
 
     def __init__(

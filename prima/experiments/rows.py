@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from prima.experiments.plan import Row
+from prima.experiments.plan import BatchRow
 
 COLUMNS = (
     ("policy", 8),
@@ -23,7 +23,7 @@ COLUMNS = (
 """Headings after the scenario's, and minimum widths."""
 
 
-def row_data(row: Row) -> dict[str, Any]:
+def row_data(row: BatchRow) -> dict[str, Any]:
     """A row as data for JSON; it does not depend on when or how the run was made."""
     data = asdict(row)
     del data["earlier"], data["full"]
@@ -35,7 +35,7 @@ def format_head(wide: int) -> str:
     return _line(["scenario", *(head for head, _ in COLUMNS)], wide)
 
 
-def format_row(row: Row, wide: int) -> str:
+def format_row(row: BatchRow, wide: int) -> str:
     """A row of the table."""
     cells = [row.scenario, row.policy or "-", str(row.exit), row.ended or "-"]
     if row.ended is None:

@@ -29,7 +29,7 @@ EXPECTED = ".txt"
 
 
 @dataclass(slots=True)
-class Result:
+class StudyResult:
     """One situation under one policy."""
 
     situation: str
@@ -53,7 +53,7 @@ def situations() -> list[Path]:
 
 def study(
     scenarios: Iterable[str | Path] = (), policies: Iterable[str] = POLICIES
-) -> Iterator[Result]:
+) -> Iterator[StudyResult]:
     """Run scenarios, by default the ten situations, under policies, and measure each run.
 
     Raises:
@@ -67,7 +67,7 @@ def study(
         for policy in chosen:
             transcript = rehearse(loaded, policy)
             distance, missing = _distance(expected, transcript)
-            yield Result(
+            yield StudyResult(
                 loaded.cast.scenario.id,
                 policy,
                 observe(transcript.records),
@@ -119,17 +119,17 @@ COUNTED = {"reaction_mean": "reactions", "response_mean": "responses"}
 """The count over which each mean is taken."""
 
 
-def result_data(result: Result) -> dict[str, Json]:
+def result_data(result: StudyResult) -> dict[str, Json]:
     """A result as data for JSON, with its criteria among its fields."""
     data = asdict(result)
     criteria = data.pop("criteria")
     return {**data, **criteria}
 
 
-def format_csv(results: Iterable[Result]) -> str:
+def format_csv(results: Iterable[StudyResult]) -> str:
     """Results as CSV: a line for each situation and policy."""
     made = io.StringIO()
-    names = [one.name for one in fields(Result) if one.name != "criteria"]
+    names = [one.name for one in fields(StudyResult) if one.name != "criteria"]
     writer = csv.DictWriter(
         made,
         [*names, *(one.name for one in fields(Criteria) if one.name != "delays")],
@@ -142,7 +142,7 @@ def format_csv(results: Iterable[Result]) -> str:
     return made.getvalue()
 
 
-def format_table(results: list[Result]) -> str:
+def format_table(results: list[StudyResult]) -> str:
     """The table: situations by policies, then the sums of each policy."""
     heads = ["situation", "policy", *(head for head, _ in COLUMNS), "moved", "missing"]
     lines = [_cells(result) for result in results]
@@ -167,7 +167,7 @@ def _aligned(lines: list[list[str]]) -> str:
     return "\n".join(made) + "\n"
 
 
-def _cells(result: Result) -> list[str]:
+def _cells(result: StudyResult) -> list[str]:
     values = [_shown(getattr(result.criteria, name)) for _, name in COLUMNS]
     return [
         result.situation,
@@ -178,7 +178,7 @@ def _cells(result: Result) -> list[str]:
     ]
 
 
-def _sums(policy: str, results: list[Result]) -> list[str]:
+def _sums(policy: str, results: list[StudyResult]) -> list[str]:
     """A policy in all situations: counts are added, means are taken over all runs."""
     values = [_shown(_sum(name, [result.criteria for result in results])) for _, name in COLUMNS]
     known = [r for r in results if r.distance is not None]

@@ -21,7 +21,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from prima.errors import UsageError, did_you_mean
-from prima.experiments.sweep import Question
+from prima.experiments.sweep import SweepQuestion
 from prima.language.values import read_value
 from prima.markup.toml import parse_toml
 
@@ -60,7 +60,7 @@ class Study(BaseModel):
     vary: dict[str, Level | Annotated[list[Level], Field(min_length=1)]] = {}
 
 
-def question_of(scenarios: Sequence[str], vary: Mapping[str, str], **options: Any) -> Question:
+def question_of(scenarios: Sequence[str], vary: Mapping[str, str], **options: Any) -> SweepQuestion:
     """What is asked by scenarios, or by a study file and what comes before what it says.
 
     Args:
@@ -73,7 +73,7 @@ def question_of(scenarios: Sequence[str], vary: Mapping[str, str], **options: An
     """
     if not scenarios:
         raise UsageError("Name a scenario, or a study file (.toml).")
-    asked = Question(tuple(scenarios), vary)
+    asked = SweepQuestion(tuple(scenarios), vary)
     if any(one.endswith(".toml") for one in scenarios):
         if len(scenarios) > 1:
             raise UsageError("A study file names its scenarios itself: name it alone.")
@@ -83,7 +83,7 @@ def question_of(scenarios: Sequence[str], vary: Mapping[str, str], **options: An
     return replace(asked, **{name: one for name, one in options.items() if one is not None})
 
 
-def read_study(path: str) -> Question:
+def read_study(path: str) -> SweepQuestion:
     """Read a study file; paths in it begin at its folder.
 
     Raises:
@@ -104,7 +104,7 @@ def read_study(path: str) -> Question:
     places = {one: _place(path, text, one) for one in study.vary}
     places |= dict.fromkeys(study.policies, _place(path, text, "policies"))
     places |= dict.fromkeys(scenarios, _place(path, text, "scenarios"))
-    return Question(
+    return SweepQuestion(
         scenarios,
         {name: levels_text(levels) for name, levels in study.vary.items()},
         tuple(study.policies),

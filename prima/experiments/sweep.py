@@ -25,7 +25,7 @@ from prima.experiments.table import (
     read_rows,
     write_parquet,
 )
-from prima.experiments.variants import Made, Settings, Stage, Variant
+from prima.experiments.variants import ExperimentSettings, Made, Stage, Variant
 from prima.loading.writing import write_whole
 from prima.messages import Json
 from prima.pool import Died
@@ -38,7 +38,7 @@ PLAN, ORDERS, ROWS = "plan.json", "orders", "rows.csv"
 
 
 @dataclass(frozen=True)
-class Question:
+class SweepQuestion:
     """What a sweep is to find out: scenarios, what is varied in them, how, and how often."""
 
     scenarios: tuple[str, ...]
@@ -70,7 +70,7 @@ class Question:
 class Sweep:
     """The plan of a sweep, checked: all that its runs need has been read."""
 
-    def __init__(self, question: Question) -> None:
+    def __init__(self, question: SweepQuestion) -> None:
         """Plan a sweep.
 
         Raises:
@@ -85,8 +85,8 @@ class Sweep:
         except UsageError as error:
             raise question.placed(error) from None
 
-    def _plan(self, question: Question) -> None:
-        settings = Settings(question.bound, question.patience, question.isolate)
+    def _plan(self, question: SweepQuestion) -> None:
+        settings = ExperimentSettings(question.bound, question.patience, question.isolate)
         paths = list(question.vary)
         self.stage = Stage.of(question.scenarios, paths, settings)
         self.factors = self._factors()

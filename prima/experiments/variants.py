@@ -18,11 +18,11 @@ from prima.errors import TOO_MUCH, DocumentError, PrimaError, Problem, UsageErro
 from prima.errors.visible import visible
 from prima.interpreter.elements import Document
 from prima.loading import Loaded, load_text, with_scenario
-from prima.loading.files import Contents, Files, in_place_of_files, read_file, read_head
-from prima.markup.edits import Edit, edited, set_attribute
+from prima.loading.files import Files, GivenFiles, in_place_of_files, read_file, read_head
+from prima.markup.edits import TextEdit, edited, set_attribute
 from prima.markup.limits import LIMITS
 from prima.messages import Json
-from prima.sim.paths import Target, find
+from prima.sim.paths import ScenarioValue, find
 from prima.sim.scenario import look_at_scenario
 from prima.sim.vocabulary import SCENARIO
 from prima.testing.checking import Failure, check
@@ -70,7 +70,7 @@ class Made:
 
 
 @dataclass(frozen=True, slots=True)
-class Settings:
+class ExperimentSettings:
     """What holds for all runs of an experiment."""
 
     bound: int | None = None
@@ -79,7 +79,7 @@ class Settings:
     limits: Mapping[str, int] = field(default_factory=lambda: asdict(LIMITS))
 
 
-class Script:
+class ScenarioText:
     """A scenario as it is written, and the values in it that are varied."""
 
     def __init__(self, path: str, data: bytes, paths: Sequence[str]) -> None:
@@ -122,7 +122,7 @@ class Script:
         edits = [one.edit(value) for one, value in pairs if value != one.written]
         return edited(self.root.source.text, [*edits, *self._seeded(variant)])
 
-    def _seeded(self, variant: Variant) -> list[Edit]:
+    def _seeded(self, variant: Variant) -> list[TextEdit]:
         """The edit that lets a run be drawn by its seed, if anything is drawn."""
         if not (self._drawn and variant.seed):
             return []
@@ -150,7 +150,7 @@ class Script:
         return edited(self.root.source.text, [*edits, *more])
 
 
-def _is_path(target: Target) -> bool:
+def _is_path(target: ScenarioValue) -> bool:
     return target.kind == "path"
 
 
@@ -199,16 +199,19 @@ class Kept:
                         f" or more than {MOST_FILES:,}. Keep it in a folder of its own."
                     )
 
-    def contents(self) -> Contents:
+    def contents(self) -> GivenFiles:
         """What was read, for another process."""
-        return Contents(self.texts, self.heads, self.folder)
+        return GivenFiles(self.texts, self.heads, self.folder)
 
 
 class Stage:
     """Scenarios with all that they name, and what of them is varied; it makes runs."""
 
     def __init__(
-        self, scenarios: Sequence[tuple[str, bytes]], paths: Sequence[str], settings: Settings
+        self,
+        scenarios: Sequence[tuple[str, bytes]],
+        paths: Sequence[str],
+        settings: ExperimentSettings,
     ) -> None:
         self.scenarios = list(scenarios)
         self.paths = list(paths)
@@ -216,7 +219,7 @@ class Stage:
         self.files: Files = Kept()
 
     @classmethod
-    def of(cls, names: Sequence[str], paths: Sequence[str], settings: Settings) -> Stage:
+    def of(cls, names: Sequence[str], paths: Sequence[str], settings: ExperimentSettings) -> Stage:
         """Read scenarios.
 
         Raises:
@@ -250,15 +253,15 @@ class Stage:
                     self.files.keep(document.folder)
 
     @cached_property
-    def scripts(self) -> list[Script]:
+    def scripts(self) -> list[ScenarioText]:
         """The scenarios as written."""
-        return [Script(path, data, self.paths) for path, data in self.scenarios]
+        return [ScenarioText(path, data, self.paths) for path, data in self.scenarios]
 
     @cached_property
     def _cast(self) -> dict[tuple[int, tuple[str, ...]], Loaded]:
         return {}
 
-    def targets(self, scenario: int) -> list[Target]:
+    def targets(self, scenario: int) -> list[ScenarioValue]:
         """What is varied in a scenario."""
         return self.scripts[scenario].targets
 

@@ -7,7 +7,7 @@ from datetime import datetime
 from itertools import chain
 from xml.sax.saxutils import escape, quoteattr
 
-from prima.exports.timeline import KINDS, Part, Timeline, clean, unused
+from prima.exports.timeline import KINDS, TierPart, Timeline, clean, unused
 
 MARK_MS = 200
 """Duration (ms) of a point, unless the next comes earlier: EAF has no points."""
@@ -62,18 +62,18 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
     yield from _types(rules, {tag for tag in languages.values() if tag})
 
 
-def _rules(parts: Iterable[Part]) -> set[str]:
+def _rules(parts: Iterable[TierPart]) -> set[str]:
     marks = chain.from_iterable(part.marks for part in parts)
     return {mark.about["rule"] for mark in marks if "rule" in mark.about}
 
 
-def _details(part: Part) -> list[str]:
+def _details(part: TierPart) -> list[str]:
     """The details of a tier's annotations that have tiers of their own."""
     columns = CHILDREN.get(part.tier.kind, ())
     return [one for one in columns if any(one in mark.about for mark in part.marks)]
 
 
-def _count(part: Part, column: str) -> int:
+def _count(part: TierPart, column: str) -> int:
     """The number of marks with a detail."""
     return sum(column in mark.about for mark in part.marks)
 
@@ -104,7 +104,7 @@ def _date(value: object) -> str:
 class _Slots:
     """Two time slots for each annotation: annotations that share a slot would move together."""
 
-    def __init__(self, parts: list[Part]) -> None:
+    def __init__(self, parts: list[TierPart]) -> None:
         times: list[tuple[int, int]] = []
         for part in parts:
             for place, mark in enumerate(part.marks):
@@ -128,7 +128,7 @@ class _Slots:
         return self._ids[2 * annotation - 2], self._ids[2 * annotation - 1]
 
 
-def _end(part: Part, place: int) -> int:
+def _end(part: TierPart, place: int) -> int:
     """The end of an annotation; a point is extended."""
     mark = part.marks[place]
     if mark.end > mark.start:
@@ -137,7 +137,7 @@ def _end(part: Part, place: int) -> int:
     return min([mark.start + MARK_MS, *(one.start for one in after)])
 
 
-def _tier(part: Part, first: int, slots: _Slots, languages: dict[str, str]) -> Iterator[str]:
+def _tier(part: TierPart, first: int, slots: _Slots, languages: dict[str, str]) -> Iterator[str]:
     tier = part.tier
     tag = languages.get(tier.who) or languages.get("", "")
     lang = f' LANG_REF="{tag}"' if tag and tier.kind in ("says", "user-says") else ""
@@ -157,7 +157,7 @@ def _tier(part: Part, first: int, slots: _Slots, languages: dict[str, str]) -> I
 
 
 def _child(
-    part: Part, first: int, name: str, column: str, number: int, rules: list[str]
+    part: TierPart, first: int, name: str, column: str, number: int, rules: list[str]
 ) -> Iterator[str]:
     """A tier with one detail of a part's annotations, numbered from ``number``."""
     kind = "rule" if column == "rule" else "detail"

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from prima.exports.timeline import Interval, Part, Tier, Timeline
+from prima.exports.timeline import Interval, Tier, TierPart, Timeline
 
 
 def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
     """The file, in pieces: interval tiers without gaps, and point tiers."""
     # Praat requires at least one tier, even if the run is empty.
-    parts = timeline.parts() or [Part("run", Tier("run", "events", "robot"), [])]
+    parts = timeline.parts() or [TierPart("run", Tier("run", "events", "robot"), [])]
     ends = (_end(mark) for part in parts if not part.tier.points for mark in part.marks)
     end = max(1, timeline.end, *ends)
     yield (

@@ -40,7 +40,7 @@ def timeline(name: str, records: Iterable[Record]) -> Timeline:
     run = run_of(records, name)
     if run.end * 1000 > LONGEST_MS:
         raise UsageError(f"{name}: the transcript ends after more than a day.")
-    return _Builder(name, run).result()
+    return _TierBuilder(name, run).result()
 
 
 def _value(value: Json) -> str:
@@ -51,7 +51,7 @@ def _ms(seconds: float) -> int:
     return round(seconds * 1000)
 
 
-class _Builder:
+class _TierBuilder:
     """Fills the tiers; marks of one tier with the same start are in the order of their ends."""
 
     def __init__(self, name: str, run: Run) -> None:

@@ -116,7 +116,7 @@ class Tier:
 
 
 @dataclass(slots=True)
-class Part:
+class TierPart:
     """A tier, or a part of it without overlaps, with a unique name."""
 
     name: str
@@ -136,7 +136,7 @@ class Timeline:
     """The transcript's name, for messages."""
     over: bool = False
     """Whether the transcript has the end of the run."""
-    _parts: list[Part] | None = None
+    _parts: list[TierPart] | None = None
     languages: dict[str, str] = field(default_factory=dict)
     """The languages of applications, as far as the transcript has them."""
 
@@ -157,7 +157,7 @@ class Timeline:
                 hint = did_you_mean(name, known) or f"There is {one_of(known) or 'none'}."
                 raise UsageError(f'{self.name}: unknown application "{name}". {hint}')
 
-    def parts(self) -> list[Part]:
+    def parts(self) -> list[TierPart]:
         """The tiers without overlaps; overlapping marks go to ``NAME-2`` and so on.
 
         Raises:
@@ -167,7 +167,7 @@ class Timeline:
             self._parts = list(self._divided())
         return self._parts
 
-    def _divided(self) -> Iterator[Part]:
+    def _divided(self) -> Iterator[TierPart]:
         names: set[str] = set()
         lanes = ((tier, n, lane) for tier in self.tiers for n, lane in enumerate(tier.lanes(), 1))
         for tier, number, marks in lanes:
@@ -175,7 +175,7 @@ class Timeline:
                 message = f"more than {MOST_TIERS} tiers, because too many intervals overlap."
                 raise UsageError(f"{self.name}: {message} Try --to csv.")
             name = unused(tier.name if number == 1 else f"{tier.name}-{number}", names)
-            yield Part(name, tier, marks)
+            yield TierPart(name, tier, marks)
 
 
 def unused(name: str, names: set[str]) -> str:

@@ -14,7 +14,7 @@ from prima.errors import Hint, Span, suggestion
 from prima.grammar.abnferrors import unexpected
 from prima.grammar.abnfheader import header_end
 from prima.grammar.errors import GrammarError, Problems, Where, refuse
-from prima.grammar.model import Document, Part, Reference, Repeat, Rule, Special, Tag, Words
+from prima.grammar.model import GrammarDocument, Part, Reference, Repeat, Rule, Special, Tag, Words
 from prima.grammar.text import fold, keys
 from prima.grammar.values import (
     MODES,
@@ -34,7 +34,7 @@ MAX_DEPTH = 100
 _REPEAT = re.compile(r"<\s*([^/\s]+)\s*(?:/([^/]*)/\s*)?>")
 
 
-def read_abnf(source: Source, document: Document, problems: Problems, where: Where) -> None:
+def read_abnf(source: Source, document: GrammarDocument, problems: Problems, where: Where) -> None:
     """Read a text in the ABNF form into a document.
 
     Raises:
@@ -42,7 +42,7 @@ def read_abnf(source: Source, document: Document, problems: Problems, where: Whe
     """
     document.where = where
     header = header_end(source)
-    reader = _Reader(source, document, problems)
+    reader = _AbnfReader(source, document, problems)
     before = _reader.set(reader)
     try:
         _parser().parse(TextSlice(source.text, header, len(source.text)))
@@ -52,14 +52,14 @@ def read_abnf(source: Source, document: Document, problems: Problems, where: Whe
         _reader.reset(before)
 
 
-class _Reader:
+class _AbnfReader:
     """Makes parts of what the parser finds, as it finds it; notes what is wrong and goes on.
 
     A method in capitals gets a token (abnf.lark says which) as soon as it is taken, any other
     one the parts of a whole rule of that grammar.
     """
 
-    def __init__(self, source: Source, document: Document, problems: Problems) -> None:
+    def __init__(self, source: Source, document: GrammarDocument, problems: Problems) -> None:
         self.source = source
         self.document = document
         self.problems = problems
@@ -319,7 +319,7 @@ class _Reader:
 
 Alternatives = tuple[list[Part], list[float | None]]
 """What may be said, and the weight of each, if it is given."""
-_reader: ContextVar[_Reader] = ContextVar("reader")
+_reader: ContextVar[_AbnfReader] = ContextVar("reader")
 """The one that is at work; the parser is made once for all of them."""
 
 
@@ -327,7 +327,7 @@ class _Handlers:
     """The methods of the reader that is at work."""
 
     def __getattr__(self, name: str) -> Callable[[Any], object]:
-        method = getattr(_Reader, name)
+        method = getattr(_AbnfReader, name)
         return lambda found: method(_reader.get(), found)
 
 

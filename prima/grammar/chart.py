@@ -10,8 +10,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from prima.grammar.model import (
+    Alternatives,
     BuiltIn,
-    Choice,
     Part,
     Reference,
     Repeat,
@@ -20,7 +20,7 @@ from prima.grammar.model import (
     Tag,
     Words,
 )
-from prima.grammar.text import Utterance
+from prima.grammar.text import MatchedUtterance
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -33,7 +33,7 @@ MOST_EMPTY = 1000
 """How often what is repeated may match nothing; where it has to more often, all of it is one time."""
 
 
-class Way(NamedTuple):
+class ChartWay(NamedTuple):
     """One way to match a stretch: what comes before, and what comes last."""
 
     rank: int
@@ -56,12 +56,12 @@ class Cell:
         self.start = start
         self.end = end
         self.number = number
-        self.ways: list[Way] = []
+        self.ways: list[ChartWay] = []
         self.value: Json = None
         """What a built-in type read."""
 
 
-class Spot:
+class ChartSpot:
     """An expansion begun at one place."""
 
     __slots__ = ("begun", "ends", "part", "start", "waiting")
@@ -78,7 +78,7 @@ class Spot:
 class Waiting(NamedTuple):
     """A request for an expansion: the spot that made it, its parts so far, and what they matched."""
 
-    spot: Spot
+    spot: ChartSpot
     done: int
     before: Cell | None
 
@@ -86,16 +86,18 @@ class Waiting(NamedTuple):
 class Chart:
     """All matches of one utterance."""
 
-    def __init__(self, said: Utterance, root: Reference, most_steps: int = MAX_STEPS) -> None:
+    def __init__(
+        self, said: MatchedUtterance, root: Reference, most_steps: int = MAX_STEPS
+    ) -> None:
         self.utterance = said
         self.said = said.said
         self.steps_left = most_steps
         self.open = False
         """Whether something that begins with this utterance may match."""
-        self._spots: dict[tuple[int, int], Spot] = {}
+        self._spots: dict[tuple[int, int], ChartSpot] = {}
         self._cells = 0
-        self._todo: list[tuple[Waiting | None, Spot | Cell]] = []
-        self._top = Spot(root, 0)
+        self._todo: list[tuple[Waiting | None, ChartSpot | Cell]] = []
+        self._top = ChartSpot(root, 0)
         self._todo.append((None, self._top))
 
     def run(self, prefixes: bool = False) -> Cell | None:
@@ -107,7 +109,7 @@ class Chart:
             if self.steps_left < 0:
                 return None
             waiting, item = todo.pop()
-            if isinstance(item, Spot):
+            if isinstance(item, ChartSpot):
                 self._begin(item)
             elif waiting is not None:
                 self._resume(waiting, item)
@@ -118,7 +120,7 @@ class Chart:
         key = (id(part), start)
         spot = self._spots.get(key)
         if spot is None:
-            spot = self._spots[key] = Spot(part, start)
+            spot = self._spots[key] = ChartSpot(part, start)
             self._todo.append((None, spot))
         spot.waiting.append(waiting)
         for cell in spot.ends.values():
@@ -128,7 +130,7 @@ class Chart:
         self._cells += 1
         return Cell(part, start, end, self._cells)
 
-    def _finish(self, spot: Spot, end: int, way: Way) -> Cell:
+    def _finish(self, spot: ChartSpot, end: int, way: ChartWay) -> Cell:
         """An expansion matches up to a place, in one more way."""
         cell = spot.ends.get(end)
         if cell is None:
@@ -137,12 +139,12 @@ class Chart:
         cell.ways.append(way)
         return cell
 
-    def _begin(self, spot: Spot) -> None:
+    def _begin(self, spot: ChartSpot) -> None:
         part, start = spot.part, spot.start
         match part:
             case Words(folded):
                 self._words(spot, folded)
-            case Choice():
+            case Alternatives():
                 self._choice(spot, part)
             case Sequence():
                 self._go_on(spot, 0, start, _NO_WAY)
@@ -162,19 +164,21 @@ class Chart:
         """An expansion that was requested has matched."""
         spot = waiting.spot
         match spot.part:
-            case Choice(costs=costs):
-                way = Way(waiting.done, costs[waiting.done], None, cell)
+            case Alternatives(costs=costs):
+                way = ChartWay(waiting.done, costs[waiting.done], None, cell)
                 self._finish(spot, cell.end, way)
             case Sequence():
-                self._go_on(spot, waiting.done + 1, cell.end, Way(0, 0.0, waiting.before, cell))
+                self._go_on(
+                    spot, waiting.done + 1, cell.end, ChartWay(0, 0.0, waiting.before, cell)
+                )
             case Repeat():
                 self._repeated(spot, waiting, cell)
             case _:
-                self._finish(spot, cell.end, Way(0, 0.0, None, cell))
+                self._finish(spot, cell.end, ChartWay(0, 0.0, None, cell))
 
     # Kinds of expansions
 
-    def _words(self, spot: Spot, folded: str) -> None:
+    def _words(self, spot: ChartSpot, folded: str) -> None:
         start = spot.start
         if self.said.startswith(folded, start):
             end = start + len(folded)
@@ -183,7 +187,7 @@ class Chart:
         if self._prefixes and len(folded) > len(self.said) - start:
             self.open |= folded.startswith(self.said[start:])
 
-    def _choice(self, spot: Spot, part: Choice) -> None:
+    def _choice(self, spot: ChartSpot, part: Alternatives) -> None:
         start, said = spot.start, self.said
         index = part.index
         left = len(said) - start
@@ -199,7 +203,7 @@ class Chart:
             self._call(part.parts[number], start, Waiting(spot, number, None))
         self.steps_left -= len(index.lengths) + len(tried)
 
-    def _go_on(self, spot: Spot, done: int, end: int, way: Way) -> None:
+    def _go_on(self, spot: ChartSpot, done: int, end: int, way: ChartWay) -> None:
         """So many parts of a sequence have matched."""
         part = spot.part
         assert isinstance(part, Sequence)
@@ -212,7 +216,7 @@ class Chart:
             self._call(part.parts[done], end, Waiting(spot, done, cell))
         cell.ways.append(way)
 
-    def _repeated(self, spot: Spot, waiting: Waiting, cell: Cell) -> None:
+    def _repeated(self, spot: ChartSpot, waiting: Waiting, cell: Cell) -> None:
         """One more time of a repeated expansion."""
         part, done = spot.part, waiting.done
         assert isinstance(part, Repeat)
@@ -226,9 +230,9 @@ class Chart:
             done += 1
             if part.high is None or part.high > len(self.said):
                 done = min(done, part.low)  # how many more does not matter
-        self._again(spot, done, cell.end, Way(0, cost, waiting.before, cell))
+        self._again(spot, done, cell.end, ChartWay(0, cost, waiting.before, cell))
 
-    def _again(self, spot: Spot, done: int, end: int, way: Way) -> None:
+    def _again(self, spot: ChartSpot, done: int, end: int, way: ChartWay) -> None:
         """A repeated expansion has matched so many times."""
         part = spot.part
         assert isinstance(part, Repeat)
@@ -237,12 +241,12 @@ class Chart:
             cell = spot.begun[done, end] = self._cell(None, spot.start, end)
             full = done == part.high
             if done >= part.low:
-                self._finish(spot, end, Way(-done, 0.0 if full else part.stop, cell, None))
+                self._finish(spot, end, ChartWay(-done, 0.0 if full else part.stop, cell, None))
             if not full:
                 self._call(part.part, end, Waiting(spot, done, cell))
         cell.ways.append(way)
 
-    def _special(self, spot: Spot, name: str) -> None:
+    def _special(self, spot: ChartSpot, name: str) -> None:
         if name == "VOID":
             return
         self._finish(spot, spot.start, _NO_WAY)
@@ -251,10 +255,10 @@ class Chart:
             ends = self.utterance.words_from(spot.start)
             self.steps_left -= len(ends)
             for words, end in enumerate(ends, 1):
-                way = Way(0, 0.0, None, None, words)
+                way = ChartWay(0, 0.0, None, None, words)
                 self._finish(spot, self.utterance.after(end), way)
 
-    def _built_in(self, spot: Spot, part: BuiltIn) -> None:
+    def _built_in(self, spot: ChartSpot, part: BuiltIn) -> None:
         start, mode = spot.start, self.utterance.mode
         rest = self.said[start:]
         self.open = self.open or (self._prefixes and part.open(rest, mode))
@@ -268,4 +272,4 @@ class Chart:
                 self._finish(spot, self.utterance.after(end), _NO_WAY).value = value
 
 
-_NO_WAY = Way(0, 0.0, None, None)
+_NO_WAY = ChartWay(0, 0.0, None, None)

@@ -11,7 +11,7 @@ from prima.errors.diagnoses.structure import DUPLICATE_ID, STRAY_TEXT
 from prima.errors.diagnoses.values import BAD_VALUE
 from prima.errors.diagnosis import NO_HINT
 from prima.grammar.grammar import Grammar
-from prima.grammar.model import Document, Part, Reference, Repeat, Rule, Tag, Words
+from prima.grammar.model import GrammarDocument, Part, Reference, Repeat, Rule, Tag, Words
 from prima.grammar.prefixes import index_choices
 from prima.grammar.text import fold
 from prima.grammar.values import choice, repeat, sequence
@@ -46,16 +46,16 @@ BAD_REPEAT = BAD_VALUE.says("{wrong}", 'Write one such as "0-1".')
 
 def read_grammar(note: Note, node: Node) -> Grammar:
     """A grammar of rules, or of one expansion."""
-    return _Reader(note, node).grammar()
+    return _DialogueGrammarReader(note, node).grammar()
 
 
-class _Reader:
+class _DialogueGrammarReader:
     """Reads one grammar, of which the schema has been checked."""
 
     def __init__(self, note: Note, node: Node) -> None:
         self.note = note
         self.node = node
-        self.document = Document("", partial(node.place_of, ""), dialect="last")
+        self.document = GrammarDocument("", partial(node.place_of, ""), dialect="last")
 
     def grammar(self) -> Grammar:
         """The grammar; wherever a problem is noted, a rule takes nothing."""

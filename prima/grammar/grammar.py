@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 from prima.errors import Problem
 from prima.grammar.chart import MAX_STEPS, Cell, Chart
 from prima.grammar.errors import GrammarError, Where, refuse
-from prima.grammar.model import Document, Mode, Part, Reference
-from prima.grammar.ranking import Analysis, best, frames
-from prima.grammar.semantics import Failure, Interpreter, SemanticError
-from prima.grammar.text import Utterance, utterance
+from prima.grammar.model import GrammarDocument, Mode, Part, Reference
+from prima.grammar.ranking import RankedParse, best, frames
+from prima.grammar.semantics import SemanticError, TagFailed, TagInterpreter
+from prima.grammar.text import MatchedUtterance, utterance
 from prima.script.budget import Budget
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class Grammar:
 
     def __init__(
         self,
-        document: Document,
+        document: GrammarDocument,
         rule: str,
         where: Where,
         lenient: bool = False,
@@ -154,9 +154,9 @@ class Grammar:
                 break
         return found
 
-    def _interpreted(self, analysis: Analysis, said: Utterance, budget: Budget) -> Match:
+    def _interpreted(self, analysis: RankedParse, said: MatchedUtterance, budget: Budget) -> Match:
         """The match that an analysis is, with what it means."""
-        reader = Interpreter(said.mode, budget)
+        reader = TagInterpreter(said.mode, budget)
         value: Json = None
         error = None
         try:
@@ -165,7 +165,7 @@ class Grammar:
                 value = reader.text()
             elif self._document.dialect == "last":
                 value = said.text.strip() if reader.last is None else reader.last.code
-        except Failure as failure:
+        except TagFailed as failure:
             error = failure.error
         return Match(
             said.text,
@@ -197,7 +197,7 @@ class Grammar:
         SISR's default assignment, by which the last rule counts, is for grammars that use it;
         the others are of the time before it: three keys of a rule ``digit`` are a number.
         """
-        seen: dict[int, Document] = {}
+        seen: dict[int, GrammarDocument] = {}
         stack = [self._document]
         while stack:
             document = stack.pop()
@@ -235,7 +235,7 @@ class Grammar:
         return f"<Grammar {self.uri or 'inline'} root={self.root!r} mode={self.mode!r}>"
 
 
-def _analyses(top: Cell, most: int, budget: Budget) -> Iterator[Analysis]:
+def _analyses(top: Cell, most: int, budget: Budget) -> Iterator[RankedParse]:
     """The best analyses of an utterance, as long as there is time to look at them."""
     work = 0
     for number, analysis in enumerate(best(top, 1 if most == 1 else min(most * 4, MOST_ANALYSES))):

@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterable
 from functools import lru_cache
 
-from prima.grammar.model import Document
+from prima.grammar.model import GrammarDocument
 from prima.script.names import script_names
 from prima.script.parse import Code, Node, inner, parse_expression, parse_script
 
@@ -40,7 +40,7 @@ _WORDS = re.compile(r"[^\W\d][\w' -]*")
 _CONSTANTS = {"true", "false", "null", "undefined"}
 
 
-def settle(document: Document) -> None:
+def settle(document: GrammarDocument) -> None:
     """Decide how a document's tags are read; the format is one of those known."""
     dialect = FORMATS[document.tag_format]
     codes = [tag.code for tag in document.tags]
@@ -68,7 +68,7 @@ def _used(codes: Iterable[str]) -> set[str]:
     return {name for one in names for name in (*one.read, *one.written)}
 
 
-def _guess(document: Document, codes: list[str]) -> str:
+def _guess(document: GrammarDocument, codes: list[str]) -> str:
     if any(_uses_sisr(code) for code in codes):
         return "script"
     bare = all(not _dollars(one) and not _slots(one) and not _value(one) for one in codes)

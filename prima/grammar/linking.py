@@ -17,7 +17,7 @@ from prima.grammar.errors import (
 )
 from prima.grammar.legacy import FORMATS, settle
 from prima.grammar.media import check_form, media_type
-from prima.grammar.model import Document, Reference, Rule
+from prima.grammar.model import GrammarDocument, Reference, Rule
 from prima.grammar.prefixes import index_choices
 from prima.markup.uris import join
 
@@ -28,7 +28,7 @@ MOST_BYTES = 20_000_000
 Fetch = Callable[[str], bytes]
 Refusal = Callable[[str, str], str]
 """Gives the reason why one grammar may not refer to another, by their URIs; empty if it may."""
-Read = Callable[["Library", str, bytes, str], Document]
+Read = Callable[["Library", str, bytes, str], GrammarDocument]
 """Reads the bytes of a URI, of a media type if it is told, into a document."""
 FAILURES = (OSError, LookupError, ValueError, PrimaError)
 """What fetching may raise for a document that cannot be had."""
@@ -39,15 +39,15 @@ class Library:
 
     def __init__(self, fetch: Fetch | None, read: Read, refusal: Refusal | None = None) -> None:
         self.problems = Problems()
-        self.documents: dict[str, Document | None] = {}
+        self.documents: dict[str, GrammarDocument | None] = {}
         self._fetch = fetch
         self._read = read
         self._refusal = refusal
         self._bytes = 0
-        self._unlinked: list[Document] = []
-        self._linked: list[Document] = []
+        self._unlinked: list[GrammarDocument] = []
+        self._linked: list[GrammarDocument] = []
 
-    def add(self, document: Document) -> None:
+    def add(self, document: GrammarDocument) -> None:
         """Add a document whose references are to be resolved."""
         if document.uri:
             self.documents.setdefault(document.uri, document)
@@ -68,14 +68,14 @@ class Library:
         if not self.problems.found:
             index_choices(self._linked)
 
-    def fetch(self, uri: str, media: str, where: Where) -> Document | None:
+    def fetch(self, uri: str, media: str, where: Where) -> GrammarDocument | None:
         """The document of a URI, fetched the first time; what is wrong is noted."""
         found = self.documents[uri] if uri in self.documents else self._first(uri, media, where)
         if found is not None:
             check_form(self.problems, media_type(media), found.form, uri, where)
         return found
 
-    def _first(self, uri: str, media: str, where: Where) -> Document | None:
+    def _first(self, uri: str, media: str, where: Where) -> GrammarDocument | None:
         self.documents[uri] = None
         if self._fetch is None:
             message = f'Nothing fetches the grammar "{uri[:200]}" here.'
@@ -99,7 +99,7 @@ class Library:
             return None
         return self._take(uri, data, media)
 
-    def _take(self, uri: str, data: bytes, media: str) -> Document | None:
+    def _take(self, uri: str, data: bytes, media: str) -> GrammarDocument | None:
         try:
             document = self._read(self, uri, data, media)
         except GrammarError as error:
@@ -111,7 +111,7 @@ class Library:
         self._unlinked.append(document)
         return document
 
-    def _format(self, document: Document) -> None:
+    def _format(self, document: GrammarDocument) -> None:
         """Check the tag format (SRGS 4.8)."""
         if document.tag_format in FORMATS:
             settle(document)
@@ -123,7 +123,7 @@ class Library:
 
     # References
 
-    def _resolve(self, document: Document, reference: Reference) -> Rule | None:
+    def _resolve(self, document: GrammarDocument, reference: Reference) -> Rule | None:
         uri = reference.uri
         if uri.startswith("#"):
             return self._local(document, reference, unquote(uri[1:]))
@@ -142,14 +142,14 @@ class Library:
             self.problems.note(reference.where, "no-such-file", f'"{where[:200]}": {why}.')
             return None
         if where == document.uri:
-            found: Document | None = document
+            found: GrammarDocument | None = document
         else:
             found = self.fetch(where, reference.media, reference.where)
         if found is None:
             return None
         return self._external(document, found, reference, name)
 
-    def _local(self, document: Document, reference: Reference, name: str) -> Rule | None:
+    def _local(self, document: GrammarDocument, reference: Reference, name: str) -> Rule | None:
         rule = document.rules.get(name)
         if rule is None:
             hint = suggestion(name, document.rules, _name_in(reference, name))
@@ -158,7 +158,7 @@ class Library:
         return rule
 
     def _external(
-        self, document: Document, found: Document, reference: Reference, name: str
+        self, document: GrammarDocument, found: GrammarDocument, reference: Reference, name: str
     ) -> Rule | None:
         """A rule of another document: its root, or one that is public."""
         note = self.problems.note
@@ -181,19 +181,19 @@ class Library:
             return None
         return rule
 
-    def _built_in(self, document: Document, reference: Reference) -> Rule | None:
+    def _built_in(self, document: GrammarDocument, reference: Reference) -> Rule | None:
         try:
             found = built_in(reference.uri, document.mode, document.lang)
         except ValueError as error:
             kind = UnsupportedBuiltIn
             self.problems.unsupported(kind, reference.where, "no-such-name", str(error))
             return None
-        home = Document("", reference.where, dialect="literals")
+        home = GrammarDocument("", reference.where, dialect="literals")
         home.rules[found.name] = Rule(found.name, found, home)
         return home.rules[found.name]
 
 
-def base_of(document: Document) -> str:
+def base_of(document: GrammarDocument) -> str:
     """What relative URIs of a document are relative to (SRGS 4.9)."""
     return joined(document.uri, document.base, document.where) if document.base else document.uri
 

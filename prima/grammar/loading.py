@@ -13,7 +13,7 @@ from prima.grammar.errors import GrammarError, UnsupportedBuiltIn, UnsupportedLa
 from prima.grammar.grammar import Grammar
 from prima.grammar.linking import Fetch, Library, Refusal, joined
 from prima.grammar.media import ABNF_TYPES, check_form, check_known, check_no_text, media_type
-from prima.grammar.model import Document, Mode, Rule
+from prima.grammar.model import GrammarDocument, Mode, Rule
 from prima.grammar.xmlform import read_xml
 from prima.markup.limits import LIMITS, too_large
 from prima.markup.reader import parse
@@ -84,7 +84,7 @@ def load(
     return Grammar(document, rule, document.where, lenient, library.problems.warnings)
 
 
-def _language(library: Library, document: Document, languages: Languages | None) -> None:
+def _language(library: Library, document: GrammarDocument, languages: Languages | None) -> None:
     told = document.lang and document.mode == "voice"
     if told and languages is not None and not languages(document.lang):
         message = f'Grammars in "{document.lang}" are not taken.'
@@ -107,7 +107,7 @@ def _named(uri: str, mode: Mode | None, lang: str) -> Grammar:
         raise refuse(GrammarError, where(), "exclusive", str(error)) from None
     except ValueError as error:
         raise refuse(UnsupportedBuiltIn, where(), "no-such-name", str(error)) from None
-    document = Document(uri, where, mode or "", lang, found.name, dialect="literals")
+    document = GrammarDocument(uri, where, mode or "", lang, found.name, dialect="literals")
     document.rules[found.name] = Rule(found.name, found, document, True)
     return Grammar(document, "", where)
 
@@ -123,7 +123,7 @@ def _element(
     mode: Mode | None,
     type: str,
     rule: str,
-) -> tuple[Document, str]:
+) -> tuple[GrammarDocument, str]:
     """A <grammar> element inside a document: rules, text in ABNF, or a reference by src."""
     media = media_type(node.get("type") or type)
     if node.get("xml:base"):
@@ -131,7 +131,7 @@ def _element(
     if "src" in node.attributes:
         return _external(library, node, base, media, rule)
     where = partial(node.place_of, "")
-    document = Document(base, where, mode or "voice", node.get("xml:lang", lang))
+    document = GrammarDocument(base, where, mode or "voice", node.get("xml:lang", lang))
     check_known(media, where(), node.own_text)
     if not node.nodes and (media in ABNF_TYPES or node.own_text.lstrip().startswith("#ABNF")):
         from prima.grammar.abnf import read_abnf
@@ -147,7 +147,7 @@ def _element(
     return document, rule
 
 
-def _root(document: Document) -> None:
+def _root(document: GrammarDocument) -> None:
     """An element without root: its only rule, or its only public one, is meant."""
     if not document.root:
         public = [rule.name for rule in document.rules.values() if rule.public]
@@ -157,7 +157,7 @@ def _root(document: Document) -> None:
 
 def _external(
     library: Library, node: Node, base: str, media: str, rule: str
-) -> tuple[Document, str]:
+) -> tuple[GrammarDocument, str]:
     where = partial(node.attribute_place, "src")
     uri, fragment = urldefrag(joined(base, node.get("src").strip(), where))
     check_known(media, where(), "")
@@ -195,7 +195,7 @@ def _bytes(text: str) -> bytes:
 
 def _document(
     lang: str, lenient: bool, library: Library, uri: str, data: bytes, type: str
-) -> Document:
+) -> GrammarDocument:
     """The bytes of a whole file as a document; its language is its own."""
     media = media_type(type)
     uri, file = urldefrag(uri)[0], uri or "grammar"
@@ -203,7 +203,7 @@ def _document(
         raise GrammarError(too_large(file, len(data)).problems)
     begin = _beginning(data)
     check_known(media, Place(file), begin)
-    document = Document(uri, partial(Place, file))
+    document = GrammarDocument(uri, partial(Place, file))
     if begin.startswith("#ABNF") or (media in ABNF_TYPES and not begin.startswith("<")):
         from prima.grammar.abnf import read_abnf
         from prima.grammar.abnfheader import decode_abnf

@@ -33,7 +33,7 @@ class Sequence:
 
 
 @dataclass(slots=True, eq=False)
-class Choice:
+class Alternatives:
     """Alternatives with the cost of their weights (SRGS 2.4), best cost nought."""
 
     parts: list[Part]
@@ -65,7 +65,7 @@ class Reference:
     uri: str
     where: Where
     media: str = ""
-    home: Document | None = None
+    home: GrammarDocument | None = None
     name: str = ""
     lead: int = 0
     """Characters at that place before the URI."""
@@ -106,7 +106,7 @@ class BuiltIn:
     """Whether more may follow a text."""
 
 
-Part = Words | Sequence | Choice | Repeat | Reference | Special | Tag | BuiltIn
+Part = Words | Sequence | Alternatives | Repeat | Reference | Special | Tag | BuiltIn
 
 
 @dataclass(slots=True)
@@ -132,12 +132,12 @@ class Rule:
 
     name: str
     body: Part
-    document: Document
+    document: GrammarDocument
     public: bool = False
 
 
 @dataclass(slots=True, eq=False)
-class Document:
+class GrammarDocument:
     """One grammar document: its header (SRGS 4) and its rules."""
 
     uri: str

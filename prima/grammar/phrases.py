@@ -7,8 +7,8 @@ from itertools import islice
 
 from prima.grammar.answers import Answers
 from prima.grammar.model import (
+    Alternatives,
     BuiltIn,
-    Choice,
     Part,
     Reference,
     Repeat,
@@ -58,7 +58,7 @@ class _Phrases:
                 yield ""
             case Reference(rule=rule) if rule is not None:
                 yield from self.of(rule.body, depth + 1)
-            case Choice(parts):
+            case Alternatives(parts):
                 for one in parts:
                     yield from islice(self.of(one, depth + 1), self._most)
             case Sequence(parts):

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from prima.grammar.model import (
-    Choice,
-    Document,
+    Alternatives,
+    GrammarDocument,
     Part,
     PrefixIndex,
     Reference,
@@ -44,7 +44,7 @@ NOTHING: Prefixes = (Prefix("", True),)
 UNKNOWN: Prefixes = (Prefix("", False),)
 
 
-def index_choices(documents: Iterable[Document]) -> None:
+def index_choices(documents: Iterable[GrammarDocument]) -> None:
     """Index the alternatives of all rules of some documents, whose references are resolved."""
     for document in documents:
         finder = _Finder(document.mode == "dtmf")
@@ -53,14 +53,14 @@ def index_choices(documents: Iterable[Document]) -> None:
                 one.index = finder.index(one.parts)
 
 
-def _choices(body: Part) -> Iterator[Choice]:
+def _choices(body: Part) -> Iterator[Alternatives]:
     """All choices in an expansion."""
     todo = [body]
     while todo:
         part = todo.pop()
-        if isinstance(part, Choice):
+        if isinstance(part, Alternatives):
             yield part
-        if isinstance(part, Choice | Sequence):
+        if isinstance(part, Alternatives | Sequence):
             todo += part.parts
         elif isinstance(part, Repeat):
             todo.append(part.part)
@@ -108,7 +108,7 @@ class _Finder:
         match part:
             case Sequence(parts):
                 return self._in_turn(parts, depth)
-            case Choice(parts):
+            case Alternatives(parts):
                 return self._any_of(parts, depth)
             case Repeat(_, _, 0):
                 return NOTHING

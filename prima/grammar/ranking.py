@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from typing import TYPE_CHECKING, NamedTuple
 
-from prima.grammar.chart import Cell, Way
+from prima.grammar.chart import Cell, ChartWay
 from prima.grammar.model import BuiltIn, Reference, Rule, Tag, Words
-from prima.grammar.text import Utterance
+from prima.grammar.text import MatchedUtterance
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -26,26 +26,26 @@ MOST_KNOWN = 100_000
 """How many analyses are kept of all cells together; at least the best of each is."""
 
 
-class Analysis(NamedTuple):
+class RankedParse(NamedTuple):
     """One way through a cell: how good it is, and the analyses of what it is made of."""
 
     lost: int
     """How many words GARBAGE takes in it."""
     cost: float
     cell: Cell
-    left: Analysis | None
-    right: Analysis | None
+    left: RankedParse | None
+    right: RankedParse | None
     size: int
     """How many cells it passes through, those that it passes several times included."""
 
 
 @dataclass(slots=True)
-class Frame:
+class RuleFrame:
     """A rule that was matched: what was said, tagged and referred to in it, in order."""
 
     rule: Rule
     name: str
-    events: list[Words | Tag | Frame | Value] = field(default_factory=list)
+    events: list[Words | Tag | RuleFrame | Value] = field(default_factory=list)
 
 
 class Value(NamedTuple):
@@ -55,26 +55,26 @@ class Value(NamedTuple):
     text: str
 
 
-def best(top: Cell, most: int) -> list[Analysis]:
+def best(top: Cell, most: int) -> list[RankedParse]:
     """The best analyses of a cell, at most so many."""
     order, cyclic = _order(top, strict=False)
     if cyclic:  # keep to ways made of what was there before: every cell has one
         order, _ = _order(top, strict=True)
     most = max(1, min(most, MOST_KNOWN // len(order)))
-    known: dict[int, list[Analysis]] = {}
+    known: dict[int, list[RankedParse]] = {}
     for cell in order:
         known[cell.number] = _best(cell, list(_ways(cell, cyclic)), known, most)
     return known[top.number]
 
 
-Candidate = tuple[int, float, int, int, int, int, int, Analysis]
+Candidate = tuple[int, float, int, int, int, int, int, RankedParse]
 """Words lost, cost, rank of the way and where its last part begins; which analyses of its parts; which
 way; the analysis."""
 
 
 def _best(
-    cell: Cell, ways: list[Way], known: dict[int, list[Analysis]], most: int
-) -> list[Analysis]:
+    cell: Cell, ways: list[ChartWay], known: dict[int, list[RankedParse]], most: int
+) -> list[RankedParse]:
     """The best analyses of a cell by those of its parts, each made only when it is next.
 
     What follows a candidate, the next analysis of one of its parts, is never better.
@@ -95,7 +95,7 @@ def _best(
 
     for number in range(len(ways)):
         add(number, 0, 0)
-    found: list[Analysis] = []
+    found: list[RankedParse] = []
     while waiting and len(found) < most:
         *_, i, j, number, made = heappop(waiting)
         if made.size <= MOST_CELLS:
@@ -106,20 +106,22 @@ def _best(
     return found
 
 
-def _joined(cell: Cell, way: Way, left: Analysis | None, right: Analysis | None) -> Analysis:
+def _joined(
+    cell: Cell, way: ChartWay, left: RankedParse | None, right: RankedParse | None
+) -> RankedParse:
     """An analysis of a cell by a way and the analyses of its parts."""
     lost, cost, size = way.lost, way.cost, 1
     for part in (left, right):
         if part is not None:
             lost, cost, size = lost + part.lost, cost + part.cost, size + part.size
-    return Analysis(lost, cost, cell, left, right, size)
+    return RankedParse(lost, cost, cell, left, right, size)
 
 
-def _known(known: dict[int, list[Analysis]], cell: Cell | None) -> Sequence[Analysis | None]:
+def _known(known: dict[int, list[RankedParse]], cell: Cell | None) -> Sequence[RankedParse | None]:
     return (None,) if cell is None else known[cell.number]
 
 
-def _ways(cell: Cell, strict: bool) -> Iterator[Way]:
+def _ways(cell: Cell, strict: bool) -> Iterator[ChartWay]:
     for way in cell.ways:
         if strict and any(
             part.number > cell.number
@@ -159,11 +161,11 @@ def _parts(cell: Cell, strict: bool) -> Iterator[Cell]:
             yield way.right
 
 
-def frames(analysis: Analysis, said: Utterance) -> Frame:
+def frames(analysis: RankedParse, said: MatchedUtterance) -> RuleFrame:
     """What an analysis says, rule by rule."""
-    top: Frame | None = None
-    open_frames: list[Frame] = []
-    todo: list[Analysis | None] = [analysis]  # None ends a frame
+    top: RuleFrame | None = None
+    open_frames: list[RuleFrame] = []
+    todo: list[RankedParse | None] = [analysis]  # None ends a frame
     while todo:
         one = todo.pop()
         if one is None:
@@ -171,7 +173,7 @@ def frames(analysis: Analysis, said: Utterance) -> Frame:
             continue
         part = one.cell.part
         if isinstance(part, Reference) and part.rule is not None:
-            frame = Frame(part.rule, part.rule.name)
+            frame = RuleFrame(part.rule, part.rule.name)
             top = top or frame
             if open_frames:
                 open_frames[-1].events.append(frame)

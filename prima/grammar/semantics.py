@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from prima.errors import Place
 from prima.grammar.legacy import translate
-from prima.grammar.model import Document, Tag, Words
-from prima.grammar.ranking import Frame, Value
+from prima.grammar.model import GrammarDocument, Tag, Words
+from prima.grammar.ranking import RuleFrame, Value
 from prima.grammar.text import join
 from prima.script.budget import Budget
 from prima.script.evaluation import EngineLost, ScriptError
@@ -33,7 +33,7 @@ class SemanticError:
         return f"{self.place}: {self.message}"
 
 
-class Failure(Exception):
+class TagFailed(Exception):
     """A tag failed."""
 
     def __init__(self, error: SemanticError) -> None:
@@ -45,8 +45,8 @@ class Failure(Exception):
 class _Result:
     """The value of one rule that matched."""
 
-    document: Document
-    home: Document
+    document: GrammarDocument
+    home: GrammarDocument
     """In whose engine the value is, if it is in one: its own, or that of a rule it was passed by."""
     first: int
     """Its tokens, by number."""
@@ -56,7 +56,7 @@ class _Result:
     """The value inside an engine, if it is there."""
 
 
-class Interpreter:
+class TagInterpreter:
     """Interprets one analysis of an utterance."""
 
     def __init__(self, mode: str, budget: Budget) -> None:
@@ -70,20 +70,20 @@ class Interpreter:
         self._engines: dict[int, Any] = {}
         self._results: dict[int, _Result] = {}
 
-    def interpret(self, top: Frame) -> Json:
+    def interpret(self, top: RuleFrame) -> Json:
         """The value of the root rule.
 
         Raises:
             Failure: a tag failed.
         """
-        todo: list[tuple[Frame, int]] = [(top, 0)]
+        todo: list[tuple[RuleFrame, int]] = [(top, 0)]
         self._results[id(top)] = _result(top, 0)
         while todo:
             frame, at = todo.pop()
             while at < len(frame.events):
                 event = frame.events[at]
                 at += 1
-                if isinstance(event, Frame):
+                if isinstance(event, RuleFrame):
                     todo.append((frame, at))
                     todo.append((event, 0))
                     self._results[id(event)] = _result(event, len(self.tokens))
@@ -111,7 +111,7 @@ class Interpreter:
 
     # Values
 
-    def _value(self, frame: Frame, result: _Result) -> None:
+    def _value(self, frame: RuleFrame, result: _Result) -> None:
         tags = [event for event in frame.events if isinstance(event, Tag)]
         dialect = result.document.dialect
         if not tags:
@@ -121,9 +121,9 @@ class Interpreter:
         else:
             self._script(frame, result)
 
-    def _default(self, frame: Frame, result: _Result) -> None:
+    def _default(self, frame: RuleFrame, result: _Result) -> None:
         """The value of a rule without tags (SISR 1.0: default assignment)."""
-        values = [event for event in frame.events if isinstance(event, Frame | Value)]
+        values = [event for event in frame.events if isinstance(event, RuleFrame | Value)]
         if not values:
             result.value = self.text(result)
             return
@@ -138,9 +138,9 @@ class Interpreter:
             inner = self._results[id(last)]
             result.value, result.box, result.home = inner.value, inner.box, inner.home
 
-    def _slots(self, values: list[Frame | Value]) -> dict[str, Json] | None:
+    def _slots(self, values: list[RuleFrame | Value]) -> dict[str, Json] | None:
         """The slots that rules have filled, later ones over earlier ones; None if there are none."""
-        rules = [self._results[id(one)] for one in values if isinstance(one, Frame)]
+        rules = [self._results[id(one)] for one in values if isinstance(one, RuleFrame)]
         slots = [plain for one in rules if isinstance(plain := self._plain(one), dict)]
         return {name: value for one in slots for name, value in one.items()} if slots else None
 
@@ -156,9 +156,9 @@ class Interpreter:
             raise EngineLost(f"{result.home.where()}: {error}") from None
         except ScriptError as error:
             place = result.home.where()
-            raise Failure(SemanticError(f"The value cannot be given: {error}.", place)) from None
+            raise TagFailed(SemanticError(f"The value cannot be given: {error}.", place)) from None
 
-    def _script(self, frame: Frame, result: _Result) -> None:
+    def _script(self, frame: RuleFrame, result: _Result) -> None:
         """Run the tags of a rule with the values of the rules that it refers to."""
         engine = self._engine(result.document)
         legacy = result.document.dialect == "legacy"
@@ -175,7 +175,7 @@ class Interpreter:
                 if isinstance(event, Tag):
                     number, code = next(numbered)
                     pieces.append(f"$next.at = {number};\n{code}\n;")
-                elif isinstance(event, Frame):
+                elif isinstance(event, RuleFrame):
                     inner = self._results[id(event)]
                     engine.add(environment, event.name, self._box(inner, result), self.text(inner))
                     pieces.append("$next(out);")
@@ -197,7 +197,7 @@ class Interpreter:
             return inner.box
         return engine.take(self._given(inner, "carry"))
 
-    def _engine(self, document: Document) -> Any:
+    def _engine(self, document: GrammarDocument) -> Any:
         """The engine of a document, in which its global tags have run (SISR 1.0: once)."""
         found = self._engines.get(id(document))
         if found is None:
@@ -215,12 +215,12 @@ class Interpreter:
         return found
 
 
-def _result(frame: Frame, first: int) -> _Result:
+def _result(frame: RuleFrame, first: int) -> _Result:
     document = frame.rule.document
     return _Result(document, document, first)
 
 
-def _check(tags: list[tuple[Tag, str]], document: Document, engine: Any) -> None:
+def _check(tags: list[tuple[Tag, str]], document: GrammarDocument, engine: Any) -> None:
     """Check that each tag is a script by itself (SISR 1.0 section 3); each is checked once.
 
     Raises:
@@ -237,6 +237,6 @@ def _check(tags: list[tuple[Tag, str]], document: Document, engine: Any) -> None
             raise _failure(tag, fault)
 
 
-def _failure(tag: Tag, why: str) -> Failure:
+def _failure(tag: Tag, why: str) -> TagFailed:
     shown = json.dumps(" ".join(tag.code.split())[:60], ensure_ascii=False)
-    return Failure(SemanticError(f"The tag {shown} failed: {why}.", tag.where()))
+    return TagFailed(SemanticError(f"The tag {shown} failed: {why}.", tag.where()))

@@ -6,7 +6,16 @@ from collections.abc import Iterator
 
 from prima.errors import Problem, did_you_mean
 from prima.grammar.legacy import translate
-from prima.grammar.model import BuiltIn, Choice, Document, Part, Reference, Repeat, Sequence, Tag
+from prima.grammar.model import (
+    Alternatives,
+    BuiltIn,
+    GrammarDocument,
+    Part,
+    Reference,
+    Repeat,
+    Sequence,
+    Tag,
+)
 from prima.script.budget import Budget
 from prima.script.globals import GLOBALS, VARIABLES
 from prima.script.names import script_names
@@ -17,7 +26,7 @@ SISR = frozenset(["out", "rules", "meta"])
 LOST = "what needs it is not taken"
 
 
-def tag_warnings(document: Document) -> list[Problem]:
+def tag_warnings(document: GrammarDocument) -> list[Problem]:
     """Tags that are no script, and names in them that nothing gives a value (SISR 1.0)."""
     if not (document.tags or document.globals) or document.dialect == "literals":
         return []
@@ -38,12 +47,12 @@ def tag_warnings(document: Document) -> list[Problem]:
     return [*found, *_unknown(document, sound)]
 
 
-def _script(document: Document, tag: Tag) -> str:
+def _script(document: GrammarDocument, tag: Tag) -> str:
     legacy = document.dialect == "legacy" and not any(tag is one for one in document.globals)
     return translate(tag.code) if legacy else tag.code
 
 
-def _unknown(document: Document, sound: dict[int, str]) -> Iterator[Problem]:
+def _unknown(document: GrammarDocument, sound: dict[int, str]) -> Iterator[Problem]:
     """Names that are neither SISR's nor given a value by any tag of the document."""
     names = [script_names(code) for code in sound.values()]
     known = set(SISR).union(*(one.declared | one.written for one in names))
@@ -104,7 +113,7 @@ def _held(body: Part) -> tuple[list[Tag], set[str]]:
                 tags.append(part)
             case Reference(rule=rule) if rule is not None:
                 rules.add(rule.name)
-            case Sequence() | Choice():
+            case Sequence() | Alternatives():
                 todo += part.parts
             case Repeat():
                 todo.append(part.part)

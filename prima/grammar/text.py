@@ -84,7 +84,7 @@ def keys(text: str) -> str | None:
 
 
 @dataclass(slots=True)
-class Utterance:
+class MatchedUtterance:
     """One utterance as it is matched."""
 
     text: str
@@ -106,7 +106,7 @@ class Utterance:
         return self.ends[bisect_right(self.ends, start) :]
 
 
-def utterance(text: str, mode: str) -> Utterance | None:
+def utterance(text: str, mode: str) -> MatchedUtterance | None:
     """Prepare an utterance; None if it can match nothing."""
     if len(text) > LONGEST:
         return None
@@ -115,11 +115,11 @@ def utterance(text: str, mode: str) -> Utterance | None:
         if pressed is None:
             return None
         everywhere = [True] * (len(pressed) + 1)
-        return Utterance(text, pressed, everywhere, mode, list(range(1, len(pressed) + 1)))
+        return MatchedUtterance(text, pressed, everywhere, mode, list(range(1, len(pressed) + 1)))
     said = fold(text)
     edges = _edges(said)
     ends = [end for end in range(1, len(edges)) if edges[end] and said[end - 1] != " "]
-    return Utterance(text, said, edges, mode, ends)
+    return MatchedUtterance(text, said, edges, mode, ends)
 
 
 def _edges(said: str) -> list[bool]:

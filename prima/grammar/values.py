@@ -6,7 +6,7 @@ import math
 import re
 from typing import NamedTuple
 
-from prima.grammar.model import Choice, Part, PrefixIndex, Sequence
+from prima.grammar.model import Alternatives, Part, PrefixIndex, Sequence
 
 LEAST = 1e-20
 """A weight of nought counts as this: it comes after everything else."""
@@ -25,14 +25,14 @@ compiled when it is used: so many letters take long."""
 _LANGUAGE = re.compile(r"[A-Za-z]{1,8}(?:-[A-Za-z0-9]{1,8})*")
 
 
-class Bounds(NamedTuple):
+class RepeatBounds(NamedTuple):
     """How often something is said; ``high`` None is without end."""
 
     low: int
     high: int | None
 
 
-def repeat(text: str) -> Bounds:
+def repeat(text: str) -> RepeatBounds:
     """Read ``n``, ``n-m`` or ``n-`` (SRGS 2.5).
 
     Raises:
@@ -43,11 +43,11 @@ def repeat(text: str) -> Bounds:
         raise ValueError(f'repeat "{text[:40]}" is not of the form 2, 0-1 or 1-.')
     low = min(int(match[1][:12]), MOST_TIMES)
     if not match[2]:
-        return Bounds(low, low)
+        return RepeatBounds(low, low)
     high = None if match[3] is None else min(int(match[3][:12]), MOST_TIMES)
     if high is not None and high < low:
         raise ValueError(f'repeat "{text[:40]}" ends before it begins.')
-    return Bounds(low, high)
+    return RepeatBounds(low, high)
 
 
 def decimal(text: str, kind: str) -> float:
@@ -86,7 +86,7 @@ def choice(parts: list[Part], weights: list[float | None]) -> Part:
     greatest = max(given, default=1.0)
     scale = greatest if greatest > 0 else 1.0
     costs = [0.0 if weight == greatest else cost(weight / scale) for weight in given]
-    return Choice(parts, costs, PrefixIndex({}, [], list(range(len(parts)))))
+    return Alternatives(parts, costs, PrefixIndex({}, [], list(range(len(parts)))))
 
 
 def sequence(parts: list[Part]) -> Part:

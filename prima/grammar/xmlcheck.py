@@ -32,7 +32,7 @@ VOICEXML |= {"maxstale", "accept"}
 """What VoiceXML adds to <grammar> (VoiceXML 2.0 section 3.1.1.4)."""
 
 
-class Checker:
+class GrammarChecker:
     """Notes what is wrong with elements."""
 
     def __init__(self, problems: Problems) -> None:

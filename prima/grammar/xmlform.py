@@ -6,7 +6,7 @@ from functools import partial
 
 from prima.errors import suggestion
 from prima.grammar.errors import Problems
-from prima.grammar.model import Document, Part, Reference, Repeat, Rule, Special, Tag, Words
+from prima.grammar.model import GrammarDocument, Part, Reference, Repeat, Rule, Special, Tag, Words
 from prima.grammar.text import fold, keys, tokens
 from prima.grammar.values import (
     MODES,
@@ -19,7 +19,7 @@ from prima.grammar.values import (
     repeat,
     sequence,
 )
-from prima.grammar.xmlcheck import EXPANSION, HEADER, SRGS, VOICEXML, Checker
+from prima.grammar.xmlcheck import EXPANSION, HEADER, SRGS, VOICEXML, GrammarChecker
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
@@ -27,7 +27,7 @@ MAX_DEPTH = 100
 
 
 def read_xml(
-    node: Node, document: Document, problems: Problems, inline: bool, lenient: bool = False
+    node: Node, document: GrammarDocument, problems: Problems, inline: bool, lenient: bool = False
 ) -> None:
     """Read a <grammar> element into a document; ``inline`` if it is part of another one.
 
@@ -36,10 +36,12 @@ def read_xml(
     _Reader(document, problems, inline, lenient).grammar(node)
 
 
-class _Reader(Checker):
+class _Reader(GrammarChecker):
     """Reads one grammar; notes what is wrong and goes on."""
 
-    def __init__(self, document: Document, problems: Problems, inline: bool, lenient: bool) -> None:
+    def __init__(
+        self, document: GrammarDocument, problems: Problems, inline: bool, lenient: bool
+    ) -> None:
         super().__init__(problems)
         self.document = document
         self.inline = inline

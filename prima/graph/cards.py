@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from html import escape
 
-from prima.graph.layout import Link, arrange, distances
-from prima.graph.model import Edge, Graph, Node
+from prima.graph.layout import LayoutEdge, arrange, distances
+from prima.graph.model import Edge, Graph, GraphNode
 from prima.graph.svg import SIZE, box, fit, head, line, measure, picture, text, wrap
 
 WIDTH = 236.0
@@ -38,7 +38,7 @@ LEGEND = (
 
 
 @dataclass(slots=True)
-class Way:
+class CardEdge:
     """An edge as a card shows it: where it begins, and its lines of text."""
 
     edge: Edge
@@ -51,11 +51,11 @@ class Way:
 class Card:
     """A node with its text wrapped."""
 
-    node: Node
+    node: GraphNode
     height: float = 0.0
     marks: list[list[str]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
-    ways: list[Way] = field(default_factory=list)
+    ways: list[CardEdge] = field(default_factory=list)
     x: float = 0.0
     y: float = 0.0
 
@@ -104,7 +104,7 @@ def _legend(graph: Graph, y: float) -> list[str]:
 # Cards ----------------------------------------------------------------------------------------
 
 
-def _card(graph: Graph, node: Node) -> Card:
+def _card(graph: Graph, node: GraphNode) -> Card:
     card = Card(node)
     inner = WIDTH - 2 * PAD
     row: list[str] = []
@@ -123,7 +123,7 @@ def _card(graph: Graph, node: Node) -> Card:
             for number, part in enumerate(wrap(label, inner - 20, 3))
         ]
         y += 6
-        card.ways.append(Way(edge, y + 9, lines))
+        card.ways.append(CardEdge(edge, y + 9, lines))
         y += LEADING * (1 + len(lines))
     card.height = y + 7
     return card
@@ -207,10 +207,10 @@ class _Band:
         self.layout = arrange(heights, columns, list(self.links.values()), GAP)
         self.left = self._lefts(columns)
 
-    def _links(self) -> dict[tuple[str, str, str], Link]:
+    def _links(self) -> dict[tuple[str, str, str], LayoutEdge]:
         """The lines from column to column, by both cards and the kind of the edge."""
         number = {key: index for index, key in enumerate(self.cards)}
-        links: dict[tuple[str, str, str], Link] = {}
+        links: dict[tuple[str, str, str], LayoutEdge] = {}
         for key, card in self.cards.items():
             for way in card.ways:
                 to = way.edge.target
@@ -219,7 +219,7 @@ class _Band:
                 ends = (number[key], number[to]), (way.at, 14.0)
                 if self._is_back(key, way.edge):
                     ends = ends[0][::-1], ends[1][::-1]
-                links[key, to, way.edge.kind] = Link(*ends[0], *ends[1])
+                links[key, to, way.edge.kind] = LayoutEdge(*ends[0], *ends[1])
         return links
 
     def _inside(self) -> Iterator[tuple[str, Edge]]:
@@ -274,7 +274,7 @@ class _Band:
         bottom = top + self.layout.extent
         return parts, right, bottom
 
-    def _line(self, key: str, card: Card, way: Way, top: float) -> list[str]:
+    def _line(self, key: str, card: Card, way: CardEdge, top: float) -> list[str]:
         """An edge's line with its head; a stub if the whole line is not drawn."""
         edge, y = way.edge, card.y + way.at - 2
         if not edge.target or edge.kind == "stay":

@@ -9,7 +9,7 @@ from pathlib import PurePath
 from prima.graph.labels import (
     ASKED,
     NO_REPLY,
-    Reply,
+    AnswerLabel,
     condition,
     joined,
     known,
@@ -17,11 +17,12 @@ from prima.graph.labels import (
     notes,
     sayings,
 )
-from prima.graph.model import Graph, Node, clean, settle
+from prima.graph.model import Graph, GraphNode, clean, settle
 from prima.graph.throws import Taker
 from prima.graph.transitions import ANY, Branches, Transitions
 from prima.interpreter.acts import (
     Act,
+    CommandRun,
     CommandTemplate,
     Exit,
     Expression,
@@ -31,7 +32,6 @@ from prima.interpreter.acts import (
     Handler,
     If,
     Return,
-    Run,
     SendOut,
     Text,
     Throw,
@@ -56,10 +56,10 @@ from prima.language.commands import TABLE_4_2
 
 def states(document: Document) -> Graph:
     """The states of an application and the transitions between them."""
-    return _Reader(document).graph
+    return _DialogueGraph(document).graph
 
 
-class _Reader(Transitions[Act]):
+class _DialogueGraph(Transitions[Act]):
     goes_on = DEFAULTS
 
     def __init__(self, document: Document) -> None:
@@ -105,7 +105,7 @@ class _Reader(Transitions[Act]):
             self._filleds(item.filled, f"{name} has returned", NO_REPLY)
         elif isinstance(item, Field):
             where = f"{item.name}: " if many else ""
-            reply = Reply(item.name, item.answers.type == "boolean")
+            reply = AnswerLabel(item.name, item.answers.type == "boolean")
             self._filleds(item.filled, f"{item.name} answered" if many else "answered", reply)
         self.handlers(_takers(item.handlers), where)
 
@@ -129,7 +129,7 @@ class _Reader(Transitions[Act]):
             if link.form:
                 self._to(link.form, "go", f"said {sayings(link.node.all('grammar'))}")
 
-    def _filleds(self, filleds: Sequence[Filled], base: str, reply: Reply) -> None:
+    def _filleds(self, filleds: Sequence[Filled], base: str, reply: AnswerLabel) -> None:
         for filled in filleds:
             self.content(filled.content, base, (), reply)
 
@@ -149,10 +149,10 @@ class _Reader(Transitions[Act]):
                 return False
         return True
 
-    def _passes(self, act: Act, base: str, conditions: list[str], reply: Reply) -> None:
+    def _passes(self, act: Act, base: str, conditions: list[str], reply: AnswerLabel) -> None:
         if isinstance(act, Foreach):
             self.content(act.content, base, conditions, reply)
-        elif isinstance(act, Run):
+        elif isinstance(act, CommandRun):
             for command in run_commands(act.steps):
                 self.handlers(_takers(command.handlers), of=f" of {_title(command)}")
 
@@ -176,7 +176,7 @@ class _Reader(Transitions[Act]):
             self.graph.edge(self.here, "", "missing", told, form)
 
 
-def _describe(node: Node, form: Form, items: Sequence[Item]) -> None:
+def _describe(node: GraphNode, form: Form, items: Sequence[Item]) -> None:
     """Describe a state: its marks, and what it asks or says."""
     leaving = [one for one in _commands(_contents(form)) if _leads_away(one)]
     questions = [text for item in items if isinstance(item, Field) for text in _asked(item)]
@@ -260,9 +260,9 @@ def _contents(form: Form) -> list[Sequence[Act]]:
     return found
 
 
-def _runs(contents: list[Sequence[Act]]) -> list[Run]:
+def _runs(contents: list[Sequence[Act]]) -> list[CommandRun]:
     """The runs of Commands in content."""
-    return [act for content in contents for act in all_acts(content) if isinstance(act, Run)]
+    return [act for content in contents for act in all_acts(content) if isinstance(act, CommandRun)]
 
 
 def _commands(contents: list[Sequence[Act]]) -> list[CommandTemplate]:

@@ -7,7 +7,7 @@ from html import escape
 from prima.graph.run import History, in_words
 from prima.graph.svg import box, fit, line, measure, picture, text
 from prima.transcript.colours import NOBODY
-from prima.transcript.spans import Piece, Stream
+from prima.transcript.spans import StreamPiece, StreamSpan
 
 ROW, BAR = 26.0, 14.0
 MARGIN = 18.0
@@ -63,7 +63,7 @@ def _applications(history: History) -> list[tuple[str, str]]:
     return [(f"s{history.shades.get(app, NOBODY)}", fit(app, 90, 10)) for app in apps[:MOST_APPS]]
 
 
-def _row(stream: Stream, shade: int, left: float, y: float, scale: float) -> list[str]:
+def _row(stream: StreamSpan, shade: int, left: float, y: float, scale: float) -> list[str]:
     """A stream's name, its line and its pieces."""
     middle = y + BAR / 2
     parts = [text(MARGIN, middle + 4, fit(stream.name, left - MARGIN - 8))]
@@ -88,7 +88,7 @@ def _row(stream: Stream, shade: int, left: float, y: float, scale: float) -> lis
     return parts
 
 
-def _open(stream: Stream) -> list[tuple[float, float]]:
+def _open(stream: StreamSpan) -> list[tuple[float, float]]:
     """When a stream is open and nothing of it runs."""
     gaps = []
     at = stream.begin
@@ -98,7 +98,9 @@ def _open(stream: Stream) -> list[tuple[float, float]]:
     return [(begin, end) for begin, end in [*gaps, (at, stream.end)] if begin < end]
 
 
-def _words(stream: Stream, span: Piece, left: float, middle: float, scale: float) -> list[str]:
+def _words(
+    stream: StreamSpan, span: StreamPiece, left: float, middle: float, scale: float
+) -> list[str]:
     """The words on a suspension or break, if there is room."""
     if span.kind == "runs":
         return []
@@ -109,7 +111,7 @@ def _words(stream: Stream, span: Piece, left: float, middle: float, scale: float
     return [text(left + start * scale + 5, middle + 3.5, words, "small")]
 
 
-def _uncovered(stream: Stream, away: Piece) -> float:
+def _uncovered(stream: StreamSpan, away: StreamPiece) -> float:
     """Where a suspension can be seen: a behavior that still runs covers its beginning."""
     runs = [one for one in stream.pieces if one.kind == "runs"]
     return max([away.begin, *(one.end for one in runs if one.begin <= away.begin < one.end)])

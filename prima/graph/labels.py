@@ -35,17 +35,17 @@ def ordinal(number: int) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Reply:
+class AnswerLabel:
     """The answer just given: the variable of its question, and whether it is yes or no."""
 
     name: str
     is_yes_or_no: bool
 
 
-NO_REPLY = Reply("", False)
+NO_REPLY = AnswerLabel("", False)
 
 
-def condition(code: str, reply: Reply = NO_REPLY) -> str:
+def condition(code: str, reply: AnswerLabel = NO_REPLY) -> str:
     """A condition; if it is about the answer just given, that answer."""
     code = " ".join(code.split())
     if reply.name:

@@ -20,7 +20,7 @@ THREAD = 9.0
 
 
 @dataclass(slots=True)
-class Link:
+class LayoutEdge:
     """A line between two boxes, from that of the lower layer to that of the higher one.
 
     ``low_at`` and ``high_at`` are how far aside from a box's beginning the line meets it.
@@ -39,7 +39,7 @@ class Layout:
     """The position of each box within its layer, followed by those that lines pass through."""
 
     aside: list[float]
-    links: list[Link]
+    links: list[LayoutEdge]
     extent: float
 
 
@@ -78,7 +78,7 @@ def depths(count: int, edges: Sequence[tuple[int, int]]) -> list[int]:
 
 
 def arrange(
-    sizes: Sequence[float], layers: Sequence[int], links: Sequence[Link], gap: float
+    sizes: Sequence[float], layers: Sequence[int], links: Sequence[LayoutEdge], gap: float
 ) -> Layout:
     """Find a place for each box.
 
@@ -101,7 +101,7 @@ def arrange(
 class _Work:
     sizes: list[float]
     layers: list[int]
-    links: list[Link]
+    links: list[LayoutEdge]
     gap: float
     boxes: int = 0
     rows: list[list[int]] = field(default_factory=list)

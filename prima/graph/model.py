@@ -27,7 +27,7 @@ OUTWARD = {
 
 
 @dataclass(slots=True)
-class Node:
+class GraphNode:
     """A box: a state of an application, or an Atomic Behavior.
 
     ``key`` is never shown. ``kind`` is ``state``, ``any`` (what holds in all states)
@@ -76,14 +76,14 @@ class Graph:
 
     title: str
     told: str = ""
-    nodes: dict[str, Node] = field(default_factory=dict)
+    nodes: dict[str, GraphNode] = field(default_factory=dict)
     across: bool = True
     """Whether it runs from left to right; else from top to bottom."""
 
-    def node(self, key: str, title: str, kind: str = "state", start: bool = False) -> Node:
+    def node(self, key: str, title: str, kind: str = "state", start: bool = False) -> GraphNode:
         """Add a node, or return the existing one."""
         if key not in self.nodes:
-            self.nodes[key] = Node(key, clean(title), kind, start=start)
+            self.nodes[key] = GraphNode(key, clean(title), kind, start=start)
         return self.nodes[key]
 
     def edge(self, source: str, target: str, kind: str, label: str = "", where: str = "") -> None:

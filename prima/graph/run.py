@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from prima.graph.model import Graph, Node, clean
+from prima.graph.model import Graph, GraphNode, clean
 from prima.transcript.colours import NOBODY, colours
 from prima.transcript.record import Entry
 from prima.transcript.row import describe
 from prima.transcript.run import Run
 from prima.transcript.run import until as run_until
-from prima.transcript.spans import Behavior, Piece, Stream, base
+from prima.transcript.spans import BehaviorSpan, StreamPiece, StreamSpan, base
 
 NEVER = float("inf")
 
@@ -42,7 +42,7 @@ def trees(run: Run, until: float = NEVER) -> Graph:
     return graph
 
 
-def _all_parents(asked: Mapping[str, Behavior]) -> dict[str, list[str]]:
+def _all_parents(asked: Mapping[str, BehaviorSpan]) -> dict[str, list[str]]:
     """The ABs after which each AB runs, also those that the mediator put in before it."""
     parents = {name: _parents(one.asked) for name, one in asked.items()}
     for name, one in asked.items():
@@ -51,7 +51,7 @@ def _all_parents(asked: Mapping[str, Behavior]) -> dict[str, list[str]]:
     return parents
 
 
-def _edges(graph: Graph, one: Behavior, parents: list[str]) -> None:
+def _edges(graph: Graph, one: BehaviorSpan, parents: list[str]) -> None:
     """Draw the arrows to an AB: from its parents, or else from its unit."""
     for parent in parents:
         graph.edge(parent, one.name, "child")
@@ -60,7 +60,9 @@ def _edges(graph: Graph, one: Behavior, parents: list[str]) -> None:
         graph.edge(unit, one.name, "call")
 
 
-def _node(graph: Graph, one: Behavior, state: str, colour: Mapping[str, int], whole: bool) -> None:
+def _node(
+    graph: Graph, one: BehaviorSpan, state: str, colour: Mapping[str, int], whole: bool
+) -> None:
     """Draw an AB."""
     node = graph.node(one.name, one.name)
     node.shade = colour.get(one.asked.app, NOBODY)
@@ -72,7 +74,7 @@ def _node(graph: Graph, one: Behavior, state: str, colour: Mapping[str, int], wh
     node.marks = _marks(one.asked, node)
 
 
-def _state(one: Behavior, asked: Mapping[str, Behavior], parents: list[str]) -> str:
+def _state(one: BehaviorSpan, asked: Mapping[str, BehaviorSpan], parents: list[str]) -> str:
     """The state of an AB; a waiting one is linked while a parent has not ended."""
     if one.state != "waiting":
         return one.state
@@ -92,7 +94,7 @@ def _words(request: Entry) -> str:
     return clean(describe(command, request.text, request.args, request.extra))
 
 
-def _marks(request: Entry, node: Node) -> list[str]:
+def _marks(request: Entry, node: GraphNode) -> list[str]:
     marks = {
         node.kind: node.kind != "done",
         "reaction": request.reactive,
@@ -106,7 +108,7 @@ def _marks(request: Entry, node: Node) -> list[str]:
 # Streams ----------------------------------------------------------------------------------------
 
 
-def in_words(piece: Piece) -> str:
+def in_words(piece: StreamPiece) -> str:
     """A piece of a stream, in words."""
     by = f" by {piece.by}" if piece.by else ""
     rule = f" ({piece.rule})" if piece.rule else ""
@@ -118,7 +120,7 @@ class History:
     """All streams of a run in the order in which they begin; ``end`` in seconds."""
 
     title: str
-    streams: list[Stream]
+    streams: list[StreamSpan]
     end: float
     shades: dict[str, int]
 
@@ -130,7 +132,7 @@ def streams(run: Run) -> History:
     return History("Communication Streams of the run", made, run.end, shades)
 
 
-def _cleaned(stream: Stream) -> Stream:
+def _cleaned(stream: StreamSpan) -> StreamSpan:
     """A stream with names that a picture can hold."""
     pieces = [replace(one, by=clean(one.by), rule=clean(one.rule)) for one in stream.pieces]
     return replace(stream, name=clean(stream.name), app=clean(stream.app), pieces=pieces)

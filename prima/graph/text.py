@@ -6,7 +6,7 @@ import json
 import re
 from collections.abc import Iterator
 
-from prima.graph.model import INWARD, Edge, Graph, Node
+from prima.graph.model import INWARD, Edge, Graph, GraphNode
 from prima.graph.run import History, in_words
 from prima.transcript import colours
 from prima.transcript.colours import NOBODY
@@ -23,7 +23,7 @@ DOT_LINES = {
 }
 
 
-def lines(node: Node) -> list[str]:
+def lines(node: GraphNode) -> list[str]:
     """The lines of a node's text."""
     marks = [", ".join(node.marks)] if node.marks else []
     return [node.title, *marks, *node.notes]
@@ -52,9 +52,9 @@ def arrows(graph: Graph) -> Iterator[tuple[Edge, str, str]]:
         yield edge, number[edge.source], target
 
 
-def groups(graph: Graph) -> dict[str, list[Node]]:
+def groups(graph: Graph) -> dict[str, list[GraphNode]]:
     """The nodes by their groups, in their order."""
-    found: dict[str, list[Node]] = {}
+    found: dict[str, list[GraphNode]] = {}
     for node in graph.nodes.values():
         found.setdefault(node.group, []).append(node)
     return found
@@ -110,7 +110,7 @@ def _end(edge: Edge) -> str:
     return "end" if edge.kind == "exit" else edge.words
 
 
-def _attributes(node: Node) -> str:
+def _attributes(node: GraphNode) -> str:
     style = ["rounded"]
     more = ""
     if node.kind in ("any", "linked", "cancelled", "failed"):
@@ -188,7 +188,7 @@ def _arrow(edge: Edge, source: str, target: str) -> str:
     return f"  {source} {arrow}{words} {target}"
 
 
-def _shape(node: Node) -> str:
+def _shape(node: GraphNode) -> str:
     first, *rest = map(entity, lines(node))
     return f'["{"<br/>".join([f"<b>{first}</b>", *rest])}"]'
 
@@ -257,7 +257,7 @@ def data(graph: Graph) -> str:
     return json.dumps(made, ensure_ascii=False, indent=2) + "\n"
 
 
-def _node_data(name: str, node: Node) -> dict[str, object]:
+def _node_data(name: str, node: GraphNode) -> dict[str, object]:
     return {
         "id": name,
         "name": node.title,

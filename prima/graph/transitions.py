@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Sequence
 from typing import ClassVar, Generic, TypeVar
 
-from prima.graph.labels import NO_REPLY, Reply, condition, handled, joined, otherwise
+from prima.graph.labels import NO_REPLY, AnswerLabel, condition, handled, joined, otherwise
 from prima.graph.model import Graph
 from prima.graph.throws import Taker, Throws, chosen
 from prima.interpreter.selection import takes
@@ -40,7 +40,7 @@ class Transitions(ABC, Generic[Act]):
         """Add the transition of an act that leaves its content; return whether it does."""
 
     @abstractmethod
-    def _passes(self, act: Act, base: str, conditions: list[str], reply: Reply) -> None:
+    def _passes(self, act: Act, base: str, conditions: list[str], reply: AnswerLabel) -> None:
         """Add the transitions of an act behind which its content goes on."""
 
     @abstractmethod
@@ -54,7 +54,11 @@ class Transitions(ABC, Generic[Act]):
     # What both share --------------------------------------------------------------------------
 
     def content(
-        self, acts: Sequence[Act], base: str, held: Sequence[str] = (), reply: Reply = NO_REPLY
+        self,
+        acts: Sequence[Act],
+        base: str,
+        held: Sequence[str] = (),
+        reply: AnswerLabel = NO_REPLY,
     ) -> bool:
         """Add all transitions of content; return whether it never reaches its end."""
         conditions = list(held)
@@ -71,7 +75,7 @@ class Transitions(ABC, Generic[Act]):
         return False
 
     def _branch(
-        self, branches: Branches[Act], base: str, conditions: list[str], reply: Reply
+        self, branches: Branches[Act], base: str, conditions: list[str], reply: AnswerLabel
     ) -> tuple[bool, list[str]]:
         """Add the transitions of an ``if``; return whether it never ends, and what holds after it."""
         ends: list[bool] = []

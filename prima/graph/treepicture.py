@@ -5,8 +5,8 @@ from __future__ import annotations
 from html import escape
 from itertools import accumulate
 
-from prima.graph.layout import THREAD, Link, arrange, depths
-from prima.graph.model import Graph, Node
+from prima.graph.layout import THREAD, LayoutEdge, arrange, depths
+from prima.graph.model import Graph, GraphNode
 from prima.graph.svg import box, fit, head, measure, picture, text, wrap
 
 WIDTH, PAD = 190.0, 8.0
@@ -23,7 +23,7 @@ KINDS = (
 
 def draw(graph: Graph) -> str:
     """The trees as SVG."""
-    groups: dict[str, list[Node]] = {}
+    groups: dict[str, list[GraphNode]] = {}
     for node in graph.nodes.values():
         groups.setdefault(node.group, []).append(node)
     parts: list[str] = []
@@ -54,7 +54,7 @@ def _legend(y: float) -> tuple[list[str], float]:
     return parts, x
 
 
-def _frame(graph: Graph, name: str, nodes: list[Node]) -> tuple[list[str], float, float]:
+def _frame(graph: Graph, name: str, nodes: list[GraphNode]) -> tuple[list[str], float, float]:
     """A stream: its trees side by side, in rows; its width and its height."""
     title = f"stream {name}" if name else "no stream"
     parts: list[str] = []
@@ -72,7 +72,7 @@ def _frame(graph: Graph, name: str, nodes: list[Node]) -> tuple[list[str], float
     return [frame, top, *parts], wide, height
 
 
-def _trees(graph: Graph, nodes: list[Node]) -> list[list[Node]]:
+def _trees(graph: Graph, nodes: list[GraphNode]) -> list[list[GraphNode]]:
     """The nodes of a stream, divided into those that are linked with each other."""
     held = {node.key for node in nodes}
     near: dict[str, list[str]] = {node.key: [] for node in nodes}
@@ -81,7 +81,7 @@ def _trees(graph: Graph, nodes: list[Node]) -> list[list[Node]]:
             if edge.target in held:
                 near[key].append(edge.target)
                 near[edge.target].append(key)
-    trees: dict[str, list[Node]] = {}
+    trees: dict[str, list[GraphNode]] = {}
     root: dict[str, str] = {}
     for node in nodes:
         if node.key not in root:
@@ -100,7 +100,7 @@ def _linked(key: str, near: dict[str, list[str]]) -> set[str]:
     return found
 
 
-def _tree(graph: Graph, nodes: list[Node]) -> tuple[list[str], float, float]:
+def _tree(graph: Graph, nodes: list[GraphNode]) -> tuple[list[str], float, float]:
     """ABs that are linked with each other: the parts, the width and the height."""
     number = {node.key: index for index, node in enumerate(nodes)}
     kinds = {
@@ -112,7 +112,9 @@ def _tree(graph: Graph, nodes: list[Node]) -> tuple[list[str], float, float]:
     words = [_lines(node) for node in nodes]
     layers = depths(len(nodes), list(kinds))
     links = [
-        Link(low, high, WIDTH / 2, WIDTH / 2) for low, high in kinds if layers[low] < layers[high]
+        LayoutEdge(low, high, WIDTH / 2, WIDTH / 2)
+        for low, high in kinds
+        if layers[low] < layers[high]
     ]
     layout = arrange([WIDTH] * len(nodes), layers, links, GAP)
     heights = [0.0] * (max(layers) + 1)
@@ -129,7 +131,9 @@ def _tree(graph: Graph, nodes: list[Node]) -> tuple[list[str], float, float]:
     return parts, layout.extent, tops[-1] - STEP
 
 
-def _line(link: Link, kind: str, aside: list[float], down: float, stops: list[float]) -> list[str]:
+def _line(
+    link: LayoutEdge, kind: str, aside: list[float], down: float, stops: list[float]
+) -> list[str]:
     """A line from the foot of an AB, through the layers between, to the top of another."""
     at = aside[link.low] + WIDTH / 2
     path = f"M{at:.1f} {down:.1f}"
@@ -144,7 +148,7 @@ def _line(link: Link, kind: str, aside: list[float], down: float, stops: list[fl
     return [f'<path class="edge {kind}" d="{path}"/>', head(at, stops[-1], shape, "down")]
 
 
-def _lines(node: Node) -> list[str]:
+def _lines(node: GraphNode) -> list[str]:
     inner = WIDTH - 2 * PAD
     lines = wrap(node.notes[0], inner, 3)
     lines += [fit(note, inner, 10) for note in node.notes[1:]]
@@ -156,7 +160,7 @@ def _height(lines: list[str]) -> float:
     return 24 + 15 * len(lines) + 4
 
 
-def _box(node: Node, lines: list[str], x: float, y: float) -> list[str]:
+def _box(node: GraphNode, lines: list[str], x: float, y: float) -> list[str]:
     """An AB."""
     kind = {"done": "", "running": ""}.get(node.kind, node.kind)
     parts = [

@@ -8,7 +8,7 @@ from urllib.parse import urldefrag, urlsplit
 from prima.errors import DocumentError
 from prima.graph.labels import (
     ASKED,
-    Reply,
+    AnswerLabel,
     condition,
     joined,
     known,
@@ -18,7 +18,7 @@ from prima.graph.labels import (
     sayings,
 )
 from prima.graph.model import Graph, clean, settle
-from prima.graph.model import Node as Box
+from prima.graph.model import GraphNode as Box
 from prima.graph.throws import Taker
 from prima.graph.transitions import ANY, Branches, Transitions
 from prima.graph.voicenodes import (
@@ -45,10 +45,10 @@ ASKING = ("field", "initial", "record", "menu")
 
 def states(document: VoiceDocument) -> Graph:
     """The dialogs of an application and the transitions between them."""
-    return _Reader(document).graph
+    return _VoiceGraph(document).graph
 
 
-class _Reader(Transitions[Node]):
+class _VoiceGraph(Transitions[Node]):
     """Goes from document to document, as the application does."""
 
     goes_on = (*sorted(ASKED), "cancel", "maxspeechtimeout")  # 5.2.5
@@ -167,7 +167,7 @@ class _Reader(Transitions[Node]):
         elif item.tag == "transfer" and not _is_bridged(item):
             self.graph.edge(self.here, "", "exit", joined("the call is passed on", conditions))
         self._links(item.all("link"))
-        reply = Reply(name, item.get("type").partition("?")[0] == "boolean")
+        reply = AnswerLabel(name, item.get("type").partition("?")[0] == "boolean")
         for filled in item.all("filled"):
             self.content(filled.nodes, _filled(item, many), (), reply)
         self.handlers(takers(item), f"{name}: " if many and name else "")
@@ -245,7 +245,7 @@ class _Reader(Transitions[Node]):
                 return False
         return True
 
-    def _passes(self, act: Node, base: str, conditions: list[str], reply: Reply) -> None:
+    def _passes(self, act: Node, base: str, conditions: list[str], reply: AnswerLabel) -> None:
         if act.tag == "foreach" and act.namespace == NAMESPACE:
             self.content(act.nodes, base, conditions, reply)
 

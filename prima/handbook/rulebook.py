@@ -16,7 +16,7 @@ from typing import Any
 
 from prima import api
 from prima.errors import UsageError, did_you_mean
-from prima.handbook.situations import EXAMPLES, Example
+from prima.handbook.situations import EXAMPLES, RuleExample
 from prima.report import strip
 from prima.transcript.row import Row
 from prima.transcript.run import Run
@@ -40,7 +40,7 @@ WHOLE = 12.0
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class MediationRule:
     """A rule: name, section of the page, text without markup, and summary."""
 
     name: str
@@ -56,9 +56,9 @@ def page() -> Path:
 
 
 @cache
-def rules() -> dict[str, Rule]:
+def rules() -> dict[str, MediationRule]:
     """All rules by name, in the page's order; the baseline policies last."""
-    found: dict[str, Rule] = {}
+    found: dict[str, MediationRule] = {}
     section, last = "", ""
     for line in page().read_text(encoding="utf-8").splitlines():
         if heading := HEADING.match(line):
@@ -69,21 +69,21 @@ def rules() -> dict[str, Rule]:
         elif (part := PART.match(line)) and last:
             whole, name, text = found[last], last + part["name"], _plain(part["text"])
             ended = f"{whole.text.partition(LINE_END)[0]} {text.rstrip(';.')}."
-            found[name] = Rule(name, section, ended, _brief(text))
+            found[name] = MediationRule(name, section, ended, _brief(text))
             added = f"{whole.text}{LINE_END}{part['name']}: {text}"
-            found[last] = Rule(last, whole.section, added, whole.brief)
+            found[last] = MediationRule(last, whole.section, added, whole.brief)
         elif section == "Baseline policies" and (policy := POLICY.match(line)):
             text = _plain(policy["text"])
             text = f"{text[:1].upper()}{text[1:]}."
-            found[policy["name"]] = Rule(policy["name"], section, text, _brief(text))
+            found[policy["name"]] = MediationRule(policy["name"], section, text, _brief(text))
     return found
 
 
-def _rule(name: str, section: str, text: str) -> Rule:
+def _rule(name: str, section: str, text: str) -> MediationRule:
     """A rule of the page; its section says whether it is in the thesis."""
     own = _plain(text.removeprefix(DECIDED))
     section = f"{section}, decided" if text.startswith(DECIDED) else section
-    return Rule(name, section, own, _brief(own))
+    return MediationRule(name, section, own, _brief(own))
 
 
 def _brief(text: str) -> str:
@@ -135,14 +135,14 @@ def run_of(name: str, columns: int = 80) -> Shown:
     return Shown(rows[max(number - AROUND, 0) : number + AROUND + 1], number, picture)
 
 
-def _example(name: str) -> Example:
+def _example(name: str) -> RuleExample:
     if name not in EXAMPLES:
         hint = did_you_mean(name, EXAMPLES) or "prima explain lists them."
         raise UsageError(f'There is no rule "{name}". {hint}')
     return EXAMPLES[name]
 
 
-def _looked_at(name: str, example: Example, rows: list[Row], run: Run) -> int:
+def _looked_at(name: str, example: RuleExample, rows: list[Row], run: Run) -> int:
     """The number of the important row."""
     found = (row.number for row in rows if example.row in row.what)
     number = next(found if example.row else _decided(name, rows, run), None)

@@ -70,7 +70,7 @@ class StepTemplate:
 
 
 @dataclass(slots=True, eq=False)
-class Run:
+class CommandRun:
     """Commands that follow one another: requested at once (O4)."""
 
     steps: tuple[StepTemplate, ...]
@@ -191,7 +191,7 @@ class SendOut:
 
 
 Act = (
-    Run
+    CommandRun
     | Declare
     | Script
     | Assign
@@ -224,7 +224,7 @@ class Handler:
     """For how long (ms) the reaction is worth starting (X8)."""
 
 
-HOLDING = frozenset([If, Foreach, Run])
+HOLDING = frozenset([If, Foreach, CommandRun])
 """Kinds of content that hold other content."""
 
 
@@ -246,7 +246,7 @@ def _held(act: Act) -> Iterator[Sequence[Act]]:
         yield from (branch for _, branch in act.branches)
     elif isinstance(act, Foreach):
         yield act.content
-    elif isinstance(act, Run):
+    elif isinstance(act, CommandRun):
         for command in run_commands(act.steps):
             yield from (handler.content for handler in command.handlers)
 

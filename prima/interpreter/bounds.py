@@ -32,7 +32,7 @@ BRIEF_MS, MOST_BRIEF = 50, 1_000
 """How long waits must last on an average (ms), and how many more there may be."""
 
 
-class Visit(NamedTuple):
+class ElementVisit(NamedTuple):
     """An application came to an element of a document."""
 
     app: str
@@ -58,7 +58,7 @@ class Bounds(Generic[Evaluator]):
         self.engine = engine
         self.actions: list[Action] = []
         """What the application wants, for the session to carry out."""
-        self.visits: list[Visit] = []
+        self.visits: list[ElementVisit] = []
         """What it came to, until the session drains it."""
         self.over = False
         self.deadline: int | None = None
@@ -93,7 +93,7 @@ class Bounds(Generic[Evaluator]):
 
     def note(self, node: Node, what: Literal["in", "true", "false", "heard"] = "in") -> None:
         """An element is gone through, or its condition has been evaluated."""
-        self.visits.append(Visit(self.name, self.now, what, node))
+        self.visits.append(ElementVisit(self.name, self.now, what, node))
 
     def renew(self, now: int) -> None:
         """A new instant begins, so many ms after the run began."""

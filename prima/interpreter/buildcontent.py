@@ -8,6 +8,7 @@ from prima.interpreter.acts import (
     Act,
     Assign,
     Clear,
+    CommandRun,
     CommandTemplate,
     Declare,
     Exit,
@@ -20,7 +21,6 @@ from prima.interpreter.acts import (
     Log,
     Reprompt,
     Return,
-    Run,
     Script,
     SendOut,
     StepTemplate,
@@ -148,12 +148,12 @@ class ContentBuilder(AttributeReader):
             made.append(self.run(sequence))
         return tuple(made)
 
-    def run(self, nodes: list[Node]) -> Run:
+    def run(self, nodes: list[Node]) -> CommandRun:
         """Commands that follow one another, flattened into steps."""
         steps: list[StepTemplate] = []
         self.sequence(nodes, (), steps)
         self._runs += 1
-        return Run(tuple(steps), nodes[0])
+        return CommandRun(tuple(steps), nodes[0])
 
     def sequence(
         self, nodes: list[Node], after: tuple[int, ...], steps: list[StepTemplate]

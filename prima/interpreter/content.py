@@ -9,6 +9,7 @@ from prima.interpreter.acts import (
     Act,
     Assign,
     Clear,
+    CommandRun,
     CommandTemplate,
     Declare,
     Exit,
@@ -20,7 +21,6 @@ from prima.interpreter.acts import (
     Log,
     Reprompt,
     Return,
-    Run,
     Script,
     SendOut,
     StepTemplate,
@@ -63,7 +63,7 @@ class Executor(Evaluator):
                 transfer = simple(self, act, fiber)
                 if transfer is not None:
                     raise transfer
-            elif isinstance(act, Run):
+            elif isinstance(act, CommandRun):
                 yield from self.commands(act, fiber)
             else:
                 for part in self.parts(act, fiber):
@@ -204,7 +204,7 @@ class Executor(Evaluator):
 
     # Commands -----------------------------------------------------------------
 
-    def commands(self, act: Run, fiber: Fiber) -> Content:
+    def commands(self, act: CommandRun, fiber: Fiber) -> Content:
         """Request Commands as one tree and wait for their end (U3, O4)."""
         steps = self.steps(act.steps, fiber)
         if steps:  # else it is a par or seq without Commands

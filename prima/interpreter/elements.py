@@ -7,7 +7,16 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from prima.grammar.answers import Answers
-from prima.interpreter.acts import Act, Declare, Expression, Handler, Run, Script, Text, all_acts
+from prima.interpreter.acts import (
+    Act,
+    CommandRun,
+    Declare,
+    Expression,
+    Handler,
+    Script,
+    Text,
+    all_acts,
+)
 from prima.markup.tree import Node
 
 if TYPE_CHECKING:
@@ -238,7 +247,7 @@ def all_items(items: Sequence[Item]) -> Sequence[Item]:
     return found
 
 
-def runs_of(document: Document) -> Iterator[Run]:
+def runs_of(document: Document) -> Iterator[CommandRun]:
     """All runs of Commands of a document, in document order."""
     for _, content, _ in document.contents():
-        yield from (act for act in all_acts(content) if isinstance(act, Run))
+        yield from (act for act in all_acts(content) if isinstance(act, CommandRun))

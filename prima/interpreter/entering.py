@@ -25,7 +25,7 @@ MOST_STEPS = 100_000
 """Ways that are followed in one application: beyond, only a goto to the form itself is seen."""
 
 
-class Target(NamedTuple):
+class FormTarget(NamedTuple):
     """The full name of a form, or how those begin that an expression may name.
 
     A full name that ends with ``#`` is that of the document's first form.
@@ -36,29 +36,29 @@ class Target(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class EnteredDocument:
     """A document, and what its language means by it."""
 
     document: Document
     foreign: Callable[[str], bool]
     """Whether an event that a handler names may come from outside, other than as an answer."""
-    leads: Callable[[Goto | Subdialog], list[Target]]
+    leads: Callable[[Goto | Subdialog], list[FormTarget]]
     """The forms that a goto or the call of a subdialog leads to."""
     queues: bool = False
     """Whether what blocks say is said with the next question, and a question is not asked again
     because a handler goes to it (VoiceXML 4.1.8, 5.3.6)."""
 
-    def target(self, form: Form) -> Target:
+    def target(self, form: Form) -> FormTarget:
         """One of its forms, by its full name."""
-        return Target(f"{self.document.file}#{form.id}")
+        return FormTarget(f"{self.document.file}#{form.id}")
 
 
-def forms_of(sources: Iterable[Source]) -> Iterator[tuple[Source, Form]]:
+def forms_of(sources: Iterable[EnteredDocument]) -> Iterator[tuple[EnteredDocument, Form]]:
     """All forms of some documents, each with its document."""
     return ((source, form) for source in sources for form in source.document.forms.values())
 
 
-class Contents:
+class ContentFacts:
     """What is looked at of an application's content, and how much more of it is."""
 
     def __init__(self) -> None:
@@ -115,7 +115,7 @@ class Contents:
 class _Entry:
     """A form as far as entering it gets by itself: up to a question, or a call that asks one."""
 
-    source: Source
+    source: EnteredDocument
     form: Form
     todo: list[Item]
     """The items that come next, the last one first."""
@@ -123,12 +123,12 @@ class _Entry:
     called: set[str] = field(default_factory=set)
     """The subdialogs that have been called, by their names, and those that have returned."""
     returned: set[str] = field(default_factory=set)
-    leads: dict[Target, None] = field(default_factory=dict)
+    leads: dict[FormTarget, None] = field(default_factory=dict)
     waiting: dict[str, list[tuple[set[str], Filled]]] | None = None
     """What the form does with answers, by the names of the items; computed on demand."""
 
     @property
-    def name(self) -> Target:
+    def name(self) -> FormTarget:
         """The form as a target."""
         return self.source.target(self.form)
 
@@ -140,27 +140,27 @@ class _Entry:
 class Entering:
     """Enters every form; one that waits for a subdialog goes on once that is known to return."""
 
-    def __init__(self, sources: Sequence[Source], contents: Contents) -> None:
+    def __init__(self, sources: Sequence[EnteredDocument], contents: ContentFacts) -> None:
         self._contents = contents
         self._entries = [
             _Entry(source, form, [*reversed(form.items)]) for source, form in forms_of(sources)
         ]
         self._firsts = {f"{one.source.document.file}#": one for one in reversed(self._entries)}
         """The first forms of documents."""
-        self._before: dict[Target, list[Target]] = defaultdict(list)
+        self._before: dict[FormTarget, list[FormTarget]] = defaultdict(list)
         """The forms with a goto to one."""
-        self._callers: dict[Target, list[tuple[_Entry, Subdialog]]] = defaultdict(list)
-        self._returns: dict[Target, set[str]] = defaultdict(set)
+        self._callers: dict[FormTarget, list[tuple[_Entry, Subdialog]]] = defaultdict(list)
+        self._returns: dict[FormTarget, set[str]] = defaultdict(set)
         """How a form returns where it is called: without an event, or with which ones."""
-        self._told: list[tuple[Target, str]] = []
+        self._told: list[tuple[FormTarget, str]] = []
         """Forms that return, and how, which is still to be told."""
 
-    def exact(self, target: Target) -> Target:
+    def exact(self, target: FormTarget) -> FormTarget:
         """A target by the name of its form, also where that is its document's first one."""
         first = self._firsts.get(target.name) if target.known else None
         return first.name if first is not None else target
 
-    def onward(self) -> dict[Target, list[Target]]:
+    def onward(self) -> dict[FormTarget, list[FormTarget]]:
         """Where each form leads to by itself."""
         for entry in self._entries:
             self._advance(entry)
@@ -168,7 +168,7 @@ class Entering:
             self._tell(*self._told.pop())
         return {one.name: [*one.leads] for one in self._entries}
 
-    def _tell(self, name: Target, event: str) -> None:
+    def _tell(self, name: FormTarget, event: str) -> None:
         """A form returns: so do those that go to it, and who calls it goes on."""
         if event in self._returns[name]:
             return

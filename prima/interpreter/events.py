@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from prima.errors import Place, Problem, Span, guessable, meant
 from prima.errors.diagnoses.names import UNHEARD_EVENT, UNKNOWN_EVENT
 from prima.interpreter.acts import (
+    CommandRun,
     CommandTemplate,
     Expression,
     Handler,
     Return,
-    Run,
     SendOut,
     Throw,
     run_commands,
@@ -121,7 +121,7 @@ def handlers_of(document: Document, acts: Acts | None = None) -> Iterator[Handle
 
 
 def _commands(acts: Acts) -> Iterator[CommandTemplate]:
-    for _, run in acts.of(Run):
+    for _, run in acts.of(CommandRun):
         yield from run_commands(run.steps)
 
 
@@ -157,7 +157,7 @@ def raised_by(document: Document, acts: Acts) -> Iterator[RaisedEvent]:
         yield RaisedEvent(watch.name, watch.node, "name", False)
 
 
-class Events:
+class KnownEvents:
     """What a document knows of events, gathered once."""
 
     def __init__(self, document: Document, acts: Acts | None = None) -> None:

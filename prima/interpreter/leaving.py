@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from prima.interpreter.acts import Act, Assign, Clear, Goto, Handler, Run, all_acts, run_commands
+from prima.interpreter.acts import (
+    Act,
+    Assign,
+    Clear,
+    CommandRun,
+    Goto,
+    Handler,
+    all_acts,
+    run_commands,
+)
 from prima.interpreter.elements import Block, Field, Form, Item, Unit
 from prima.interpreter.entering import is_left
 from prima.interpreter.events import beginnings
@@ -83,5 +92,5 @@ def _asked(field: Field) -> Iterator[Node]:
 
 def _told(item: Item) -> Iterator[Node]:
     for act in item.content if isinstance(item, Block) else ():
-        if isinstance(act, Run):
+        if isinstance(act, CommandRun):
             yield from (command.node for command in run_commands(act.steps) if command.text)

@@ -28,7 +28,7 @@ FORM_STEPS = 3
 """The work of beginning a form's own content, or a form item, in pieces of content."""
 
 
-class Contents(Protocol):
+class ContentRunner(Protocol):
     """Runs content."""
 
     def run(self, content: Sequence[Act], fiber: Fiber) -> Content:
@@ -81,7 +81,7 @@ class Owner(Protocol):
     # Its parts and what it keeps:
 
     @property
-    def execute(self) -> Contents:
+    def execute(self) -> ContentRunner:
         """Runs its content."""
 
     @property

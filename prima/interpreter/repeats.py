@@ -20,7 +20,7 @@ from prima.interpreter.elements import (
     Subdialog,
     all_items,
 )
-from prima.interpreter.entering import Source, Target, forms_of, is_open
+from prima.interpreter.entering import EnteredDocument, FormTarget, forms_of, is_open
 from prima.interpreter.events import beginnings
 from prima.interpreter.leaving import Leaving, brings_news, cleared_by, goes_by, said_first
 from prima.interpreter.returning import callers_of, calls_again, returns_of, told_again
@@ -58,19 +58,19 @@ class _Back:
     """Whether it is known without a run where the goto leads, and what it leads to."""
 
 
-def source_of(document: Document) -> Source:
+def source_of(document: Document) -> EnteredDocument:
     """A document of PRIMA's own language."""
 
-    def leads(act: Goto | Subdialog) -> list[Target]:
+    def leads(act: Goto | Subdialog) -> list[FormTarget]:
         if isinstance(act.form, Expression):
             named = [(one.text.removeprefix("#"), one.whole) for one in choices(act.form.code)]
-            return [Target(f"{document.file}#{text}", whole) for text, whole in named]
-        return [Target(f"{document.file}#{act.form}")]
+            return [FormTarget(f"{document.file}#{text}", whole) for text, whole in named]
+        return [FormTarget(f"{document.file}#{act.form}")]
 
-    return Source(document, _foreign(document), leads)
+    return EnteredDocument(document, _foreign(document), leads)
 
 
-def told_twice(sources: Sequence[Source], remedy: str = REMEDY) -> Iterator[Problem]:
+def told_twice(sources: Sequence[EnteredDocument], remedy: str = REMEDY) -> Iterator[Problem]:
     """Warn of handlers that leave a state and come back to what it says or asks.
 
     An event may come while that is being said. Where the user has been asked something else on
@@ -91,7 +91,7 @@ def told_twice(sources: Sequence[Source], remedy: str = REMEDY) -> Iterator[Prob
     yield from _returning(sources)
 
 
-def _returning(sources: Sequence[Source]) -> Iterator[Problem]:
+def _returning(sources: Sequence[EnteredDocument]) -> Iterator[Problem]:
     """Warn of handlers that end a subdialog while it speaks, when it will be called again."""
     callers = callers_of(sources)
     for source, form in forms_of(sources) if callers else ():
@@ -106,7 +106,7 @@ def _returning(sources: Sequence[Source]) -> Iterator[Problem]:
 class _Leavings:
     """The handlers of a document by which an event from outside makes it leave what it says."""
 
-    def __init__(self, source: Source, ways: Ways) -> None:
+    def __init__(self, source: EnteredDocument, ways: Ways) -> None:
         self._source = source
         self._ways = ways
         document = source.document
@@ -114,7 +114,7 @@ class _Leavings:
         """The document's own."""
         self._to_any = [one for one in self._handlers if any(way.item for way in one.gotos)]
         """Those that go to items, of whatever form."""
-        self._shared: dict[Target, list[tuple[Leaving, Goto, bool]]] = {}
+        self._shared: dict[FormTarget, list[tuple[Leaving, Goto, bool]]] = {}
         """Where these lead back to, by the forms."""
         for one in self._handlers:
             for form, way in self._led(one).items():
@@ -156,9 +156,9 @@ class _Leavings:
 
     # Back to a form's beginning -----------------------------------------------------------
 
-    def _led(self, leaving: Leaving) -> dict[Target, tuple[Goto, bool]]:
+    def _led(self, leaving: Leaving) -> dict[FormTarget, tuple[Goto, bool]]:
         """The forms to which a document's handler leads, by which goto, and whether certainly."""
-        found: dict[Target, tuple[Goto, bool]] = {}
+        found: dict[FormTarget, tuple[Goto, bool]] = {}
         for certain in (True, False):
             for way in leaving.gotos if self._ways.contents.left > 0 else ():
                 targets = self._source.leads(way) if way.item is None else ()
@@ -179,7 +179,7 @@ class _Leavings:
                     yield leaving, way, certain
                     break
 
-    def _leads(self, way: Goto, goal: Target, certain: bool) -> bool:
+    def _leads(self, way: Goto, goal: FormTarget, certain: bool) -> bool:
         targets = self._source.leads(way) if way.item is None else ()
         return any(self._ways.lead(one, goal, not certain) for one in targets)
 

@@ -12,12 +12,12 @@ from prima.errors import Problem
 from prima.errors.diagnoses.behaviour import TOLD_TWICE
 from prima.interpreter.acts import Assign, Handler, Return, all_acts
 from prima.interpreter.elements import Form, Subdialog, all_items
-from prima.interpreter.entering import Source, Target, forms_of, is_left
+from prima.interpreter.entering import EnteredDocument, FormTarget, forms_of, is_left
 from prima.interpreter.events import beginnings
 
 REMEDY = "Handle the event here without <return>: what is said goes on then. Or give what is said a cond."
 
-Callers = dict[Target, list[tuple[Source, Form, Subdialog]]]
+Callers = dict[FormTarget, list[tuple[EnteredDocument, Form, Subdialog]]]
 
 CALLED_AGAIN = TOLD_TWICE.says(
     'If "{event}" comes while this is {said} (line {line}), it is told twice: the form that called'
@@ -26,7 +26,7 @@ CALLED_AGAIN = TOLD_TWICE.says(
 )
 
 
-def callers_of(sources: Sequence[Source]) -> Callers:
+def callers_of(sources: Sequence[EnteredDocument]) -> Callers:
     """The items by which each form is called as a subdialog."""
     found: Callers = defaultdict(list)
     for source, form in forms_of(sources):
@@ -38,7 +38,7 @@ def callers_of(sources: Sequence[Source]) -> Callers:
     return found
 
 
-def returns_of(form: Form, source: Source) -> Iterator[tuple[str, Return]]:
+def returns_of(form: Form, source: EnteredDocument) -> Iterator[tuple[str, Return]]:
     """Events from outside at which handlers of a form return with an event, and how."""
     inner = [handler for item in all_items(form.items) for handler in item.handlers]
     for handler in (*form.handlers, *inner):
@@ -48,7 +48,7 @@ def returns_of(form: Form, source: Source) -> Iterator[tuple[str, Return]]:
                 yield event, act
 
 
-def calls_again(source: Source, form: Form, item: Subdialog, event: str) -> bool:
+def calls_again(source: EnteredDocument, form: Form, item: Subdialog, event: str) -> bool:
     """Whether a form handles an event of what it has called, and then visits the item again."""
     names = set(beginnings(event))
     scope = (*item.handlers, *form.handlers, *source.document.handlers)

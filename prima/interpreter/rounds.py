@@ -9,10 +9,10 @@ from prima.errors.diagnoses.behaviour import ENDLESS
 from prima.interpreter.acts import (
     Act,
     Assign,
+    CommandRun,
     CommandTemplate,
     Handler,
     Log,
-    Run,
     SendOut,
     StepTemplate,
     Throw,
@@ -36,7 +36,7 @@ Raised = Callable[[Sequence[Act]], set[str]]
 """Finds the events that content raises."""
 
 
-class Leads:
+class EventLeads:
     """Which handlers others lead to by the events that they raise; only so many are followed.
 
     Args:
@@ -92,7 +92,9 @@ class Leads:
 def raised_in(content: Sequence[Act]) -> set[str]:
     """The events that content raises without a wait: ends of its Commands, and what it throws."""
     acts = all_acts(content)
-    ends = {f"end.{name}" for act in acts if isinstance(act, Run) for name in _types(act.steps)}
+    ends = {
+        f"end.{name}" for act in acts if isinstance(act, CommandRun) for name in _types(act.steps)
+    }
     thrown = [act.event for act in acts if isinstance(act, Throw)]
     return ends | {name for name in thrown if isinstance(name, str)}
 
@@ -113,7 +115,7 @@ def endless_reactions(document: Document) -> Iterator[Problem]:
     another application would go first, as a question, a pause or a second Command.
     """
     told: set[int] = set()
-    leads, everywhere = Leads(raised_first), _certain(document.handlers)
+    leads, everywhere = EventLeads(raised_first), _certain(document.handlers)
     alone = False
     for form in document.forms.values():
         before = _certain(form.handlers)
@@ -124,7 +126,7 @@ def endless_reactions(document: Document) -> Iterator[Problem]:
         alone = alone or not (before or behind)
 
 
-def _endless(scope: Sequence[Handler], leads: Leads, told: set[int]) -> Iterator[Problem]:
+def _endless(scope: Sequence[Handler], leads: EventLeads, told: set[int]) -> Iterator[Problem]:
     """Those of a scope that lead to themselves, and to none that is told already."""
     behind: set[int] = set()
     """Those that lead to one that is told."""
@@ -153,7 +155,7 @@ def raised_first(content: Sequence[Act]) -> set[str]:
     ran = False
     for act in content:
         match act:
-            case Run() if not ran:
+            case CommandRun() if not ran:
                 first = set(_types([step for step in act.steps if not step.after]))
                 if PAUSE in first:
                     return found

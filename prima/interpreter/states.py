@@ -7,7 +7,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from prima.interpreter.acts import Declare, Script
-from prima.interpreter.bounds import Visit
+from prima.interpreter.bounds import ElementVisit
 from prima.interpreter.content import Executor
 from prima.interpreter.elements import Document, Form, all_items
 from prima.interpreter.form import Algorithm
@@ -48,7 +48,7 @@ class States(App["AnyEngine | PythonEngine"]):
         self.arguments = arguments or {}
         super().__init__(document.id, document.kind, evaluator_of(document, engines or Engines()))
         self.application = self.engine.named("application")
-        self.visits.append(Visit(self.name, 0, "document", document.node, document.file))
+        self.visits.append(ElementVisit(self.name, 0, "document", document.node, document.file))
         self.frame: Frame | None = None
         self.waiting: dict[int, Fiber] = {}
         self.timers: list[tuple[int, int, str, Data, int]] = []
@@ -208,7 +208,9 @@ class States(App["AnyEngine | PythonEngine"]):
         outer = frame.caller.form if frame.caller is not None and not self.over else None
         name = outer.id if outer is not None else ""
         self.visits.append(
-            Visit(self.name, self.now, "leave", outer.node if outer is not None else None, name)
+            ElementVisit(
+                self.name, self.now, "leave", outer.node if outer is not None else None, name
+            )
         )
         if frame.fibers:
             for fiber in frame.fibers:
@@ -267,7 +269,7 @@ class States(App["AnyEngine | PythonEngine"]):
     def begin(self, frame: Frame, setup: bool = True) -> tuple[Frame, Transfer] | None:
         """Start a form's own content; gives a transfer of control that it ends in at once."""
         self.frame, form = frame, frame.form
-        self.visits.append(Visit(self.name, self.now, "enter", form.node, form.id))
+        self.visits.append(ElementVisit(self.name, self.now, "enter", form.node, form.id))
         self.note(form.node)
         if frame.form.bare and not (frame.fresh or frame.called_by):
             return None  # nothing more can happen until the next event

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from prima.errors import Hint, Problem, Span, one_of, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_NAME
 from prima.grammar.text import fold
-from prima.interpreter.acts import CommandTemplate, Pause, Run, Text, all_acts, run_commands
+from prima.interpreter.acts import CommandRun, CommandTemplate, Pause, Text, all_acts, run_commands
 from prima.interpreter.elements import Document, Field, all_items
 from prima.interpreter.events import event_place, handlers_of
 from prima.markup.spans import value_span
@@ -103,7 +103,7 @@ def commands_of(document: Document) -> list[CommandTemplate]:
         command
         for _, content, _ in document.contents()
         for act in all_acts(content)
-        if isinstance(act, Run)
+        if isinstance(act, CommandRun)
         for command in run_commands(act.steps)
     ]
 

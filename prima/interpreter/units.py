@@ -15,10 +15,10 @@ from prima.errors import Problem
 from prima.errors.diagnoses.behaviour import LONG_UNIT, NOT_IN_UNIT, NOW_INSIDE
 from prima.interpreter.acts import (
     Act,
+    CommandRun,
     CommandTemplate,
     Expression,
     Handler,
-    Run,
     Text,
     Throw,
     all_acts,
@@ -184,11 +184,11 @@ def now_inside(node: Node, prefix: str = "") -> Problem:
 
 def commands_of(content: Sequence[Act]) -> list[CommandTemplate]:
     """The Commands of executable content."""
-    runs = [act for act in all_acts(content) if isinstance(act, Run)]
+    runs = [act for act in all_acts(content) if isinstance(act, CommandRun)]
     return [command for run in runs for command in run_commands(run.steps)]
 
 
-class Piece:
+class UnitPiece:
     """Executable content of a unit or a handler: its Commands and what it throws."""
 
     __slots__ = ("commands", "computed", "throws")
@@ -249,7 +249,7 @@ class Finder:
         """
         self._document = document
         self._thrown = thrown or thrown_by
-        self._pieces: dict[int, Piece] = {}
+        self._pieces: dict[int, UnitPiece] = {}
         self._taking: dict[tuple[str, str | None], list[Handler]] = {}
         """The handlers of a form and of the document that take an event, by both names."""
 
@@ -286,7 +286,7 @@ class Finder:
 
     @staticmethod
     def _take_in(
-        piece: Piece, inside: bool, by: _Raised, found: dict[int, Reached]
+        piece: UnitPiece, inside: bool, by: _Raised, found: dict[int, Reached]
     ) -> list[_Raised]:
         """Take in a piece of content, and what it throws in turn."""
         for command in piece.commands:
@@ -297,10 +297,10 @@ class Finder:
             *named,
         ]
 
-    def _made(self, content: Sequence[Act]) -> Piece:
-        return Piece(content, self._document)
+    def _made(self, content: Sequence[Act]) -> UnitPiece:
+        return UnitPiece(content, self._document)
 
-    def _piece(self, handler: Handler) -> Piece:
+    def _piece(self, handler: Handler) -> UnitPiece:
         if id(handler) not in self._pieces:
             self._pieces[id(handler)] = self._made(handler.content)
         return self._pieces[id(handler)]

@@ -6,22 +6,22 @@ from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 
-from prima.interpreter.entering import Contents, Entering, Source, Target
+from prima.interpreter.entering import ContentFacts, EnteredDocument, Entering, FormTarget
 
-Onward = Mapping[Target, Sequence[Target]]
+Onward = Mapping[FormTarget, Sequence[FormTarget]]
 """Where forms lead to, and the expressions that name forms."""
 
 
 class Ways:
     """The forms of an application and what entering one leads to; each is looked at once."""
 
-    def __init__(self, sources: Sequence[Source]) -> None:
-        self.contents = Contents()
+    def __init__(self, sources: Sequence[EnteredDocument]) -> None:
+        self.contents = ContentFacts()
         self._sources = sources
-        self._reached: dict[tuple[Target, bool], set[Target]] = {}
-        self._ranks: dict[bool, dict[Target, int]] = {}
+        self._reached: dict[tuple[FormTarget, bool], set[FormTarget]] = {}
+        self._ranks: dict[bool, dict[FormTarget, int]] = {}
 
-    def lead(self, target: Target, form: Target, guess: bool) -> bool:
+    def lead(self, target: FormTarget, form: FormTarget, guess: bool) -> bool:
         """Whether a target leads to a form, at once or by way of others.
 
         With ``guess`` also where only a run tells what an expression names.
@@ -37,14 +37,14 @@ class Ways:
         known = self.contents.left > 0 or (start, guess) in self._reached
         return known and form in self.reached(start, guess)
 
-    def reached(self, target: Target, guess: bool) -> set[Target]:
+    def reached(self, target: FormTarget, guess: bool) -> set[FormTarget]:
         """The forms that a target leads to, and the expressions that name such."""
         key = (self._entering.exact(target), guess)
         if key not in self._reached:
             self._reached[key] = self._reach(*key)
         return self._reached[key]
 
-    def _reach(self, target: Target, guess: bool) -> set[Target]:
+    def _reach(self, target: FormTarget, guess: bool) -> set[FormTarget]:
         onward = self._guessed if guess else self._known
         found = [target] if target in onward else self._matching(target) if guess else []
         reached = set(found)
@@ -55,7 +55,7 @@ class Ways:
         self.contents.left -= len(reached)
         return reached
 
-    def _ranks_of(self, guess: bool) -> dict[Target, int]:
+    def _ranks_of(self, guess: bool) -> dict[FormTarget, int]:
         if guess not in self._ranks:
             self._ranks[guess] = Ranks(self._guessed if guess else self._known).found
         return self._ranks[guess]
@@ -65,7 +65,7 @@ class Ways:
         return Entering(self._sources, self.contents)
 
     @cached_property
-    def _known(self) -> dict[Target, list[Target]]:
+    def _known(self) -> dict[FormTarget, list[FormTarget]]:
         """Where each form certainly leads to by itself; expressions lead on only by guess."""
         return self._entering.onward()
 
@@ -79,13 +79,13 @@ class Ways:
     def _names(self) -> list[str]:
         return sorted(one.name for one in self._known)
 
-    def _matching(self, target: Target) -> list[Target]:
+    def _matching(self, target: FormTarget) -> list[FormTarget]:
         """The forms that an expression may name."""
         if target.known:
             return []
         begin = bisect_left(self._names, target.name)
         end = bisect_left(self._names, f"{target.name}\U0010ffff")
-        return [Target(name) for name in self._names[begin:end]]
+        return [FormTarget(name) for name in self._names[begin:end]]
 
 
 class Ranks:
@@ -95,19 +95,19 @@ class Ranks:
     """
 
     def __init__(self, onward: Onward) -> None:
-        self.found: dict[Target, int] = {}
+        self.found: dict[FormTarget, int] = {}
         self._onward = onward
-        self._entered: dict[Target, int] = {}
+        self._entered: dict[FormTarget, int] = {}
         """In which order they have been come to."""
-        self._lowest: dict[Target, int] = {}
+        self._lowest: dict[FormTarget, int] = {}
         """The earliest one that is known to be led back to."""
-        self._edges: dict[Target, Iterator[Target]] = {}
-        self._path: list[Target] = []
+        self._edges: dict[FormTarget, Iterator[FormTarget]] = {}
+        self._path: list[FormTarget] = []
         for root in onward:
             if root not in self._entered:
                 self._search(root)
 
-    def _search(self, root: Target) -> None:
+    def _search(self, root: FormTarget) -> None:
         calls = [self._enter(root)]
         while calls:
             node, into = calls[-1], self._next(calls[-1])
@@ -121,13 +121,13 @@ class Ranks:
             if lowest == self._entered[node]:
                 self._close(node)
 
-    def _enter(self, node: Target) -> Target:
+    def _enter(self, node: FormTarget) -> FormTarget:
         self._entered[node] = self._lowest[node] = len(self._entered)
         self._edges[node] = iter(self._onward.get(node, ()))
         self._path.append(node)
         return node
 
-    def _next(self, node: Target) -> Target | None:
+    def _next(self, node: FormTarget) -> FormTarget | None:
         """Nodes that a node leads to and that have not been visited."""
         for to in self._edges[node]:
             if to not in self._entered:
@@ -136,7 +136,7 @@ class Ranks:
                 self._lowest[node] = min(self._lowest[node], self._entered[to])
         return None
 
-    def _close(self, node: Target) -> None:
+    def _close(self, node: FormTarget) -> None:
         """Give those a number that lead to a node and that it leads to."""
         number = len(self.found)
         while node not in self.found:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TypeGuard
 
-from prima.invariants.floor import Floor
+from prima.invariants.floor import FloorRules
 from prima.invariants.model import AB, LINKED, RUNNING, WAITING, Record, Tree, base
 
 RESTORING = ("set-position", "set-position-and-direction", "set-direction", "face-human")
@@ -23,7 +23,7 @@ FAR = 0.5
 A_MOMENT = 1e-6
 
 
-class Extensions(Floor):
+class Extensions(FloorRules):
     """Each extension is held to what it relaxes; its records are claims to be justified."""
 
     def put_in(self, ab: AB, before: AB | None, record: Record) -> None:

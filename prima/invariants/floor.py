@@ -8,7 +8,7 @@ from prima.invariants.model import AB, LINKED, RUNNING, Record, Tree, base
 from prima.invariants.turn import Turn
 
 
-class Floor(Turn):
+class FloorRules(Turn):
     """F1 to F6, with the suspensions and stops that follow from them."""
 
     # Who may start ----------------------------------------------------------------

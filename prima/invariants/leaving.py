@@ -8,7 +8,7 @@ from prima.invariants.endings import Endings
 from prima.invariants.model import AB, RUNNING, Record, Tree
 
 
-class Leaving(Endings):
+class LeavingRules(Endings):
     """O3, from the ``leave`` records. When a state is left is the application's own decision."""
 
     def note_leave(self, record: Record) -> None:

@@ -9,7 +9,7 @@ from prima.invariants.model import Record
 
 
 @dataclass(frozen=True)
-class Row:
+class CommandRow:
     """One type of Command."""
 
     devices: frozenset[str]
@@ -18,15 +18,15 @@ class Row:
     engages: bool = False
 
 
-def row(devices: str, marks: str = "") -> Row:
+def row(devices: str, marks: str = "") -> CommandRow:
     """A row: devices, and which of ``feedback``, ``leaves``, ``engages`` it is marked with."""
     names = marks.split()
-    return Row(
+    return CommandRow(
         frozenset(devices.split()), "feedback" in names, "leaves" in names, "engages" in names
     )
 
 
-TABLE: Mapping[str, Row] = {
+TABLE: Mapping[str, CommandRow] = {
     "active-sensing-human": row("human-detection locomotion localization", "feedback engages"),
     "face-human": row("human-detection locomotion", "engages"),
     "q-and-a": row("speaker speech-recognition", "engages"),
@@ -46,7 +46,7 @@ TABLE: Mapping[str, Row] = {
     "set-position-and-direction": row("locomotion localization", "feedback leaves"),
 }
 
-MADE: Mapping[str, Row] = {
+MADE: Mapping[str, CommandRow] = {
     "dance": row("locomotion neck arm"),
     "spin": row("locomotion"),
     "waltz": row("locomotion localization"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.invariants.leaving import Leaving
+from prima.invariants.leaving import LeavingRules
 from prima.invariants.model import Record, base
 
 ALONE = {
@@ -21,7 +21,7 @@ SAME = ("app", "tree", "command", "text", "unit")
 """Fields that every record of an AB has as its request has them."""
 
 
-class Telling(Leaving):
+class Telling(LeavingRules):
     """Holds each record to the request, stream or rule that it is about."""
 
     def tells_rightly(self, record: Record) -> None:

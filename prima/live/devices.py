@@ -35,16 +35,16 @@ from prima.devices.goals import (
     Stopped,
 )
 from prima.devices.profile import Profile
-from prima.devices.settings import Limits
+from prima.devices.settings import DriverLimits
 from prima.grammar.answers import Answers
 from prima.live.carried import lacking, route
 from prima.live.driver import Driver
-from prima.live.journal import Known
+from prima.live.journal import KnownAtCut
 from prima.messages import (
+    ApplicationLoaded,
     Emergency,
     Heard,
     Inbound,
-    Loaded,
     Order,
     Record,
     Sensed,
@@ -169,7 +169,7 @@ class LiveDevices:
         for driver in self.drivers:
             self._let(driver, partial(driver.sample, now))
         self._told = None
-        inbound: list[Inbound] = [Loaded(name) for name in self._loads]
+        inbound: list[Inbound] = [ApplicationLoaded(name) for name in self._loads]
         self._loads.clear()
         if self._at is not None:
             inbound += self._entrances.cross((self._at.x, self._at.y))
@@ -206,7 +206,7 @@ class LiveDevices:
         for driver in self.drivers:
             self._let(driver, partial(driver.observe, now, records))
 
-    def go_on(self, state: Known, first: list[Inbound]) -> None:
+    def go_on(self, state: KnownAtCut, first: list[Inbound]) -> None:
         """Go on after a run that was cut off.
 
         Args:
@@ -380,19 +380,19 @@ class LiveDevices:
             reason = f"the driver {driver.kind} has failed: {error}"
             self.conductor.report(now, Broke(goal.key, device, reason))
 
-    def limits(self, goal: Begin) -> Limits:
+    def limits(self, goal: Begin) -> DriverLimits:
         """How long a goal's driver may take: as the document says, else as suits the goal."""
         driver = route(self.drivers, goal)
         if driver is None:
-            return Limits()
+            return DriverLimits()
         does = driver.does(goal)
         said = does.limits.over(driver.settings.limits) if does else driver.settings.limits
         if goal.kind in (LISTEN, RECORD):
-            return Limits(said.accept, None, said.cancel)
+            return DriverLimits(said.accept, None, said.cancel)
         if goal.kind == SAY and said.progress is None:
             command = goal.command
             lasts = voice.duration(command.text or "", command.lang, self.profile.voices)
-            said = Limits(said.accept, 2 * lasts + SPEECH_MS, said.cancel)
+            said = DriverLimits(said.accept, 2 * lasts + SPEECH_MS, said.cancel)
         return said.over(driver.progress)
 
     # Where it is -------------------------------------------------------------------------

@@ -26,7 +26,7 @@ from prima.devices.goals import (
     Stopped,
 )
 from prima.devices.profile import Profile
-from prima.devices.settings import Does, DriverSettings, Limits, Pose
+from prima.devices.settings import Does, DriverLimits, DriverSettings, Pose
 from prima.errors import RunError, UsageError
 from prima.grammar.answers import Answers
 from prima.live.recordings import Recordings
@@ -72,7 +72,7 @@ class Driver:
     """Whether a Command needs a ``does`` to be carried out."""
     own: ClassVar[frozenset[str]] = frozenset()
     """The Commands (and ``say``, ``listen``) that it carries out without one."""
-    progress: ClassVar[Limits] = Limits()
+    progress: ClassVar[DriverLimits] = DriverLimits()
     """How long it takes at most by its own nature, where the document says nothing."""
 
     def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:

@@ -148,7 +148,7 @@ class Journal:
 
 
 @dataclass(slots=True)
-class Broken:
+class CutJournal:
     """A journal that was cut off: its whole records, and how many bytes these are."""
 
     path: str
@@ -161,7 +161,7 @@ class Broken:
         return round(float(self.records[-1]["time"]) * 1000)
 
 
-def read_broken(path: str) -> Broken:
+def read_broken(path: str) -> CutJournal:
     """Read a journal up to its last whole record.
 
     Raises:
@@ -185,10 +185,10 @@ def read_broken(path: str) -> Broken:
         raise UsageError(f"{path}: {message}")
     if "live" not in records[0].get("data", {}):
         raise UsageError(f"{path}: this is not the journal of a live run.")
-    return Broken(path, records, kept)
+    return CutJournal(path, records, kept)
 
 
-def catch_up(broken: Broken, session: Session) -> list[Record]:
+def catch_up(broken: CutJournal, session: Session) -> list[Record]:
     """Bring a new session to where a journal was cut off.
 
     Returns:
@@ -200,7 +200,7 @@ def catch_up(broken: Broken, session: Session) -> list[Record]:
     return lacking(broken, replay_instants(session, broken.records, broken.path))
 
 
-def lacking(broken: Broken, made: Iterable[Record]) -> list[Record]:
+def lacking(broken: CutJournal, made: Iterable[Record]) -> list[Record]:
     """What a journal lacks of the records that were made again, times in ms.
 
     Raises:
@@ -215,7 +215,7 @@ def lacking(broken: Broken, made: Iterable[Record]) -> list[Record]:
 
 
 @dataclass(slots=True)
-class Known:
+class KnownAtCut:
     """What a run knew when it was cut off."""
 
     loaded: set[str]
@@ -231,9 +231,9 @@ class Known:
     """What applications had asked and had no answer to, by its name, the oldest first."""
 
 
-def known(records: list[Record]) -> Known:
+def known(records: list[Record]) -> KnownAtCut:
     """What a run knew at the end of its records."""
-    state = Known(set(), set(), False, {}, False)
+    state = KnownAtCut(set(), set(), False, {}, False)
     for record in records:
         match record["phase"]:
             case "load" if record.get("inbound"):
@@ -279,7 +279,7 @@ def _note_asked(asked: dict[str, Order], record: Record) -> None:
                     return
 
 
-def going_on(state: Known) -> Iterator[Inbound]:
+def going_on(state: KnownAtCut) -> Iterator[Inbound]:
     """What a run is told when it goes on: all that ran was interrupted, and starts again (E5)."""
     yield Narrated("environment", "the run was cut off here, and goes on")
     if not state.halted:

@@ -20,7 +20,7 @@ from prima.devices.goals import (
     Stopped,
 )
 from prima.devices.profile import Profile, read_robot
-from prima.devices.settings import Limits
+from prima.devices.settings import DriverLimits
 from prima.errors import UsageError
 from prima.language.commands import Argument, CommandType
 from prima.live.carried import SPOKEN, lacking, route
@@ -28,7 +28,7 @@ from prima.live.devices import SAFE_S, LiveDevices
 from prima.live.driver import Driver, Unreachable
 from prima.live.shell import open_driver
 from prima.live.signals import heeding_signals
-from prima.live.visit import Chosen, Settings, make_drivers
+from prima.live.visit import Chosen, LiveSettings, make_drivers
 from prima.loading import documents_folder
 from prima.loading.files import read_file
 from prima.messages import Command, Json
@@ -60,7 +60,7 @@ Say = Callable[[str], object]
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class CommandFinding:
     """What came of a Command: whether it is right, why not, and its times for people."""
 
     right: bool
@@ -71,20 +71,20 @@ class Found:
     """Whether it was over before it could be cancelled."""
 
 
-def _ended(report: Report, accepted: str) -> Found:
+def _ended(report: Report, accepted: str) -> CommandFinding:
     """What a Command is that has ended by itself."""
     if isinstance(report, Broke | Lost):
-        return Found(False, report.reason, accepted)
+        return CommandFinding(False, report.reason, accepted)
     if isinstance(report, Stopped):
-        return Found(False, "it stops by itself", accepted)
-    return Found(True, "over at once", accepted, done=True)
+        return CommandFinding(False, "it stops by itself", accepted)
+    return CommandFinding(True, "over at once", accepted, done=True)
 
 
 def _ms(seconds: float) -> str:
     return f"{seconds * 1000:.0f} ms"
 
 
-def check_robot(chosen: Chosen, settings: Settings, say: Say) -> int:
+def check_robot(chosen: Chosen, settings: LiveSettings, say: Say) -> int:
     """Try a robot, and say what came of it line by line.
 
     Returns:
@@ -287,7 +287,7 @@ class Preflight:
                 found = replace(await self._carried_out(driver, again, 0), accepted=found.accepted)
             self._tell(found.right, what, found.text, driver.kind, found.accepted, found.cancelled)
 
-    async def _carried_out(self, driver: Driver, begin: Begin, lasts: int) -> Found:
+    async def _carried_out(self, driver: Driver, begin: Begin, lasts: int) -> CommandFinding:
         """Begin a Command, let it go on for a while (ms), and cancel it."""
         key, limits = begin.key, self._devices.limits(begin)
         self._reports[key] = asyncio.Queue()
@@ -296,18 +296,20 @@ class Preflight:
             driver.start(begin)
             return await self._watch(driver, key, limits, lasts)
         except Exception as error:
-            return Found(False, f"the driver has failed: {type(error).__name__}: {error}")
+            return CommandFinding(False, f"the driver has failed: {type(error).__name__}: {error}")
         finally:
             del self._reports[key]
 
-    async def _watch(self, driver: Driver, key: str, limits: Limits, lasts: int) -> Found:
+    async def _watch(
+        self, driver: Driver, key: str, limits: DriverLimits, lasts: int
+    ) -> CommandFinding:
         """What comes of a Command that was begun."""
         began = monotonic()
         first = await self._report(key, limits.accept)
         accepted = _ms(monotonic() - began)
         if first is None:
             driver.cancel(key)
-            return Found(False, f"not accepted within {limits.accept} ms")
+            return CommandFinding(False, f"not accepted within {limits.accept} ms")
         if isinstance(first, ENDS):
             return _ended(first, accepted)
         if lasts and (then := await self._report(key, lasts, last=True)) is not None:
@@ -318,14 +320,14 @@ class Preflight:
         taken = monotonic() - began
         if ended is None:
             text = f"does not stop within {limits.cancel or UNBOUNDED_MS} ms"
-            return Found(False, text, accepted)
+            return CommandFinding(False, text, accepted)
         if isinstance(ended, Lost):
-            return Found(False, ended.reason, accepted)
+            return CommandFinding(False, ended.reason, accepted)
         if isinstance(ended, Done) and taken > HEEDED_S:
             text = "goes on to its end although it is cancelled"
-            return Found(False, text, accepted, _ms(taken))
+            return CommandFinding(False, text, accepted, _ms(taken))
         text = "stops late: does it heed a cancel?" if taken > SLOW_S else ""
-        return Found(True, text, accepted, _ms(taken))
+        return CommandFinding(True, text, accepted, _ms(taken))
 
     async def _report(self, key: str, limit: int | None, last: bool = False) -> Report | None:
         """The next report of a goal, or with ``last`` its end; None if none comes in time (ms)."""

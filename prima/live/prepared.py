@@ -5,7 +5,7 @@ from __future__ import annotations
 from prima.errors import UsageError
 from prima.live.journal import read_broken
 from prima.live.resumed import go_on
-from prima.live.visit import Chosen, Settings, Visit, begin
+from prima.live.visit import Chosen, LiveSettings, Visit, begin
 
 
 def check_usage(
@@ -43,7 +43,9 @@ def check_usage(
         raise UsageError(f"Name the robot with --robot; {hint}")
 
 
-def prepared(chosen: Chosen, settings: Settings, output: str | None, resume: str | None) -> Visit:
+def prepared(
+    chosen: Chosen, settings: LiveSettings, output: str | None, resume: str | None
+) -> Visit:
     """A run that is ready to go: a new one, or one that goes on.
 
     Raises:

@@ -9,11 +9,11 @@ from prima.errors import UsageError
 from prima.language.commands import PATIENCE_MS
 from prima.live.clock import Clock
 from prima.live.devices import LiveDevices
-from prima.live.journal import Broken, Journal, catch_up, going_on, known, lacking
+from prima.live.journal import CutJournal, Journal, catch_up, going_on, known, lacking
 from prima.live.services import LiveServices
 from prima.live.visit import (
     Chosen,
-    Settings,
+    LiveSettings,
     Visit,
     chosen_then,
     in_simulation,
@@ -30,7 +30,7 @@ from prima.script.sandbox import START
 PATIENCE_S = PATIENCE_MS / 1000
 
 
-def go_on(broken: Broken, settings: Settings) -> Visit:
+def go_on(broken: CutJournal, settings: LiveSettings) -> Visit:
     """Prepare to go on with a run that was cut off.
 
     Raises:
@@ -61,7 +61,7 @@ def go_on(broken: Broken, settings: Settings) -> Visit:
 
 
 def _scenario(
-    broken: Broken, loaded: Loaded, policy: Policy, settings: Settings
+    broken: CutJournal, loaded: Loaded, policy: Policy, settings: LiveSettings
 ) -> tuple[Loop, list[Record]]:
     """A scenario runs again to the cut in no time, its world and its user with it.
 
@@ -86,7 +86,7 @@ def _scenario(
 
 
 def _robot(
-    broken: Broken, chosen: Chosen, loaded: Loaded, policy: Policy, settings: Settings
+    broken: CutJournal, chosen: Chosen, loaded: Loaded, policy: Policy, settings: LiveSettings
 ) -> tuple[Loop, list[Record]]:
     """The session is told again what it was told; what ran was interrupted.
 

@@ -32,7 +32,7 @@ REASONS: Final = ("error_msg", "error_string", "message", "reason")
 
 
 @dataclass(frozen=True, slots=True)
-class Use:
+class RosUse:
     """An action, service or topic that Commands are mapped to."""
 
     kind: str
@@ -60,19 +60,19 @@ class Sent:
     """Ask the server to cancel it."""
 
 
-class Link(Protocol):
+class RosLink(Protocol):
     """A connection with ROS. What has not been answered when it fails raises Unreachable."""
 
-    async def connect(self, uses: list[Use], driver: RosDriver) -> None:
+    async def connect(self, uses: list[RosUse], driver: RosDriver) -> None:
         """Connect, subscribe to what is sensed, and see that all is there."""
 
-    async def send_goal(self, use: Use, values: dict[str, Json], on: Callable[[], None]) -> Sent:
+    async def send_goal(self, use: RosUse, values: dict[str, Json], on: Callable[[], None]) -> Sent:
         """Send a goal to an action; gives it when it has been accepted."""
 
-    async def call(self, use: Use, values: dict[str, Json]) -> dict[str, Json]:
+    async def call(self, use: RosUse, values: dict[str, Json]) -> dict[str, Json]:
         """Call a service; gives its answer."""
 
-    def publish(self, use: Use, values: dict[str, Json]) -> None:
+    def publish(self, use: RosUse, values: dict[str, Json]) -> None:
         """Publish a message."""
 
     async def ping(self) -> None:
@@ -88,14 +88,14 @@ class Link(Protocol):
         """End the connection."""
 
 
-def use_of(does: Does, kind: str) -> Use:
+def use_of(does: Does, kind: str) -> RosUse:
     """What a ``does`` uses.
 
     Raises:
         UsageError: it does not say what that is.
     """
     by_type = _kind(does.type)
-    use = Use(does.kind or by_type, does.by, does.type)
+    use = RosUse(does.kind or by_type, does.by, does.type)
     if use.name and by_type and use.kind == by_type:
         return use
     message = "A <does> of a ROS robot needs by and type."
@@ -111,7 +111,7 @@ def _kind(type_: str) -> str:
     return KINDS.get(parts[1], "") if len(parts) == 3 and all(parts) else ""
 
 
-def uses(settings: DriverSettings) -> list[Use]:
+def uses(settings: DriverSettings) -> list[RosUse]:
     """All that a robot's document uses, once each.
 
     Raises:
@@ -123,7 +123,7 @@ def uses(settings: DriverSettings) -> list[Use]:
             remedy = 'Write for example type="std_msgs/msg/Bool".'
             raise UsageError(f"{senses.place}: {settings.kind}: {message} {remedy}")
     made = {use_of(does, settings.kind): None for does in settings.does}
-    stops = {Use("service", does.stop, ""): None for does in settings.does if does.stop}
+    stops = {RosUse("service", does.stop, ""): None for does in settings.does if does.stop}
     return list(made | stops)
 
 
@@ -131,14 +131,14 @@ class RosDriver(MappedDriver):
     """A robot with ROS 2."""
 
     confirms = True
-    _link: Link | None = None
+    _link: RosLink | None = None
 
-    def make_link(self) -> Link:
+    def make_link(self) -> RosLink:
         """A connection that is still to be made."""
         raise NotImplementedError
 
     @property
-    def link(self) -> Link:
+    def link(self) -> RosLink:
         """The connection.
 
         Raises:
@@ -159,7 +159,7 @@ class RosDriver(MappedDriver):
             raise
         self._link, self.gone = link, False
 
-    def has(self, link: Link) -> bool:
+    def has(self, link: RosLink) -> bool:
         """Whether this is the connection that is used."""
         return self._link is link
 
@@ -194,13 +194,13 @@ class RosDriver(MappedDriver):
         with suppress(Exception) if self.gone else nullcontext():
             await self._stop_all(self._link)
 
-    async def _stop_all(self, link: Link) -> None:
+    async def _stop_all(self, link: RosLink) -> None:
         link.cancel_all()
         for does in self.settings.does:
             if self._moves(does):
                 link.publish(use_of(does, self.kind), {})
         stops = {does.stop for does in self.settings.does if does.stop}
-        calls = [link.call(Use("service", name, ""), {}) for name in sorted(stops)]
+        calls = [link.call(RosUse("service", name, ""), {}) for name in sorted(stops)]
         async with asyncio.timeout(SAFE_S):
             await asyncio.gather(self.end_goals(SAFE_S), *calls, return_exceptions=True)
 
@@ -236,7 +236,7 @@ class RosDriver(MappedDriver):
             await self._publish(goal, does, use, values)
         return {}
 
-    async def _act(self, goal: Begin, use: Use, values: dict[str, Json]) -> None:
+    async def _act(self, goal: Begin, use: RosUse, values: dict[str, Json]) -> None:
         on = partial(self.report, goal)
         sending = asyncio.ensure_future(self.link.send_goal(use, values, on))
         try:
@@ -249,7 +249,7 @@ class RosDriver(MappedDriver):
         if outcome.status != SUCCEEDED:
             raise Refused(_why(use, outcome))
 
-    async def _ask(self, goal: Begin, does: Does, use: Use, values: dict[str, Json]) -> None:
+    async def _ask(self, goal: Begin, does: Does, use: RosUse, values: dict[str, Json]) -> None:
         link = self.link
         calling = asyncio.ensure_future(link.call(use, values))
         self.accept(goal)
@@ -266,11 +266,11 @@ class RosDriver(MappedDriver):
     async def _call_stop(self, does: Does) -> None:
         if does.stop:
             try:
-                await self.link.call(Use("service", does.stop, ""), {})
+                await self.link.call(RosUse("service", does.stop, ""), {})
             except (Refused, Unreachable):
                 pass  # what it should stop goes on, and is waited for
 
-    async def _publish(self, goal: Begin, does: Does, use: Use, values: dict[str, Json]) -> None:
+    async def _publish(self, goal: Begin, does: Does, use: RosUse, values: dict[str, Json]) -> None:
         link, lasts, moves = self.link, self.lasts(goal), self._moves(does)
         self.accept(goal)
         link.publish(use, values)
@@ -313,7 +313,7 @@ async def _stop(sending: asyncio.Future[Sent]) -> None:
         pass
 
 
-def _why(use: Use, outcome: Outcome) -> str:
+def _why(use: RosUse, outcome: Outcome) -> str:
     if outcome.status == CANCELED:
         return f"{use} was cancelled by somebody else"
     return _reason(outcome.result) or f"{use} has given it up"

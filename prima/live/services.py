@@ -225,7 +225,7 @@ class LiveServices:
         Raises:
             Unfit: there is none.
         """
-        asking = _Asking(endpoint, self._secrets[endpoint.name], self._hosts, check)
+        asking = _ServiceRequests(endpoint, self._secrets[endpoint.name], self._hosts, check)
         try:
             async with asyncio.timeout(endpoint.deadline / 1000):
                 for count in range(endpoint.retries if again else 0):
@@ -244,7 +244,7 @@ class _Busy(Unfit):
 
 
 @dataclass(slots=True)
-class _Asking:
+class _ServiceRequests:
     """Requests to one service, one after the other, each in a thread."""
 
     endpoint: Endpoint

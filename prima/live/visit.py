@@ -25,7 +25,7 @@ from prima.live.services import LiveServices
 from prima.live.shell import LATE_MS, Shell
 from prima.live.signals import heeding_signals
 from prima.loading import Loaded, load_scenario, load_services, stage
-from prima.loading.files import Contents, in_place_of_files, read_file
+from prima.loading.files import GivenFiles, in_place_of_files, read_file
 from prima.loading.heads import check_files, chosen_policy, run_record
 from prima.messages import Json, Record
 from prima.scheduler.policy import Policy
@@ -148,7 +148,7 @@ def reloaded(head: Record, name: str) -> Loaded:
     live, texts = head["data"]["live"], {}
     if chosen.robot and isinstance(live.get("document"), str):
         texts[Path(chosen.robot).resolve()] = live["document"].encode()
-    with in_place_of_files(Contents(texts)):
+    with in_place_of_files(GivenFiles(texts)):
         loaded = chosen.loaded()
     loaded.files.pop(STAGE, None)
     check_files(head, loaded, name)
@@ -156,7 +156,7 @@ def reloaded(head: Record, name: str) -> Loaded:
 
 
 @dataclass(slots=True)
-class Settings:
+class LiveSettings:
     """How a live run goes."""
 
     policy: str | None = None
@@ -183,7 +183,7 @@ class Visit:
 
     loop: Loop
     clock: Clock
-    settings: Settings
+    settings: LiveSettings
     head: Record
     loaded: Loaded
     journal: Journal | None = None
@@ -278,7 +278,7 @@ class Visit:
                     self.journal.discard()  # nothing has happened: the command may be given again
 
 
-def begin(chosen: Chosen, settings: Settings, output: str | None) -> Visit:
+def begin(chosen: Chosen, settings: LiveSettings, output: str | None) -> Visit:
     """Prepare a new run.
 
     Raises:
@@ -310,14 +310,14 @@ def begin(chosen: Chosen, settings: Settings, output: str | None) -> Visit:
     return Visit(loop, Clock(settings.speed), settings, head, loaded, journal)
 
 
-def in_simulation(loaded: Loaded, policy: Policy, settings: Settings) -> Loop:
+def in_simulation(loaded: Loaded, policy: Policy, settings: LiveSettings) -> Loop:
     """A scenario, which is run as in a rehearsal but by the clock."""
     given = settings.bound, settings.web, settings.isolate, settings.patience
     return Rehearsal(loaded.cast, policy, *given)
 
 
 def on_robot(
-    loaded: Loaded, policy: Policy, settings: Settings, services: LiveServices, start: int = -1
+    loaded: Loaded, policy: Policy, settings: LiveSettings, services: LiveServices, start: int = -1
 ) -> Loop:
     """A run on the robot's drivers."""
     cast = loaded.cast
@@ -340,7 +340,7 @@ def on_robot(
     return Loop(session, devices, FOREVER_MS, bounded=False)
 
 
-def record_beside(loop: Loop, journal: Journal | None, settings: Settings) -> None:
+def record_beside(loop: Loop, journal: Journal | None, settings: LiveSettings) -> None:
     """Let drivers keep what they record beside the journal, if anything of it is to be kept."""
     kept = journal is not None and not settings.redact and os.path.isfile(journal.path)
     recordings = Recordings(journal.path if journal is not None and kept else None)

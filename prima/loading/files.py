@@ -31,7 +31,7 @@ class Files(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Contents:
+class GivenFiles:
     """Contents in place of files: documents of an editor, or of another machine."""
 
     texts: Mapping[Path, bytes]

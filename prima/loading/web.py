@@ -76,7 +76,7 @@ class Hosts:
         """Begin to fetch a URI by a method with values; gives what waits for its answer."""
         if problem := self._refusal(app, uri):
             return partial(Fetched, app, 0, uri, problem=problem)
-        asking = _Asking(self, app, uri)
+        asking = _Fetching(self, app, uri)
         threading.Thread(target=asking.run, args=(method, values), daemon=True).start()
         return asking.wait
 
@@ -129,7 +129,7 @@ def _used_up(share: str) -> str:
 
 
 @dataclass(slots=True)
-class _Asking:
+class _Fetching:
     """One fetch, in a thread of its own: a host may send so slowly that no timeout ends it."""
 
     hosts: Hosts

@@ -17,7 +17,7 @@ from prima.lsp.hover import hover as meaning
 from prima.lsp.paths import path_of
 from prima.lsp.problems import spot
 from prima.lsp.protocol import Server
-from prima.lsp.scan import Page
+from prima.lsp.scan import ScannedText
 
 REQUEST_FAILED = -32803
 
@@ -53,7 +53,7 @@ def completion(server: Server, params: lsp.CompletionParams) -> lsp.CompletionLi
     return lsp.CompletionList(is_incomplete=False, items=items)
 
 
-def _item(server: Server, page: Page, one: Proposal, number: int) -> lsp.CompletionItem:
+def _item(server: Server, page: ScannedText, one: Proposal, number: int) -> lsp.CompletionItem:
     snippet = one.snippet if server.snippets else ""
     edit = lsp.TextEdit(
         server.range(page.lines, one.start, one.end), snippet or one.insert or one.label
@@ -148,7 +148,7 @@ def rename(server: Server, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None
 
 def will_move(server: Server, params: lsp.RenameFilesParams) -> lsp.WorkspaceEdit | None:
     """The edits that follow from moving files."""
-    found: list[naming.Edit] = []
+    found: list[naming.NameEdit] = []
     for file in params.files:
         old, new = path_of(file.old_uri), path_of(file.new_uri)
         if old is not None and new is not None:
@@ -165,7 +165,7 @@ def symbols(server: Server, params: lsp.DocumentSymbolParams) -> list[lsp.Docume
     return [_symbol(server, page, part) for part in outlines.outline(page)]
 
 
-def _symbol(server: Server, page: Page, part: outlines.Part) -> lsp.DocumentSymbol:
+def _symbol(server: Server, page: ScannedText, part: outlines.OutlineElement) -> lsp.DocumentSymbol:
     return lsp.DocumentSymbol(
         visible(part.name),
         SYMBOLS[part.sort],
@@ -207,7 +207,7 @@ def actions(server: Server, params: lsp.CodeActionParams) -> list[lsp.CodeAction
 
 
 def _quick_fixes(
-    server: Server, page: Page, problem: Problem, uri: str
+    server: Server, page: ScannedText, problem: Problem, uri: str
 ) -> Iterator[lsp.CodeAction]:
     """The fixes of a problem, the preferred one first."""
     for number, (title, changes) in enumerate(fixes(page.lines, problem)):

@@ -12,9 +12,9 @@ from pathlib import Path
 from prima.language.commands import DEVICES, TABLE_4_2
 from prima.lsp.descriptions import EVENTS, SESSION, VOICEXML_EVENTS
 from prima.lsp.hover import attribute_text, element_text
-from prima.lsp.meanings import DEFINES, FILES, REFERS, Use
+from prima.lsp.meanings import DEFINES, FILES, REFERS, ReferenceUse
 from prima.lsp.names import dialect
-from prima.lsp.scan import Attr, Page, Tag
+from prima.lsp.scan import Attr, ScannedTag, ScannedText
 from prima.lsp.snippets import opening, snippet
 from prima.lsp.tables import (
     BY_NAMESPACE,
@@ -24,7 +24,7 @@ from prima.lsp.tables import (
     roots,
     values,
 )
-from prima.lsp.workspace import Found, Text, Workspace
+from prima.lsp.workspace import FoundName, Text, Workspace
 
 MOST = 500
 """Maximum number of proposals."""
@@ -79,7 +79,7 @@ class _Completion:
         self, workspace: Workspace, path: Path, text: Text, offset: int, typed: str
     ) -> None:
         self.workspace, self.path, self.text = workspace, path, text
-        self.page: Page = text.page
+        self.page: ScannedText = text.page
         self.offset, self.typed = offset, typed
 
     def proposals(self) -> Iterator[Proposal]:
@@ -118,7 +118,7 @@ class _Completion:
             yield from self._elements(around, self.offset, self.offset, None)
 
     def _elements(
-        self, parent: Tag | None, start: int, end: int, tag: Tag | None
+        self, parent: ScannedTag | None, start: int, end: int, tag: ScannedTag | None
     ) -> Iterator[Proposal]:
         """Elements allowed in another; ``tag`` is the unfinished element there, if any."""
         if parent is None and self.page.root not in (None, tag):
@@ -140,7 +140,9 @@ class _Completion:
         if parent and tag and alone:
             yield Proposal(f"/{parent.name}", "element", start, end, f"/{parent.name}>")
 
-    def _attributes(self, tag: Tag, start: int, end: int, now: Attr | None) -> Iterator[Proposal]:
+    def _attributes(
+        self, tag: ScannedTag, start: int, end: int, now: Attr | None
+    ) -> Iterator[Proposal]:
         element = tag.element
         if element is None:
             return
@@ -157,7 +159,7 @@ class _Completion:
 
     # Values -------------------------------------------------------------------
 
-    def _value(self, tag: Tag, attr: Attr) -> Iterator[Proposal]:
+    def _value(self, tag: ScannedTag, attr: Attr) -> Iterator[Proposal]:
         vocabulary, element = tag.vocabulary, tag.element
         if attr.name == "xmlns" or attr.name.startswith("xmlns:"):
             yield from self._plain(attr, [*BY_NAMESPACE])
@@ -194,7 +196,7 @@ class _Completion:
         for word in words:
             yield Proposal(word, kind, start, end, escape(word))
 
-    def _references(self, tag: Tag, attr: Attr, use: Use) -> Iterator[Proposal]:
+    def _references(self, tag: ScannedTag, attr: Attr, use: ReferenceUse) -> Iterator[Proposal]:
         if use.kinds == ("event",):
             yield from self._events(tag, attr)
             return
@@ -217,7 +219,7 @@ class _Completion:
         if use.kinds == ("device",) and not self._known(path, use.kinds, tag):
             yield from self._plain(attr, DEVICES)
 
-    def _known(self, path: Path, kinds: tuple[str, ...], tag: Tag) -> list[Found]:
+    def _known(self, path: Path, kinds: tuple[str, ...], tag: ScannedTag) -> list[FoundName]:
         found = self.workspace.known(path, kinds)
         if kinds == ("rule",) and path == self.path:
             grammar = tag.inside("grammar")
@@ -225,7 +227,7 @@ class _Completion:
             found = [one for one in found if one.mark.scope == home]
         return found
 
-    def _events(self, tag: Tag, attr: Attr, own: bool = False) -> Iterator[Proposal]:
+    def _events(self, tag: ScannedTag, attr: Attr, own: bool = False) -> Iterator[Proposal]:
         """Events that may occur, or with ``own`` those that this document handles."""
         known = self._occurring(tag)
         for found in self.workspace.known(self.path, ("event",)):
@@ -238,7 +240,7 @@ class _Completion:
             if name != attr.value or not own:
                 yield Proposal(name, "event", *span, name, doc=doc)
 
-    def _occurring(self, tag: Tag) -> dict[str, str]:
+    def _occurring(self, tag: ScannedTag) -> dict[str, str]:
         """Events of the language, and of what the robot and its services can do."""
         voice = dialect(self.page) == "voicexml"
         known = dict(VOICEXML_EVENTS | EVENTS if voice else EVENTS)
@@ -250,7 +252,7 @@ class _Completion:
                 known[begin + tag.parent.key] = EVENTS[begin[:-1]]
         return known
 
-    def _commands(self, tag: Tag, attr: Attr) -> Iterator[Proposal]:
+    def _commands(self, tag: ScannedTag, attr: Attr) -> Iterator[Proposal]:
         span = self._span(attr)
         for found in self.workspace.known(self.path, ("command",)):
             name = found.mark.name
@@ -259,12 +261,12 @@ class _Completion:
             for row in TABLE_4_2.values():
                 yield Proposal(row.name, "name", *span, row.name, detail=row.title, doc=row.doc)
 
-    def _parameters(self, tag: Tag) -> list[str]:
+    def _parameters(self, tag: ScannedTag) -> list[str]:
         """Names for a param: arguments of an added Command, variables of a form."""
         holder = tag.parent
         if holder is None:
             return []
-        found: list[Tag] = []
+        found: list[ScannedTag] = []
         called = holder.get("src").strip()
         if holder.key == "subdialog" and called[:1] == "#":
             forms = self.page.forms.get(called[1:], ())
@@ -273,7 +275,7 @@ class _Completion:
             found = self._arguments(holder.get("type"))
         return [name for one in found if (name := one.get("name"))]
 
-    def _arguments(self, command: str) -> list[Tag]:
+    def _arguments(self, command: str) -> list[ScannedTag]:
         """The arguments of an added Command."""
         known = self.workspace.known(self.path, ("command",))
         tags = [one.mark.tag for one in known if one.mark.name == command]
@@ -296,7 +298,7 @@ class _Completion:
 
     # Variables ------------------------------------------------------------------
 
-    def _visible(self, tag: Tag) -> dict[str, str]:
+    def _visible(self, tag: ScannedTag) -> dict[str, str]:
         """Variables visible to an expression in an element, with their declarations."""
         form = tag.inside("form", "menu")
         home = form.start if form else -1
@@ -307,12 +309,14 @@ class _Completion:
                 found.setdefault(mark.name, f"<{mark.tag.name}> of {owner}")
         return found
 
-    def _names_of_variables(self, tag: Tag, attr: Attr, use: Use) -> Iterator[Proposal]:
+    def _names_of_variables(
+        self, tag: ScannedTag, attr: Attr, use: ReferenceUse
+    ) -> Iterator[Proposal]:
         span = self._span(attr, use.how == "list")
         for name, detail in self._visible(tag).items():
             yield Proposal(name, "variable", *span, name, detail=detail)
 
-    def _variables(self, tag: Tag, before: str) -> Iterator[Proposal]:
+    def _variables(self, tag: ScannedTag, before: str) -> Iterator[Proposal]:
         match = WORD_BEFORE.search(before[-200:])
         after = WORD_AFTER.match(self.page.text, self.offset)
         word = (match["word"] or "") if match else ""
@@ -342,7 +346,7 @@ def _attribute(
     return Proposal(name, "attribute", start, end, insert, snippet, detail, doc)
 
 
-def _where(asked: _Completion, found: Found) -> str:
+def _where(asked: _Completion, found: FoundName) -> str:
     """Where a name is defined, as text."""
     tag = found.mark.tag
     title = tag.get("title")

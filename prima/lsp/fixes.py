@@ -9,7 +9,7 @@ from prima.lsp.text import Lines
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class TextChange:
     """A piece of text in place of another; ``start`` and ``end`` are offsets."""
 
     start: int
@@ -17,10 +17,10 @@ class Change:
     text: str
 
 
-def changes(lines: Lines, fix: Fix) -> list[Change]:
+def changes(lines: Lines, fix: Fix) -> list[TextChange]:
     """The changes of a text that a fix makes."""
     return [
-        Change(
+        TextChange(
             lines.place(span.line, span.column),
             lines.place(span.end_line, span.end_column),
             text,
@@ -29,6 +29,6 @@ def changes(lines: Lines, fix: Fix) -> list[Change]:
     ]
 
 
-def fixes(lines: Lines, problem: Problem) -> list[tuple[str, list[Change]]]:
+def fixes(lines: Lines, problem: Problem) -> list[tuple[str, list[TextChange]]]:
     """The fixes of a problem: titles, and changes of the text."""
     return [(fix.title, changes(lines, fix)) for fix in problem.fixes]

@@ -10,9 +10,9 @@ from prima.language.commands import TABLE_4_2
 from prima.language.values import KINDS
 from prima.lsp.descriptions import EVENTS, RULES, SESSION, VOICEXML_EVENTS
 from prima.lsp.names import Mark, mark_at
-from prima.lsp.scan import Page, Tag
+from prima.lsp.scan import ScannedTag, ScannedText
 from prima.lsp.tables import about_attribute, attributes
-from prima.lsp.workspace import Found, Workspace
+from prima.lsp.workspace import FoundName, Workspace
 from prima.markup.vocabulary import Attribute, Element
 
 NAMED = re.compile(r"\b([A-Z][0-9])\b")
@@ -49,7 +49,7 @@ def hover(workspace: Workspace, path: Path, offset: int) -> Meaning | None:
     return _attribute(page, tag, offset) if tag is not None else None
 
 
-def _element(tag: Tag | None, start: int, end: int) -> Meaning | None:
+def _element(tag: ScannedTag | None, start: int, end: int) -> Meaning | None:
     element = tag.element if tag is not None else None
     return Meaning(element_text(element), start, end) if element is not None else None
 
@@ -72,7 +72,7 @@ def _source(source: str) -> str:
     return f"VoiceXML {source}" if source[:1].isdigit() else source
 
 
-def _attribute(page: Page, tag: Tag, offset: int) -> Meaning | None:
+def _attribute(page: ScannedText, tag: ScannedTag, offset: int) -> Meaning | None:
     for attr in tag.attributes:
         end = max(attr.end, attr.last)
         if attr.start <= offset <= end and tag.element is not None:
@@ -144,7 +144,7 @@ def _known(mark: Mark) -> str:
     return ""
 
 
-def _declaration(workspace: Workspace, path: Path, found: Found) -> str:
+def _declaration(workspace: Workspace, path: Path, found: FoundName) -> str:
     text = workspace.text(found.path)
     if text is None:
         return ""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Use:
+class ReferenceUse:
     """The reference in an attribute's value: the kinds of names, and the notation.
 
     ``how`` is empty, ``#`` (behind a ``#``), ``list`` (several with spaces) or ``uri``
@@ -17,8 +17,8 @@ class Use:
     how: str = ""
 
 
-_FORM, _POINT = Use(("form",), "#"), Use(("place", "thing"))
-_VARIABLES = Use(("variable",), "list")
+_FORM, _POINT = ReferenceUse(("form",), "#"), ReferenceUse(("place", "thing"))
+_VARIABLES = ReferenceUse(("variable",), "list")
 
 DEFINES: dict[tuple[str, str, str], str] = {
     ("dialogue", "prima", "id"): "application",
@@ -58,52 +58,52 @@ DEFINES: dict[tuple[str, str, str], str] = {
 }
 """Attributes that define a name, by vocabulary and key of the element."""
 
-REFERS: dict[tuple[str, str, str], Use] = {
+REFERS: dict[tuple[str, str, str], ReferenceUse] = {
     ("dialogue", "goto", "next"): _FORM,
     ("dialogue", "link", "next"): _FORM,
     ("dialogue", "subdialog", "src"): _FORM,
-    ("dialogue", "goto", "nextitem"): Use(("variable",)),
-    ("dialogue", "assign", "name"): Use(("variable",), "code"),
+    ("dialogue", "goto", "nextitem"): ReferenceUse(("variable",)),
+    ("dialogue", "assign", "name"): ReferenceUse(("variable",), "code"),
     **{("dialogue", key, "namelist"): _VARIABLES for key in ("clear", "return", "filled")},
-    ("dialogue", "ruleref", "uri"): Use(("rule",), "#"),
-    ("dialogue", "grammar", "root"): Use(("rule",)),
-    ("dialogue", "on", "event"): Use(("event",), "list"),
-    ("dialogue", "topological-move", "to"): Use(("place",)),
+    ("dialogue", "ruleref", "uri"): ReferenceUse(("rule",), "#"),
+    ("dialogue", "grammar", "root"): ReferenceUse(("rule",)),
+    ("dialogue", "on", "event"): ReferenceUse(("event",), "list"),
+    ("dialogue", "topological-move", "to"): ReferenceUse(("place",)),
     **{
         ("dialogue", key, "toward"): _POINT
         for key in ("turn-and-speak", "set-direction", "point-by-hand")
     },
-    ("dialogue", "gesture", "name"): Use(("gesture",)),
-    ("dialogue", "command", "type"): Use(("command",)),
-    ("dialogue", "send", "to"): Use(("service",)),
-    ("world", "way", "from"): Use(("place",)),
-    ("world", "way", "to"): Use(("place",)),
-    ("robot", "adds", "devices"): Use(("device",), "list"),
-    ("robot", "allows", "command"): Use(("command",)),
-    ("robot", "substitute", "command"): Use(("command",)),
-    ("robot", "substitute", "by"): Use(("command",)),
-    ("scenario", "robot", "at"): Use(("place",)),
+    ("dialogue", "gesture", "name"): ReferenceUse(("gesture",)),
+    ("dialogue", "command", "type"): ReferenceUse(("command",)),
+    ("dialogue", "send", "to"): ReferenceUse(("service",)),
+    ("world", "way", "from"): ReferenceUse(("place",)),
+    ("world", "way", "to"): ReferenceUse(("place",)),
+    ("robot", "adds", "devices"): ReferenceUse(("device",), "list"),
+    ("robot", "allows", "command"): ReferenceUse(("command",)),
+    ("robot", "substitute", "command"): ReferenceUse(("command",)),
+    ("robot", "substitute", "by"): ReferenceUse(("command",)),
+    ("scenario", "robot", "at"): ReferenceUse(("place",)),
     ("scenario", "person", "at"): _POINT,
     ("scenario", "walk", "to"): _POINT,
     ("scenario", "look", "at"): _POINT,
-    ("scenario", "touch", "sensor"): Use(("sensor",)),
-    ("scenario", "fail", "device"): Use(("device",)),
-    ("scenario", "repair", "device"): Use(("device",)),
-    ("scenario", "when", "doing"): Use(("command",)),
-    ("scenario", "when", "done"): Use(("command",)),
-    ("scenario", "when", "on"): Use(("event",)),
-    ("scenario", "unload", "application"): Use(("application",)),
-    ("scenario", "service", "application"): Use(("application",)),
-    ("scenario", "message", "to"): Use(("application",)),
-    ("scenario", "when", "person"): Use(("person",)),
-    ("scenario", "answer", "person"): Use(("person",)),
-    ("voicexml", "goto", "next"): Use(("form",), "uri"),
-    ("voicexml", "link", "next"): Use(("form",), "uri"),
-    ("voicexml", "choice", "next"): Use(("form",), "uri"),
-    ("voicexml", "submit", "next"): Use(("form",), "uri"),
-    ("voicexml", "subdialog", "src"): Use(("form",), "uri"),
-    ("voicexml", "goto", "nextitem"): Use(("variable",)),
-    ("voicexml", "assign", "name"): Use(("variable",), "code"),
+    ("scenario", "touch", "sensor"): ReferenceUse(("sensor",)),
+    ("scenario", "fail", "device"): ReferenceUse(("device",)),
+    ("scenario", "repair", "device"): ReferenceUse(("device",)),
+    ("scenario", "when", "doing"): ReferenceUse(("command",)),
+    ("scenario", "when", "done"): ReferenceUse(("command",)),
+    ("scenario", "when", "on"): ReferenceUse(("event",)),
+    ("scenario", "unload", "application"): ReferenceUse(("application",)),
+    ("scenario", "service", "application"): ReferenceUse(("application",)),
+    ("scenario", "message", "to"): ReferenceUse(("application",)),
+    ("scenario", "when", "person"): ReferenceUse(("person",)),
+    ("scenario", "answer", "person"): ReferenceUse(("person",)),
+    ("voicexml", "goto", "next"): ReferenceUse(("form",), "uri"),
+    ("voicexml", "link", "next"): ReferenceUse(("form",), "uri"),
+    ("voicexml", "choice", "next"): ReferenceUse(("form",), "uri"),
+    ("voicexml", "submit", "next"): ReferenceUse(("form",), "uri"),
+    ("voicexml", "subdialog", "src"): ReferenceUse(("form",), "uri"),
+    ("voicexml", "goto", "nextitem"): ReferenceUse(("variable",)),
+    ("voicexml", "assign", "name"): ReferenceUse(("variable",), "code"),
     **{
         ("voicexml", key, "namelist"): _VARIABLES
         for key in (
@@ -117,10 +117,10 @@ REFERS: dict[tuple[str, str, str], Use] = {
             "data",
         )
     },
-    ("voicexml", "catch", "event"): Use(("event",), "list"),
-    ("srgs", "ruleref", "uri"): Use(("rule",), "uri"),
-    ("voicexml", "grammar", "root"): Use(("rule",)),
-    ("srgs", "grammar", "root"): Use(("rule",)),
+    ("voicexml", "catch", "event"): ReferenceUse(("event",), "list"),
+    ("srgs", "ruleref", "uri"): ReferenceUse(("rule",), "uri"),
+    ("voicexml", "grammar", "root"): ReferenceUse(("rule",)),
+    ("srgs", "grammar", "root"): ReferenceUse(("rule",)),
 }
 """Attributes that refer to a name, by vocabulary and key of the element."""
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from prima.interpreter.vocabulary import DIALOGUE
-from prima.lsp.meanings import DEFINES, REFERS, SHARED, Use
-from prima.lsp.scan import Attr, Page, Tag
+from prima.lsp.meanings import DEFINES, REFERS, SHARED, ReferenceUse
+from prima.lsp.scan import Attr, ScannedTag, ScannedText
 from prima.lsp.tables import is_code
 from prima.script.globals import GLOBALS, RESERVED
 from prima.script.names import expression_names, script_names
@@ -35,7 +35,7 @@ class Mark:
     start: int
     end: int
     defines: bool
-    tag: Tag
+    tag: ScannedTag
     scope: int = -1
     file: str = ""
 
@@ -58,13 +58,13 @@ def plain(code: str) -> str:
     return ENTITY.sub(lambda match: LETTERS.get(match[0], " ").ljust(len(match[0])), code)
 
 
-def marks(page: Page) -> list[Mark]:
+def marks(page: ScannedText) -> list[Mark]:
     """All names of a page, in the order of the text."""
     found = [mark for tag in page.tags if tag.element for mark in _of_tag(page, tag)]
     return sorted(_scoped(found), key=lambda mark: mark.start)
 
 
-def _of_tag(page: Page, tag: Tag) -> Iterator[Mark]:
+def _of_tag(page: ScannedText, tag: ScannedTag) -> Iterator[Mark]:
     for attr in tag.attributes:
         if attr.first >= 0:
             yield from _of_attribute(page, tag, attr)
@@ -72,7 +72,7 @@ def _of_tag(page: Page, tag: Tag) -> Iterator[Mark]:
         yield from _script(page.text[tag.end : tag.content], tag)
 
 
-def _of_attribute(page: Page, tag: Tag, attr: Attr) -> Iterator[Mark]:
+def _of_attribute(page: ScannedText, tag: ScannedTag, attr: Attr) -> Iterator[Mark]:
     assert tag.vocabulary is not None
     key = (tag.vocabulary.name, tag.key, attr.name)
     if key in DEFINES:
@@ -93,7 +93,7 @@ def _words(attr: Attr, most: int = 1000) -> list[tuple[int, int]]:
     return spans[:most]
 
 
-def _home(kind: str, tag: Tag) -> int:
+def _home(kind: str, tag: ScannedTag) -> int:
     """The start of the form or grammar in which a name is visible; -1 for the document."""
     if kind == "variable":
         form = tag.inside("form", "menu") if tag.key not in ("form", "menu") else None
@@ -104,7 +104,9 @@ def _home(kind: str, tag: Tag) -> int:
     return -1
 
 
-def _references(page: Page, tag: Tag, attr: Attr, use: Use) -> Iterator[Mark]:
+def _references(
+    page: ScannedText, tag: ScannedTag, attr: Attr, use: ReferenceUse
+) -> Iterator[Mark]:
     home = _home(use.kinds[0], tag)
     for start, end in _words(attr, 1000 if use.how == "list" else 1):
         file = ""
@@ -120,7 +122,7 @@ def _references(page: Page, tag: Tag, attr: Attr, use: Use) -> Iterator[Mark]:
             yield Mark(use.kinds, name, start, end, False, tag, home, file)
 
 
-def _code(code: str, first: int, tag: Tag) -> Iterator[Mark]:
+def _code(code: str, first: int, tag: ScannedTag) -> Iterator[Mark]:
     """Variables that an expression uses."""
     if len(code) > LONGEST_CODE:
         return
@@ -132,7 +134,7 @@ def _code(code: str, first: int, tag: Tag) -> Iterator[Mark]:
             yield Mark(("variable",), use.name, at, at + len(use.name), False, tag, scope)
 
 
-def _script(code: str, tag: Tag) -> Iterator[Mark]:
+def _script(code: str, tag: ScannedTag) -> Iterator[Mark]:
     """Names that a script declares, and those that it uses."""
     inner = code.replace("<![CDATA[", " " * 9).replace("]]>", "   ")
     inner = inner if "<![CDATA[" in code else plain(inner)
@@ -149,7 +151,7 @@ def _script(code: str, tag: Tag) -> Iterator[Mark]:
         told.add(name)
 
 
-def _given(page: Page, tag: Tag, attr: Attr) -> Iterator[Mark]:
+def _given(page: ScannedText, tag: ScannedTag, attr: Attr) -> Iterator[Mark]:
     """A subdialog's param is a variable of the form that it calls."""
     caller = tag.parent
     if caller is None or caller.key != "subdialog":
@@ -178,7 +180,7 @@ def mark_at(found: list[Mark], offset: int) -> Mark | None:
     return next((mark for mark in found if mark.start <= offset <= mark.end), None)
 
 
-def dialect(page: Page) -> str:
+def dialect(page: ScannedText) -> str:
     """The name of a page's vocabulary."""
     root = page.root
     return root.vocabulary.name if root is not None and root.vocabulary else ""

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from prima.language.values import read_value
 from prima.lsp.names import Mark, mark_at
-from prima.lsp.workspace import Found, Workspace
+from prima.lsp.workspace import FoundName, Workspace
 
 RENAMED = {
     "form": "id",
@@ -27,7 +27,7 @@ class RenameError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Spot:
+class NameSpot:
     """A piece of a document."""
 
     path: Path
@@ -36,7 +36,7 @@ class Spot:
 
 
 @dataclass(frozen=True, slots=True)
-class Edit:
+class NameEdit:
     """A piece of a document and its replacement."""
 
     path: Path
@@ -55,21 +55,21 @@ def mark_of(workspace: Workspace, path: Path, offset: int) -> Mark | None:
     return mark_at(text.marks, offset) if text is not None else None
 
 
-def definitions(workspace: Workspace, path: Path, offset: int) -> list[Spot]:
+def definitions(workspace: Workspace, path: Path, offset: int) -> list[NameSpot]:
     """The definitions of the name at an offset, or the beginning of the file named there."""
     mark = mark_of(workspace, path, offset)
     if mark is not None:
         given = workspace.given(path, mark)
         if not given and mark.kind == ("event",):
             given = _begun(workspace, path, mark)
-        return [Spot(found.path, found.mark.start, found.mark.end) for found in given]
+        return [NameSpot(found.path, found.mark.start, found.mark.end) for found in given]
     link = _link_at(workspace, path, offset)
     if link is not None and workspace.text(link[0]) is not None:
-        return [Spot(link[0], 0, 0)]
+        return [NameSpot(link[0], 0, 0)]
     return []
 
 
-def _begun(workspace: Workspace, path: Path, mark: Mark) -> list[Found]:
+def _begun(workspace: Workspace, path: Path, mark: Mark) -> list[FoundName]:
     """What raises an event, or defines the name in it: ``touch.head`` belongs to a sensor."""
     known = workspace.known(path, ("event",), anywhere=False)
     found = [one for one in known if one.mark.name.startswith(f"{mark.name}.")]
@@ -83,42 +83,42 @@ def _begun(workspace: Workspace, path: Path, mark: Mark) -> list[Found]:
 
 def references(
     workspace: Workspace, path: Path, offset: int, declaration: bool = True
-) -> list[Spot]:
+) -> list[NameSpot]:
     """All references to the name at an offset; of a file, in the whole workspace."""
     mark = mark_of(workspace, path, offset)
     if mark is not None:
         return [
-            Spot(found.path, found.mark.start, found.mark.end)
+            NameSpot(found.path, found.mark.start, found.mark.end)
             for found in workspace.uses(path, mark)
             if declaration or not found.mark.defines
         ]
     link = _link_at(workspace, path, offset)
     if link is not None:
-        return [Spot(*one) for one in workspace.naming(link[0])]
+        return [NameSpot(*one) for one in workspace.naming(link[0])]
     text = workspace.text(path)
     root = text.page.root if text is not None else None
     if root is not None and root.start <= offset <= root.name_end:
-        return [Spot(*one) for one in workspace.naming(path)]
+        return [NameSpot(*one) for one in workspace.naming(path)]
     return []
 
 
-def renamable(workspace: Workspace, path: Path, offset: int) -> Spot | None:
+def renamable(workspace: Workspace, path: Path, offset: int) -> NameSpot | None:
     """The piece of text at an offset that can be renamed."""
     mark = mark_of(workspace, path, offset)
     if mark is not None:
         given = any(found.mark.defines for found in workspace.uses(path, mark))
         if given and not RENAMED.keys().isdisjoint(mark.kind):
-            return Spot(path, mark.start, mark.end)
+            return NameSpot(path, mark.start, mark.end)
         return None
     link = _link_at(workspace, path, offset)
     if link is not None and workspace.text(link[0]) is not None:
-        return Spot(path, link[1], link[2])
+        return NameSpot(path, link[1], link[2])
     return None
 
 
 def rename(
     workspace: Workspace, path: Path, offset: int, new: str
-) -> tuple[list[Edit], tuple[Path, Path] | None]:
+) -> tuple[list[NameEdit], tuple[Path, Path] | None]:
     """Rename the name at an offset: the edits, and a file to move.
 
     Raises:
@@ -137,11 +137,11 @@ def rename(
     uses = workspace.uses(path, mark)
     if new != mark.name and _is_taken(workspace, [one for one in uses if one.mark.defines], new):
         raise RenameError(f'A {kind} "{new}" already exists.')
-    edits = [Edit(one.path, one.mark.start, one.mark.end, new) for one in uses]
+    edits = [NameEdit(one.path, one.mark.start, one.mark.end, new) for one in uses]
     return sorted(set(edits), key=lambda edit: (edit.path, edit.start)), None
 
 
-def _is_taken(workspace: Workspace, given: list[Found], new: str) -> bool:
+def _is_taken(workspace: Workspace, given: list[FoundName], new: str) -> bool:
     """Whether a name is already taken where one of some definitions is."""
     places = {(one.path, one.mark.scope, kind) for one in given for kind in one.mark.kind}
     for path in {one.path for one in given}:
@@ -155,7 +155,7 @@ def _is_taken(workspace: Workspace, given: list[Found], new: str) -> bool:
 
 def _move(
     workspace: Workspace, path: Path, offset: int, new: str
-) -> tuple[list[Edit], tuple[Path, Path] | None]:
+) -> tuple[list[NameEdit], tuple[Path, Path] | None]:
     link = _link_at(workspace, path, offset)
     target = workspace.target(path, new)
     if link is None or target is None:
@@ -167,16 +167,16 @@ def _move(
     return moved(workspace, link[0], target), (link[0], target)
 
 
-def moved(workspace: Workspace, old: Path, new: Path) -> list[Edit]:
+def moved(workspace: Workspace, old: Path, new: Path) -> list[NameEdit]:
     """The edits of documents that name a file, once it is renamed or moved."""
     edits = []
     for path, start, end in workspace.naming(old):
         if path != old:
-            edits.append(Edit(path, start, end, _relative(new, path.parent)))
+            edits.append(NameEdit(path, start, end, _relative(new, path.parent)))
     if new.parent != old.parent:
         for target, start, end in workspace.named(old):
             there = old if target == old else target
-            edits.append(Edit(old, start, end, _relative(there, new.parent)))
+            edits.append(NameEdit(old, start, end, _relative(there, new.parent)))
     return edits
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from prima.lsp.scan import Page, Tag
+from prima.lsp.scan import ScannedTag, ScannedText
 from prima.lsp.workspace import Workspace
 
 NAMING = ("id", "name", "event", "src", "command", "sensor", "type", "item")
@@ -32,7 +32,7 @@ SHOWN = {
 
 
 @dataclass(slots=True)
-class Part:
+class OutlineElement:
     """An element in the outline."""
 
     name: str
@@ -42,11 +42,11 @@ class Part:
     end: int
     name_start: int
     name_end: int
-    parts: list[Part] = field(default_factory=list)
+    parts: list[OutlineElement] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
+class DocumentLink:
     """A file's name in a document, and the file."""
 
     start: int
@@ -54,10 +54,10 @@ class Link:
     target: Path
 
 
-def outline(page: Page) -> list[Part]:
+def outline(page: ScannedText) -> list[OutlineElement]:
     """The outline of a document."""
-    top: list[Part] = []
-    made: dict[int, list[Part]] = {}
+    top: list[OutlineElement] = []
+    made: dict[int, list[OutlineElement]] = {}
     for tag in page.tags:
         parts = made.get(id(tag.parent), top) if tag.parent else top
         made[id(tag)] = parts
@@ -68,7 +68,7 @@ def outline(page: Page) -> list[Part]:
     return top
 
 
-def _part(tag: Tag) -> Part:
+def _part(tag: ScannedTag) -> OutlineElement:
     attr = next((one for name in NAMING if (one := tag.attr(name)) and one.value), None)
     name = attr.value if attr else ""
     start, end = (attr.first, attr.last) if attr else (tag.start + 1, tag.name_end)
@@ -77,7 +77,7 @@ def _part(tag: Tag) -> Part:
         first = next((one for one in tag.attributes if one.first >= 0), None)
         name = f"{tag.name} {first.name}={first.value[:40]}" if first else tag.name
         detail = ""
-    return Part(
+    return OutlineElement(
         " ".join(name.split())[:80] or tag.name,
         detail,
         SHOWN[tag.key],
@@ -88,10 +88,10 @@ def _part(tag: Tag) -> Part:
     )
 
 
-def links(workspace: Workspace, path: Path) -> list[Link]:
+def links(workspace: Workspace, path: Path) -> list[DocumentLink]:
     """The existing files that a document names."""
     return [
-        Link(start, end, target)
+        DocumentLink(start, end, target)
         for target, start, end in workspace.named(path)
         if target.is_file() or target in workspace.open
     ]

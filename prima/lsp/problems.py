@@ -8,8 +8,8 @@ from pathlib import Path
 
 from prima import loading
 from prima.errors import DocumentError, Problem, UsageError, in_order
-from prima.loading.files import Contents, in_place_of_files
-from prima.lsp.scan import Page
+from prima.loading.files import GivenFiles, in_place_of_files
+from prima.lsp.scan import ScannedText
 from prima.lsp.tables import BY_NAMESPACE, BY_ROOT
 from prima.lsp.text import Lines
 from prima.lsp.workspace import Workspace
@@ -27,7 +27,7 @@ class Spot:
     end: int
 
 
-def is_ours(page: Page) -> bool:
+def is_ours(page: ScannedText) -> bool:
     """Whether a text is, or will be, a document of PRIMA or VoiceXML."""
     root = page.root
     if root is None:
@@ -49,7 +49,7 @@ def check(workspace: Workspace, path: Path) -> dict[Path, list[Problem]]:
     text = workspace.text(path)
     if text is None or not is_ours(text.top):
         return {path: []}
-    with in_place_of_files(Contents(workspace.unsaved())):
+    with in_place_of_files(GivenFiles(workspace.unsaved())):
         try:
             problems = loading.validate([path])
         except DocumentError as error:

@@ -99,7 +99,7 @@ class Server(LanguageServer):
         first, last = (lines.position(one, self.encoding) for one in (start, end))
         return lsp.Range(lsp.Position(*first), lsp.Position(*last))
 
-    def location(self, place: naming.Spot) -> lsp.Location | None:
+    def location(self, place: naming.NameSpot) -> lsp.Location | None:
         """A piece of a document."""
         text = self.documents.text(place.path)
         if text is None:
@@ -108,7 +108,7 @@ class Server(LanguageServer):
             self.documents.uri(place.path), self.range(text.lines, place.start, place.end)
         )
 
-    def locations(self, places: list[naming.Spot]) -> list[lsp.Location]:
+    def locations(self, places: list[naming.NameSpot]) -> list[lsp.Location]:
         """Pieces of documents."""
         return [one for place in places if (one := self.location(place)) is not None]
 
@@ -186,7 +186,7 @@ class Server(LanguageServer):
     # Edits --------------------------------------------------------------------
 
     def edits(
-        self, found: list[naming.Edit], move: tuple[Path, Path] | None = None
+        self, found: list[naming.NameEdit], move: tuple[Path, Path] | None = None
     ) -> lsp.WorkspaceEdit | None:
         """Edits of documents, and a file to move after them."""
         by_file: dict[Path, list[lsp.TextEdit]] = {}

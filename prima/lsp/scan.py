@@ -42,14 +42,14 @@ class Attr:
 
 
 @dataclass(slots=True, eq=False)
-class Tag:
+class ScannedTag:
     """An element as written: its start tag is ``start`` to ``end``, all of it to ``until``."""
 
     name: str
     start: int
     end: int
     attributes: list[Attr]
-    parent: Tag | None
+    parent: ScannedTag | None
     empty: bool = True
     finished: bool = True
     """Whether the start tag has its ``>``."""
@@ -58,7 +58,7 @@ class Tag:
     content: int = -1
     """Where the content ends."""
     until: int = -1
-    children: list[Tag] = field(default_factory=list)
+    children: list[ScannedTag] = field(default_factory=list)
     namespaces: dict[str, str] = field(default_factory=dict)
     namespace: str = ""
     vocabulary: Vocabulary | None = None
@@ -93,9 +93,9 @@ class Tag:
         """An attribute."""
         return next((one for one in self.attributes if one.name == name), None)
 
-    def inside(self, *keys: str) -> Tag | None:
+    def inside(self, *keys: str) -> ScannedTag | None:
         """The nearest element of these keys around this one, itself included."""
-        tag: Tag | None = self
+        tag: ScannedTag | None = self
         while tag is not None and tag.key not in keys:
             tag = tag.parent
         return tag
@@ -105,22 +105,22 @@ class _Open:
     """The open elements, and the number of each name."""
 
     def __init__(self) -> None:
-        self.tags: list[Tag] = []
+        self.tags: list[ScannedTag] = []
         self.names: Counter[str] = Counter()
 
-    def add(self, tag: Tag) -> None:
+    def add(self, tag: ScannedTag) -> None:
         """An element begins."""
         self.tags.append(tag)
         self.names[tag.name] += 1
 
-    def pop(self) -> Tag:
+    def pop(self) -> ScannedTag:
         """The innermost one ends."""
         tag = self.tags.pop()
         self.names[tag.name] -= 1
         return tag
 
 
-class Page:
+class ScannedText:
     """A text and its tags in document order."""
 
     def __init__(self, text: str, lines: Lines | None = None, most: int = 0) -> None:
@@ -128,7 +128,7 @@ class Page:
         self.lines = lines or Lines(text)
         self.most = most or LIMITS.elements
         """Maximum number of tags."""
-        self.tags: list[Tag] = []
+        self.tags: list[ScannedTag] = []
         self.ends: list[tuple[int, int, str]] = []
         """The positions of names in end tags."""
         self.asides: list[tuple[int, int]] = []
@@ -136,14 +136,14 @@ class Page:
         self._scan()
 
     @property
-    def root(self) -> Tag | None:
+    def root(self) -> ScannedTag | None:
         """The first element that is named."""
         return next((tag for tag in self.tags if tag.name), None)
 
     @cached_property
-    def forms(self) -> dict[str, list[Tag]]:
+    def forms(self) -> dict[str, list[ScannedTag]]:
         """The forms, by their ids as written."""
-        found: dict[str, list[Tag]] = {}
+        found: dict[str, list[ScannedTag]] = {}
         for tag in self.tags:
             if tag.key == "form":
                 found.setdefault(tag.get("id"), []).append(tag)
@@ -154,7 +154,7 @@ class Page:
         """Where each tag begins."""
         return [tag.start for tag in self.tags]
 
-    def begun(self, offset: int) -> Tag | None:
+    def begun(self, offset: int) -> ScannedTag | None:
         """The last element that begins at an offset or before it."""
         index = bisect_right(self._starts, offset)
         return self.tags[index - 1] if index else None
@@ -168,7 +168,7 @@ class Page:
                 self.ends.append((*match.span("end"), match["end"]))
                 self._close(open_, match)
             elif match["start"] is not None:
-                tag = Tag(match["start"], match.start(), match.end(), [], None)
+                tag = ScannedTag(match["start"], match.start(), match.end(), [], None)
                 tag.parent = open_.tags[-1] if open_.tags else None
                 position = self._attributes(tag)
                 self.tags.append(tag)
@@ -183,7 +183,7 @@ class Page:
         for tag in open_.tags:
             tag.content = tag.until = len(text)
 
-    def _attributes(self, tag: Tag) -> int:
+    def _attributes(self, tag: ScannedTag) -> int:
         """Read the rest of a start tag; return where it ends."""
         text, position = self.text, tag.end
         while True:
@@ -227,14 +227,14 @@ class Page:
                 return
             tag.until = match.start()
 
-    def tag_at(self, offset: int) -> Tag | None:
+    def tag_at(self, offset: int) -> ScannedTag | None:
         """The element whose start tag contains an offset after its ``<``."""
         tag = self.begun(offset - 1)
         if tag is None or not (offset < tag.end or (offset == tag.end and not tag.finished)):
             return None
         return tag
 
-    def around(self, offset: int) -> Tag | None:
+    def around(self, offset: int) -> ScannedTag | None:
         """The innermost element whose content contains an offset."""
         tag = self.begun(offset)
         while tag is not None and (tag.empty or not tag.end <= offset <= tag.content):

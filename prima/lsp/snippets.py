@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from prima.interpreter.vocabulary import DIALOGUE
-from prima.lsp.tables import Choice
+from prima.lsp.tables import AllowedElement
 from prima.markup.vocabulary import Element, Vocabulary
 from prima.voicexml.vocabulary import ALTERNATIVES, PRIMA_NAMESPACE, VOICEXML
 
 
-def snippet(choice: Choice) -> str:
+def snippet(choice: AllowedElement) -> str:
     """A snippet of an element with its required parts and tab stops."""
     element, place = choice.element, 1
     words = [choice.name]
@@ -32,7 +32,7 @@ def _needed(vocabulary: Vocabulary, element: Element) -> list[str]:
     return needed
 
 
-def opening(choice: Choice) -> str:
+def opening(choice: AllowedElement) -> str:
     """A snippet of a new document."""
     namespace = choice.vocabulary.namespace
     begin = f'{choice.name} xmlns="{namespace}"'

@@ -8,7 +8,7 @@ from prima.devices.vocabulary import ROBOT, SERVICES
 from prima.grammar.builtin import TYPES
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.lsp.descriptions import VOICEXML_ATTRIBUTES
-from prima.lsp.scan import Page, Tag
+from prima.lsp.scan import ScannedTag, ScannedText
 from prima.markup.vocabulary import (
     Attribute,
     Element,
@@ -109,7 +109,7 @@ BY_NAMESPACE = {one.namespace: one for one in VOCABULARIES}
 BY_ROOT = {one.elements[one.root].tag: one for one in reversed(VOCABULARIES)}
 
 
-def resolve(page: Page) -> None:
+def resolve(page: ScannedText) -> None:
     """Set the vocabulary and key of every tag, if they can be determined."""
     for tag in page.tags:
         parent = tag.parent
@@ -125,11 +125,11 @@ def resolve(page: Page) -> None:
             tag.vocabulary, tag.key = _child(parent, tag)
 
 
-def _is_root(vocabulary: Vocabulary, tag: Tag) -> bool:
+def _is_root(vocabulary: Vocabulary, tag: ScannedTag) -> bool:
     return vocabulary.elements[vocabulary.root].tag == tag.local
 
 
-def _namespaces(tag: Tag, outer: dict[str, str]) -> dict[str, str]:
+def _namespaces(tag: ScannedTag, outer: dict[str, str]) -> dict[str, str]:
     own = {
         attr.name[6:]: attr.value
         for attr in tag.attributes
@@ -138,7 +138,7 @@ def _namespaces(tag: Tag, outer: dict[str, str]) -> dict[str, str]:
     return outer | own if own else outer
 
 
-def _child(parent: Tag, tag: Tag) -> tuple[Vocabulary | None, str]:
+def _child(parent: ScannedTag, tag: ScannedTag) -> tuple[Vocabulary | None, str]:
     """The vocabulary and key of an element in another, guessed for a misplaced one."""
     inner = parent.vocabulary
     assert inner is not None
@@ -151,14 +151,14 @@ def _child(parent: Tag, tag: Tag) -> tuple[Vocabulary | None, str]:
     return inner, _key(inner, parent, tag)
 
 
-def _key(inner: Vocabulary, parent: Tag, tag: Tag) -> str:
+def _key(inner: Vocabulary, parent: ScannedTag, tag: ScannedTag) -> str:
     if parent.key in inner.elements and (key := inner.child(parent.key, tag.local)) is not None:
         return key
     return next((one.key for one in inner.elements.values() if one.tag == tag.local), tag.local)
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class AllowedElement:
     """An element allowed at a place: its name as written there, and its declaration."""
 
     name: str
@@ -166,7 +166,7 @@ class Choice:
     vocabulary: Vocabulary
 
 
-def children(tag: Tag) -> list[Choice]:
+def children(tag: ScannedTag) -> list[AllowedElement]:
     """The elements allowed in an element."""
     element, vocabulary = tag.element, tag.vocabulary
     if element is None or vocabulary is None:
@@ -177,39 +177,39 @@ def children(tag: Tag) -> list[Choice]:
     if vocabulary is VOICEXML and tag.key == "grammar":
         inner, element = GRAMMAR, GRAMMAR.elements["grammar"]
     found = [
-        Choice(tag.prefix + inner.elements[key].tag, inner.elements[key], inner)
+        AllowedElement(tag.prefix + inner.elements[key].tag, inner.elements[key], inner)
         for key in element.children
         if key in inner.elements
     ]
     return found + _of_prima(tag) if inner is VOICEXML else found
 
 
-def _of_prima(tag: Tag) -> list[Choice]:
+def _of_prima(tag: ScannedTag) -> list[AllowedElement]:
     """The elements of PRIMA allowed in one of VoiceXML, if they have a prefix there."""
     prefix = _prefix(tag, DIALOGUE)
     acts = tag.key in HOLDING or VOICEXML.child(tag.key, "assign")
     keys = sorted([*COMMANDS, *ARRANGING]) if acts else [UNIT] if tag.key == "form" else []
     own = [DIALOGUE.elements[key] for key in keys if prefix]
-    return [Choice(prefix + one.tag, one, DIALOGUE) for one in own]
+    return [AllowedElement(prefix + one.tag, one, DIALOGUE) for one in own]
 
 
-def _in_unit(tag: Tag) -> list[Choice]:
+def _in_unit(tag: ScannedTag) -> list[AllowedElement]:
     """The elements allowed in a ``p:iu`` around form items of VoiceXML."""
     prefix = _prefix(tag, VOICEXML)
     keys = [key for key in VOICEXML.elements if key in UNIT_HOLDS]
-    return [Choice(prefix + key, VOICEXML.elements[key], VOICEXML) for key in keys]
+    return [AllowedElement(prefix + key, VOICEXML.elements[key], VOICEXML) for key in keys]
 
 
-def _prefix(tag: Tag, vocabulary: Vocabulary) -> str:
+def _prefix(tag: ScannedTag, vocabulary: Vocabulary) -> str:
     """The prefix of a vocabulary's elements at a place, with its colon; none by default."""
     known = [prefix for prefix, uri in tag.namespaces.items() if uri == vocabulary.namespace]
     return f"{known[0]}:" if known and known[0] else ""
 
 
-def roots() -> list[Choice]:
+def roots() -> list[AllowedElement]:
     """The possible root elements."""
     return [
-        Choice(one.elements[one.root].tag, one.elements[one.root], one)
+        AllowedElement(one.elements[one.root].tag, one.elements[one.root], one)
         for one in VOCABULARIES
         if one is not GRAMMAR
     ]
@@ -242,7 +242,7 @@ def values(vocabulary: Vocabulary, element: Element, name: str) -> tuple[str, ..
     return ()
 
 
-def is_code(tag: Tag, name: str) -> bool:
+def is_code(tag: ScannedTag, name: str) -> bool:
     """Whether an attribute holds ECMAScript."""
     element = tag.element
     if element is None:

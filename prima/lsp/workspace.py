@@ -12,7 +12,7 @@ from prima.errors import DocumentError
 from prima.lsp.meanings import FILES, SHARED
 from prima.lsp.names import Mark, dialect, marks
 from prima.lsp.paths import MOST_FILES, path_of, uri_of, walk
-from prima.lsp.scan import Page
+from prima.lsp.scan import ScannedText
 from prima.lsp.tables import resolve
 from prima.lsp.text import Lines
 from prima.markup.encodings import ENCODING, decode
@@ -34,23 +34,23 @@ class Text:
     version: int | None = None
     stamp: tuple[int, int] = (0, 0)
     _lines: Lines | None = None
-    _top: Page | None = None
-    _page: Page | None = None
+    _top: ScannedText | None = None
+    _page: ScannedText | None = None
     _marks: list[Mark] | None = None
 
     @property
-    def page(self) -> Page:
+    def page(self) -> ScannedText:
         """Its tags."""
         if self._page is None:
-            self._page = Page(self.text, self.lines)
+            self._page = ScannedText(self.text, self.lines)
             resolve(self._page)
         return self._page
 
     @property
-    def top(self) -> Page:
+    def top(self) -> ScannedText:
         """Its first tag alone, which is found faster."""
         if self._top is None:
-            self._top = Page(self.text, self.lines, most=1)
+            self._top = ScannedText(self.text, self.lines, most=1)
             resolve(self._top)
         return self._top
 
@@ -78,7 +78,7 @@ class Text:
 
 
 @dataclass(slots=True)
-class Found:
+class FoundName:
     """A name in a document."""
 
     path: Path
@@ -231,28 +231,28 @@ class Workspace:
 
     # Names ----------------------------------------------------------------------
 
-    def uses(self, path: Path, mark: Mark) -> list[Found]:
+    def uses(self, path: Path, mark: Mark) -> list[FoundName]:
         """All uses of a name, including its definition."""
         if mark.file:
             return self._elsewhere(path, mark)
         text = self.text(path)
-        own = [Found(path, one) for one in (text.marks if text else ()) if one.names(mark)]
+        own = [FoundName(path, one) for one in (text.marks if text else ()) if one.names(mark)]
         if mark.shared:
             return own + self._shared(path, mark)
         if "form" in mark.kind or "rule" in mark.kind:
             own += self._from_others(path, mark)
         return own
 
-    def _shared(self, path: Path, mark: Mark) -> list[Found]:
+    def _shared(self, path: Path, mark: Mark) -> list[FoundName]:
         found = []
         for other in self.related(path):
             text = self.text(other) if other != path else None
             for one in text.marks if text else ():
                 if one.name == mark.name and not set(one.kind).isdisjoint(mark.kind):
-                    found.append(Found(other, one))
+                    found.append(FoundName(other, one))
         return found
 
-    def _elsewhere(self, path: Path, mark: Mark) -> list[Found]:
+    def _elsewhere(self, path: Path, mark: Mark) -> list[FoundName]:
         """The uses of a name of another file."""
         target = self.target(path, mark.file)
         text = self.text(target) if target is not None else None
@@ -262,7 +262,7 @@ class Workspace:
                 return self.uses(target, one)
         return []
 
-    def _from_others(self, path: Path, mark: Mark) -> list[Found]:
+    def _from_others(self, path: Path, mark: Mark) -> list[FoundName]:
         """Where other documents go to a dialog of this one."""
         found = []
         for other in self.files():
@@ -272,17 +272,17 @@ class Workspace:
             for one in text.marks:
                 same = one.name == mark.name and not set(one.kind).isdisjoint(mark.kind)
                 if one.file and same and self.target(other, one.file) == path:
-                    found.append(Found(other, one))
+                    found.append(FoundName(other, one))
         return found
 
-    def given(self, path: Path, mark: Mark) -> list[Found]:
+    def given(self, path: Path, mark: Mark) -> list[FoundName]:
         """The definitions of a name: in its scenarios, or else anywhere in the workspace."""
         found = [one for one in self.uses(path, mark) if one.mark.defines]
         if not found and mark.shared:
             found = [one for one in self.known(path, mark.kind) if one.mark.name == mark.name]
         return found
 
-    def known(self, path: Path, kinds: Iterable[str], anywhere: bool = True) -> list[Found]:
+    def known(self, path: Path, kinds: Iterable[str], anywhere: bool = True) -> list[FoundName]:
         """Definitions of some kinds that a document may use, each name once.
 
         They are those of its scenarios, or else of the whole workspace.
@@ -290,7 +290,7 @@ class Workspace:
         wanted = frozenset(kinds)
         text = self.text(path)
         found = [
-            Found(path, one)
+            FoundName(path, one)
             for one in (text.marks if text else ())
             if one.defines and not wanted.isdisjoint(one.kind)
         ]
@@ -299,12 +299,12 @@ class Workspace:
             found += self._defined(others, wanted)
             if anywhere and not found:
                 found += self._defined(self.files(), wanted)
-        once: dict[str, Found] = {}
+        once: dict[str, FoundName] = {}
         for one in found:
             once.setdefault(one.mark.name, one)
         return list(once.values())
 
-    def _defined(self, paths: Iterable[Path], wanted: frozenset[str]) -> list[Found]:
+    def _defined(self, paths: Iterable[Path], wanted: frozenset[str]) -> list[FoundName]:
         found = []
         for path in paths:
             text = self.text(path)
@@ -312,5 +312,5 @@ class Workspace:
             private = "event" if own in ("dialogue", "voicexml") else ""
             for one in text.marks if text else ():
                 if one.defines and wanted.intersection(one.kind) and private not in one.kind:
-                    found.append(Found(path, one))
+                    found.append(FoundName(path, one))
         return found

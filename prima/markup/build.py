@@ -17,7 +17,7 @@ PREFIXES = {
 """Namespaces of attributes that documents write with these prefixes."""
 
 
-class TooMuch(Exception):
+class LimitReached(Exception):
     """A limit is reached at a node; ``what`` is ``depth``, ``elements``, ``attributes`` or ``name``."""
 
     def __init__(self, node: Node, what: str) -> None:
@@ -68,7 +68,7 @@ def _starter(source: Source, opened: list[Node]) -> Start:
             namespace, _, name = tag.rpartition("}")
             known = names[tag] = (name, namespace)
             if len(tag) > MAX_NAME:
-                raise TooMuch(Node(name, source, count, attributes), "name")
+                raise LimitReached(Node(name, source, count, attributes), "name")
         if not plain.issuperset(attributes):
             attributes = {attribute_name(key): text for key, text in attributes.items()}
             plain.update(key for key in attributes if ":" not in key and "}" not in key)
@@ -77,11 +77,11 @@ def _starter(source: Source, opened: list[Node]) -> Start:
         opened.append(node)
         count += 1
         if len(attributes) > widest:
-            raise TooMuch(node, "attributes")
+            raise LimitReached(node, "attributes")
         if count > most:
-            raise TooMuch(node, "elements")
+            raise LimitReached(node, "elements")
         if len(opened) > deepest:
-            raise TooMuch(node, "depth")
+            raise LimitReached(node, "depth")
 
     return start
 

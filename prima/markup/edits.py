@@ -12,7 +12,7 @@ from prima.markup.tree import MARKUP, NAME, Node
 DECLARATION = re.compile(r"\A<\?xml[^>]*\?>")
 
 
-class Edit(NamedTuple):
+class TextEdit(NamedTuple):
     """Characters of a document's text, from one offset to another, and what replaces them."""
 
     start: int
@@ -20,20 +20,20 @@ class Edit(NamedTuple):
     text: str
 
 
-def set_attribute(node: Node, name: str, value: str) -> Edit:
+def set_attribute(node: Node, name: str, value: str) -> TextEdit:
     """Give an attribute a value; an empty one takes the attribute away."""
     text, quoted = node.source.text, escape(value, {'"': "&quot;", "\n": "&#10;", "\t": "&#9;"})
     if name not in node.attributes:
         tag = NAME.match(text, node.source.tag(node.index))
         assert tag is not None  # a node has a start tag
-        return Edit(tag.end(), tag.end(), f' {name}="{quoted}"' if value else "")
+        return TextEdit(tag.end(), tag.end(), f' {name}="{quoted}"' if value else "")
     begin = node.source.offset(node.index, name)
     inside = node.source.offset(node.index, name, value=True)
     end = text.index(text[inside - 1], inside) + 1
-    return Edit(begin, end, f'{name}="{quoted}"' if value else "")
+    return TextEdit(begin, end, f'{name}="{quoted}"' if value else "")
 
 
-def set_text(node: Node, value: str) -> Edit:
+def set_text(node: Node, value: str) -> TextEdit:
     """Give an element that holds nothing but text another text; an empty one takes it away.
 
     Raises:
@@ -46,19 +46,19 @@ def set_text(node: Node, value: str) -> Edit:
     assert start is not None
     close = node.source.closes.get(node.index)
     if not value:
-        return Edit(begin, start.end() if close is None else text.index(">", close) + 1, "")
+        return TextEdit(begin, start.end() if close is None else text.index(">", close) + 1, "")
     if close is None:
-        return Edit(start.end() - 2, start.end(), f">{escape(value)}</{node.tag}>")
-    return Edit(start.end(), close - 2, escape(value))
+        return TextEdit(start.end() - 2, start.end(), f">{escape(value)}</{node.tag}>")
+    return TextEdit(start.end(), close - 2, escape(value))
 
 
-def edited(text: str, edits: Iterable[Edit]) -> bytes:
+def edited(text: str, edits: Iterable[TextEdit]) -> bytes:
     """A document's text with edits, in UTF-8.
 
     Edits inside an element that another one takes away go with it. The declaration of XML goes,
     as it may name another encoding.
     """
-    whole: list[Edit] = []
+    whole: list[TextEdit] = []
     for edit in sorted(edits):
         if not (whole and whole[-1].start < edit.start < whole[-1].end):
             whole.append(edit)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from prima.errors import DocumentError, Place, Problem
-from prima.markup.build import MAX_NAME, TooMuch, Unclear, build
+from prima.markup.build import MAX_NAME, LimitReached, Unclear, build
 from prima.markup.check import check_root, check_tree
 from prima.markup.encodings import decode
 from prima.markup.limits import LIMITS, refusal, too_deep
@@ -40,7 +40,7 @@ def parse(file: str, data: bytes, vocabularies: Sequence[Vocabulary] = ()) -> No
         except Unclear:
             explain(source, vocabularies)
             return build(source, doctype=True)
-    except TooMuch as much:
+    except LimitReached as much:
         raise _beyond(much) from None
     except Unclear as unclear:  # names of the fifth edition of XML 1.0
         message = "This is not well-formed XML: a name has a character that no name may have."
@@ -48,7 +48,7 @@ def parse(file: str, data: bytes, vocabularies: Sequence[Vocabulary] = ()) -> No
         raise refusal(place, "not-xml", message, "Take another name.") from None
 
 
-def _beyond(much: TooMuch) -> DocumentError:
+def _beyond(much: LimitReached) -> DocumentError:
     place, tag = much.node.place, much.node.tag
     if much.what == "depth":
         return too_deep(place)

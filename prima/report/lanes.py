@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from prima.transcript.row import Row, describe
 from prima.transcript.run import Run
-from prima.transcript.spans import Floor, Hold, State, base
+from prima.transcript.spans import FloorSpan, Hold, StreamState, base
 
 MOST_APPS = 24
 """Maximum number of applications with a lane."""
@@ -125,13 +125,13 @@ def _behaviors(run: Run, rows: Iterable[Row]) -> list[Bar]:
     return made
 
 
-def _waits(span: State | Hold, name: str, by: str) -> Bar:
+def _waits(span: StreamState | Hold, name: str, by: str) -> Bar:
     """A stream is suspended, or an AB is held back; its text says because of what."""
     why = f"{span.by or 'another'} ({span.rule or 'no rule'})"
     return Bar(span.begin, span.end, name, span.app, why, by=by)
 
 
-def _floor(span: Floor) -> Bar:
+def _floor(span: FloorSpan) -> Bar:
     """Who holds the floor; its text names the stack beneath."""
     stack = span.stack[-MOST_ON_FLOOR:]
     app = stack[-1].partition(":")[0]

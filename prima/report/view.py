@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from prima.errors.visible import visible
 from prima.messages import Json
 from prima.report.lanes import Lanes, make_lanes
-from prima.report.walk import Walk, walk_of
+from prima.report.walk import RobotWalk, walk_of
 from prima.transcript.row import Row, describe
 from prima.transcript.run import Run
 from prima.transcript.spans import base
@@ -47,7 +47,7 @@ class View:
     names: dict[str, list[Json]]
     """ABs and streams that the reasons name: what they do, the document's line, their first row or -1."""
     lanes: Lanes
-    walk: Walk
+    walk: RobotWalk
     title: str
     files: list[tuple[str, str]] = field(default_factory=list)
     cut: str = ""

@@ -37,7 +37,7 @@ Pose = tuple[float, float, float, float]
 
 
 @dataclass(slots=True)
-class Walk:
+class RobotWalk:
     """The paths of robot and user, and the map as data if known."""
 
     robot: list[Pose] = field(default_factory=list)
@@ -69,17 +69,17 @@ def _number(value: object) -> float | None:
     return float(value) if abs(value) < FARTHEST else None
 
 
-def walk_of(transcript: Transcript, loaded: Loaded | None) -> Walk:
+def walk_of(transcript: Transcript, loaded: Loaded | None) -> RobotWalk:
     """The ways of a transcript's run; with its scenario, also the map and the user.
 
     Raises:
         UsageError: the scenario's files are not those that the transcript was made with.
     """
     if loaded is None:
-        return Walk(reported(transcript.run()))
+        return RobotWalk(reported(transcript.run()))
     check_files(transcript, loaded)
     profile = loaded.cast.robot
-    walk = _again(transcript, loaded) or Walk(reported(transcript.run()))
+    walk = _again(transcript, loaded) or RobotWalk(reported(transcript.run()))
     walk.plan = plan_of(loaded.cast.world, {area.id: app for area, app in loaded.cast.offers})
     walk.camera = (profile.camera_angle, profile.camera_range)
     walk.radius = profile.radius
@@ -105,14 +105,14 @@ def check_files(transcript: Transcript, loaded: Loaded) -> None:
                              else f"{name} {message} the run of {transcript.name}. {remedy}")  # fmt: skip
 
 
-def _again(transcript: Transcript, loaded: Loaded) -> Walk | None:
+def _again(transcript: Transcript, loaded: Loaded) -> RobotWalk | None:
     """Run the scenario again and record the paths; None if the records differ."""
     from prima.transcript.lines import finished
 
     rehearsal = _rehearsal(loaded, transcript.run().head)
     if rehearsal is None:
         return None
-    watch = Watch(rehearsal.devices.world)
+    watch = WalkWatch(rehearsal.devices.world)
     expected: Sequence[Record] = transcript.records
     place = 1
     for records in rehearsal.run():
@@ -122,7 +122,7 @@ def _again(transcript: Transcript, loaded: Loaded) -> Walk | None:
             place += 1
         watch.look()
         if place >= len(expected):
-            return Walk(watch.robot, watch.person, source="run")
+            return RobotWalk(watch.robot, watch.person, source="run")
     return None  # the transcript has more
 
 
@@ -146,7 +146,7 @@ def _rehearsal(loaded: Loaded, head: Mapping[str, Any]) -> Rehearsal | None:
         return None
 
 
-class Watch:
+class WalkWatch:
     """Records the positions of robot and user when they change."""
 
     def __init__(self, world: World) -> None:

@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from prima.results.data import Data, Factor, Levels, Measure
+from prima.results.data import Data, FactorColumn, Levels, MeasureColumn
 from prima.results.statistics import (
-    Result,
-    Summary,
+    TestResult,
     Untested,
     Values,
+    ValueSummary,
     compare,
     corrected,
     correlate,
@@ -30,17 +30,17 @@ MOST_BINS = 30
 class Panel:
     """A measure by a factor: a summary for each level; None where it has no value."""
 
-    factor: Factor
+    factor: FactorColumn
     levels: Levels
-    summaries: list[Summary | None]
+    summaries: list[ValueSummary | None]
 
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
     """A measure over all runs, and by each factor."""
 
-    measure: Measure
-    whole: Summary
+    measure: MeasureColumn
+    whole: ValueSummary
     edges: list[float]
     counts: list[int]
     """Runs between each two edges."""
@@ -57,10 +57,10 @@ class Analysis:
     """All that is computed of a table."""
 
     distributions: list[Distribution] = field(default_factory=list)
-    constant: list[Measure] = field(default_factory=list)
+    constant: list[MeasureColumn] = field(default_factory=list)
     """Measures that are the same in all runs, or missing in all."""
-    tests: list[tuple[Measure, Factor, Result]] = field(default_factory=list)
-    untested: list[tuple[Measure, Factor, Untested]] = field(default_factory=list)
+    tests: list[tuple[MeasureColumn, FactorColumn, TestResult]] = field(default_factory=list)
+    untested: list[tuple[MeasureColumn, FactorColumn, Untested]] = field(default_factory=list)
 
 
 def analyse(data: Data) -> Analysis:
@@ -102,14 +102,16 @@ def bins(values: Values) -> tuple[list[float], list[int]]:
     return [float(one) for one in edges], [int(one) for one in counts]
 
 
-def _panel(measure: Measure, factor: Factor, levels: Levels) -> Panel:
+def _panel(measure: MeasureColumn, factor: FactorColumn, levels: Levels) -> Panel:
     summaries = [
         summary(measure.values[levels.codes == index]) for index in range(len(levels.names))
     ]
     return Panel(factor, levels, summaries)
 
 
-def _tests(measure: Measure, factor: Factor, levels: Levels) -> Iterator[Result | Untested]:
+def _tests(
+    measure: MeasureColumn, factor: FactorColumn, levels: Levels
+) -> Iterator[TestResult | Untested]:
     """The tests of a measure by a factor.
 
     Levels are compared with each other. Numbers are, if there are more than two, also correlated:

@@ -42,7 +42,7 @@ class Levels:
     """Whether each is a range of values that hold equally many runs."""
 
 
-class Factor:
+class FactorColumn:
     """A factor: its column, and its value in each run."""
 
     def __init__(self, column: Column, cells: Sequence[Any]) -> None:
@@ -103,7 +103,7 @@ class Factor:
 
 
 @dataclass(slots=True)
-class Measure:
+class MeasureColumn:
     """A measure, and its value in each run."""
 
     column: Column
@@ -126,7 +126,7 @@ class Measure:
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class OrderRow:
     """An order of events: its number by how often it came, and its transcript."""
 
     number: int
@@ -148,17 +148,17 @@ class Data:
     """All that a page is made from."""
 
     sheet: Sheet
-    factors: list[Factor]
+    factors: list[FactorColumn]
     """All of them."""
-    measures: list[Measure]
-    orders: list[Order]
+    measures: list[MeasureColumn]
+    orders: list[OrderRow]
     """The most frequent first."""
     order_codes: Groups
     """The place of each run's order among them."""
     notes: list[str] = field(default_factory=list)
 
     @cached_property
-    def varied(self) -> list[Factor]:
+    def varied(self) -> list[FactorColumn]:
         """The factors that have more than one level; seeds are repetitions."""
         found = [one for one in self.factors if one.count > 1 and one.column.name != REPETITION]
         return found[:MOST_FACTORS]
@@ -178,9 +178,9 @@ def data_of(sheet: Sheet) -> Data:
         for column in sheet.columns:
             cells = sheet.cells[column.name]
             if column.role == "factor":
-                factors.append(Factor(column, cells))
+                factors.append(FactorColumn(column, cells))
             elif column.role == "measure" or column.name == "expects_failed":
-                measures.append(Measure(column, _numbers(column, cells)))
+                measures.append(MeasureColumn(column, _numbers(column, cells)))
     except ValueError as error:
         raise UsageError(f"{sheet.path}: {error}") from None
     orders, codes = _orders(sheet)
@@ -213,7 +213,7 @@ def _numbers(column: Column, cells: Sequence[Any]) -> Values:
     return made
 
 
-def _orders(sheet: Sheet) -> tuple[list[Order], Groups]:
+def _orders(sheet: Sheet) -> tuple[list[OrderRow], Groups]:
     """The orders of a table, and that of each run."""
     cells = [str(one or "") for one in sheet.cells["order"]]
     runs, paths = sheet.cells["run"], sheet.cells.get("transcript", [""] * len(cells))
@@ -227,7 +227,7 @@ def _orders(sheet: Sheet) -> tuple[list[Order], Groups]:
         safe = signature and LINK.fullmatch(path) and ".." not in path
         count = counts[signature]
         first_run = shown(str(runs[first]))
-        made.append(Order(place, signature, count, first_run, path if safe else ""))
+        made.append(OrderRow(place, signature, count, first_run, path if safe else ""))
     places = {one: index for index, one in enumerate(ranked)}
     return made, np.array([places[one] for one in cells], dtype=np.int64)
 

@@ -11,9 +11,9 @@ from math import ceil, floor, log10
 from prima.errors.visible import visible
 from prima.graph.svg import box, fit, line, measure, picture, text
 from prima.results.analysis import Distribution, Panel
-from prima.results.data import Data, Factor, number
-from prima.results.ordermap import Map
-from prima.results.statistics import Summary
+from prima.results.data import Data, FactorColumn, number
+from prima.results.ordermap import OrderMap
+from prima.results.statistics import ValueSummary
 from prima.transcript import colours
 
 WIDTH = 720.0
@@ -148,12 +148,12 @@ def _bins(made: Distribution, scale: Scale, bottom: float) -> list[str]:
     return parts
 
 
-def _mean(whole: Summary, scale: Scale) -> list[str]:
+def _mean(whole: ValueSummary, scale: Scale) -> list[str]:
     """The mean over all runs with its interval, above the histogram."""
     return [*_interval(whole, scale, 20), text(WIDTH - RIGHT + 6, 24, f"n {whole.count}", "small")]
 
 
-def _interval(found: Summary, scale: Scale, y: float) -> list[str]:
+def _interval(found: ValueSummary, scale: Scale, y: float) -> list[str]:
     return [
         line(scale.at(found.low), y, scale.at(found.high), y, "interval"),
         f'<circle class="mean" cx="{scale.at(found.mean):.1f}" cy="{y:.1f}" r="3.4"/>',
@@ -175,7 +175,7 @@ def _panel(panel: Panel, scale: Scale, y: float) -> list[str]:
     return parts
 
 
-def _row(found: Summary, scale: Scale, y: float) -> list[str]:
+def _row(found: ValueSummary, scale: Scale, y: float) -> list[str]:
     """All values, their quartiles, the median, and the mean with its interval."""
     lower, upper, middle = (scale.at(one) for one in (found.lower, found.upper, found.median))
     return [
@@ -199,7 +199,7 @@ def shade(place: int) -> int:
     return min(place, COLOURED)
 
 
-def orders(data: Data, made: Map, factors: Sequence[Factor]) -> Figure:
+def orders(data: Data, made: OrderMap, factors: Sequence[FactorColumn]) -> Figure:
     """The map of orders over one factor or two, with the most frequent orders below."""
     names = made.columns.names if made.columns else [""]
     tall = max((measure(fit(one, 110)) for one in names), default=0) * 0.8 + 12
@@ -230,7 +230,7 @@ def orders(data: Data, made: Map, factors: Sequence[Factor]) -> Figure:
     return Figure("orders", "Map of orders", told, width, y, parts)
 
 
-def _cell(data: Data, made: Map, index: int, x: float, y: float) -> list[str]:
+def _cell(data: Data, made: OrderMap, index: int, x: float, y: float) -> list[str]:
     found = made.cells[index]
     if found is None:
         return [box(x, y, CELL, CELL, "frame", 0)]

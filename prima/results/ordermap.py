@@ -20,7 +20,7 @@ Cell = tuple[int, int, int, int]
 
 
 @dataclass(frozen=True, slots=True)
-class Map:
+class OrderMap:
     """Cells by two factors, row by row; None where no run was made."""
 
     rows: Levels
@@ -29,11 +29,11 @@ class Map:
     cells: list[Cell | None]
 
 
-def order_map(data: Data, rows: Levels, columns: Levels | None) -> Map:
+def order_map(data: Data, rows: Levels, columns: Levels | None) -> OrderMap:
     """The map of orders over one factor or two."""
     wide = len(columns.names) if columns else 1
     places = rows.codes * wide + (columns.codes if columns else 0)
-    return Map(rows, columns, _cells(places, data.order_codes, len(rows.names) * wide))
+    return OrderMap(rows, columns, _cells(places, data.order_codes, len(rows.names) * wide))
 
 
 def _cells(places: Groups, orders: Groups, count: int) -> list[Cell | None]:

@@ -15,9 +15,9 @@ from prima.errors import counted
 from prima.report.parts import json_text, part, policy_of, style_of, text
 from prima.results import tables
 from prima.results.analysis import MOST_LEVELS, Analysis, Distribution, analyse
-from prima.results.data import Data, Measure, Order, number, shown
+from prima.results.data import Data, MeasureColumn, OrderRow, number, shown
 from prima.results.figures import COLOURED, STYLE, distribution
-from prima.results.ordermap import MOST_LINKED, Map, map_levels, order_map
+from prima.results.ordermap import MOST_LINKED, OrderMap, map_levels, order_map
 from prima.results.statistics import LEAST_GROUP, LEAST_PAIRS, MOST_DISTINCT, RESAMPLES, SEED
 
 ROOM = "prima.results"
@@ -64,13 +64,13 @@ def page(data: Data, folder: Path, by: tuple[int, ...]) -> str:
     return Template(part(ROOM, "template.html")).substitute(body)
 
 
-def _links(data: Data, folder: Path) -> Callable[[Order], str]:
+def _links(data: Data, folder: Path) -> Callable[[OrderRow], str]:
     """Gives the address of an order's transcript, from the folder of the page."""
     begin = data.sheet.path.parent
     base = os.path.realpath(folder)
 
     @lru_cache(MOST_LINKED)
-    def link(order: Order) -> str:
+    def link(order: OrderRow) -> str:
         target = begin / order.transcript
         if not order.transcript or order.number > MOST_LINKED or not target.is_file():
             return ""
@@ -91,7 +91,7 @@ def _notes(data: Data) -> str:
     return "".join(f'<p class="cut">{text(one)}</p>\n' for one in notes)
 
 
-def _constant(measures: list[Measure]) -> str:
+def _constant(measures: list[MeasureColumn]) -> str:
     """What is said of measures that do not differ."""
     if not measures:
         return ""
@@ -99,7 +99,7 @@ def _constant(measures: list[Measure]) -> str:
     return f'<p id="constant">The same in all runs, so neither drawn nor tested: {told}.</p>\n'
 
 
-def _value(measure: Measure) -> str:
+def _value(measure: MeasureColumn) -> str:
     known = [one for one in measure.values.tolist() if one == one]
     value = f"{number(known[0])}{measure.unit}" if known else "no value"
     return text(f"{measure.name} ({value})")
@@ -136,7 +136,7 @@ def _tests(data: Data, analysis: Analysis) -> str:
     )
 
 
-def _map(data: Data, by: tuple[int, ...], link: Callable[[Order], str]) -> str:
+def _map(data: Data, by: tuple[int, ...], link: Callable[[OrderRow], str]) -> str:
     """The map of orders with what chooses its factors."""
     made = ""
     if not any(link(one) for one in data.orders[:MOST_LINKED]):
@@ -193,10 +193,10 @@ def _made(data: Data) -> str:
     return made
 
 
-def _data(data: Data, link: Callable[[Order], str]) -> dict[str, Any]:
+def _data(data: Data, link: Callable[[OrderRow], str]) -> dict[str, Any]:
     """What the script draws maps of other factors from."""
     levels = map_levels(data)
-    maps: dict[str, Map] = {}
+    maps: dict[str, OrderMap] = {}
     for a in range(len(levels)):
         maps[str(a)] = order_map(data, levels[a], None)
     for a, b in combinations(range(len(levels)), 2):

@@ -28,7 +28,7 @@ LEAST_PAIRS = 10
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
+class ValueSummary:
     """What is said of values: their mean with its interval, their spread, their quartiles."""
 
     count: int
@@ -69,7 +69,7 @@ SPEARMAN = Method("Spearman", "ρ", "ρ", "scipy.stats.spearmanr")
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
+class TestResult:
     """A test of whether a measure depends on a factor."""
 
     method: Method
@@ -89,7 +89,7 @@ class Untested:
     why: str
 
 
-def summary(values: Values) -> Summary | None:
+def summary(values: Values) -> ValueSummary | None:
     """The summary of values; None if all are missing."""
     known = values[~np.isnan(values)]
     if not len(known):
@@ -97,7 +97,7 @@ def summary(values: Values) -> Summary | None:
     low, high, drawn = interval(known)
     lower, median, upper = np.quantile(known, [0.25, 0.5, 0.75])
     spread = float(np.std(known, ddof=1)) if len(known) > 1 else 0.0
-    return Summary(
+    return ValueSummary(
         len(known),
         len(values) - len(known),
         float(np.mean(known)),
@@ -134,7 +134,7 @@ def interval(known: Values) -> tuple[float, float, bool]:
     return float(low), float(high), True
 
 
-def compare(values: Values, groups: Groups, names: Sequence[str]) -> Result | Untested:
+def compare(values: Values, groups: Groups, names: Sequence[str]) -> TestResult | Untested:
     """Whether groups of runs differ: Mann-Whitney for two, Kruskal-Wallis for more.
 
     Args:
@@ -157,13 +157,13 @@ def compare(values: Values, groups: Groups, names: Sequence[str]) -> Result | Un
     if len(parts) == 2:
         found = stats.mannwhitneyu(*parts, alternative="two-sided")
         delta = 2 * float(found.statistic) / (sizes[0] * sizes[1]) - 1
-        return Result(MANN_WHITNEY, sizes, float(found.statistic), float(found.pvalue), delta)
+        return TestResult(MANN_WHITNEY, sizes, float(found.statistic), float(found.pvalue), delta)
     found = stats.kruskal(*parts)
     epsilon = float(found.statistic) / (len(whole) - 1)
-    return Result(KRUSKAL_WALLIS, sizes, float(found.statistic), float(found.pvalue), epsilon)
+    return TestResult(KRUSKAL_WALLIS, sizes, float(found.statistic), float(found.pvalue), epsilon)
 
 
-def correlate(values: Values, factor: Values) -> Result | Untested:
+def correlate(values: Values, factor: Values) -> TestResult | Untested:
     """Whether a measure goes up or down with a numeric factor: Spearman's rank correlation."""
     known = ~(np.isnan(values) | np.isnan(factor))
     mine, other = values[known], factor[known]
@@ -176,7 +176,7 @@ def correlate(values: Values, factor: Values) -> Result | Untested:
         return Untested("the measure is the same in all runs")
     found = stats.spearmanr(other, mine)
     rho = float(found.statistic)
-    return Result(SPEARMAN, (len(mine),), rho, float(found.pvalue), rho)
+    return TestResult(SPEARMAN, (len(mine),), rho, float(found.pvalue), rho)
 
 
 def holm(p: Sequence[float]) -> list[float]:
@@ -188,7 +188,7 @@ def holm(p: Sequence[float]) -> list[float]:
     return made
 
 
-def corrected(results: Sequence[Result]) -> list[Result]:
+def corrected(results: Sequence[TestResult]) -> list[TestResult]:
     """Tests with their p-values corrected."""
     adjusted = holm([one.p for one in results])
     return [replace(one, adjusted=p) for one, p in zip(results, adjusted, strict=True)]

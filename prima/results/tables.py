@@ -8,17 +8,25 @@ from collections.abc import Callable, Iterable, Sequence
 
 from prima.report.parts import text
 from prima.results.analysis import Analysis, Distribution
-from prima.results.data import Data, Factor, Measure, Order, number, probability, shown
+from prima.results.data import (
+    Data,
+    FactorColumn,
+    MeasureColumn,
+    OrderRow,
+    number,
+    probability,
+    shown,
+)
 from prima.results.figures import shade
-from prima.results.ordermap import Map
-from prima.results.statistics import MANN_WHITNEY, Summary
+from prima.results.ordermap import OrderMap
+from prima.results.statistics import MANN_WHITNEY, ValueSummary
 
 NUMBER = re.compile(r"(?:&lt; )?-?[0-9][0-9.e+-]*(?: \([0-9.]+%\))?|–")
 """A cell of a number, or of none; a column of such stands on the right."""
 CLASSES = {True: ' class="n"', False: ""}
 LISTED = 50
 """Orders, levels or rows of outcomes that a table lists."""
-Link = Callable[[Order], str]
+Link = Callable[[OrderRow], str]
 """The address of an order's transcript from the page; empty if there is none."""
 
 
@@ -99,7 +107,7 @@ def factors(data: Data) -> str:
     return table("factors", "Factors", heads, rows)
 
 
-def _levels(factor: Factor) -> str:
+def _levels(factor: FactorColumn) -> str:
     distinct = factor.distinct
     if factor.numeric:
         if len(distinct) > 8:
@@ -137,7 +145,7 @@ def _word(cell: object) -> str:
 HEADS = ("Runs", "Missing", "Mean", "95 % from", "to", "SD", "Least", "Q1", "Median", "Q3", "Most")
 
 
-def _summary(found: Summary | None) -> list[str]:
+def _summary(found: ValueSummary | None) -> list[str]:
     if found is None:
         return ["0", *["–"] * (len(HEADS) - 1)]
     values = (
@@ -156,7 +164,7 @@ def measures(analysis: Analysis) -> str:
     return table("measures", "Measures over all runs", ("Measure", *HEADS), rows)
 
 
-def _named(measure: Measure) -> str:
+def _named(measure: MeasureColumn) -> str:
     return text(f"{measure.name} ({shown(measure.column.unit)})" if measure.unit else measure.name)
 
 
@@ -222,7 +230,7 @@ def orders(data: Data, link: Link) -> str:
     return table("orders", "Orders, the most frequent first", heads, rows)
 
 
-def map_table(data: Data, made: Map, names: Sequence[str], link: Link) -> str:
+def map_table(data: Data, made: OrderMap, names: Sequence[str], link: Link) -> str:
     """The map of orders as a table; the page's script makes the same of other factors."""
     columns = made.columns.names if made.columns else ["Order"]
     corner = text(" \\ ".join(names))
@@ -239,7 +247,7 @@ def map_table(data: Data, made: Map, names: Sequence[str], link: Link) -> str:
     )
 
 
-def _cell(data: Data, made: Map, index: int, link: Link) -> str:
+def _cell(data: Data, made: OrderMap, index: int, link: Link) -> str:
     found = made.cells[index]
     if found is None:
         return '<td class="empty">–</td>'

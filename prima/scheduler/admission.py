@@ -8,12 +8,12 @@ from prima.errors import did_you_mean
 from prima.language.arguments import check_arguments
 from prima.language.commands import TABLE_4_2, CommandType, too_long
 from prima.messages import NO_DEVICES, Command, Group, OpenUnit, Request, Step
-from prima.scheduler.behavior import GONE, Application, Behavior, Inside, Run, Stream
+from prima.scheduler.behavior import GONE, Application, AwaitedRun, Behavior, Inside, Stream
 
 Table = Mapping[str, CommandType]
 
 
-class Refused(Exception):
+class CommandRefused(Exception):
     """A Command is refused before it enters working memory (rule E3)."""
 
     def __init__(self, event: str, message: str, command: Command | None) -> None:
@@ -33,22 +33,24 @@ def check_command(command: Command, app: Application, table: Table) -> None:
     if row is None or row.substitute:
         if command.type in TABLE_4_2:
             message = f"This robot cannot do {command.type}."
-            raise Refused(f"error.unsupported.{command.type}", message, command)
+            raise CommandRefused(f"error.unsupported.{command.type}", message, command)
         hint = did_you_mean(command.type, table)
-        raise Refused("error.semantic", f'No Command "{command.type}". {hint}'.rstrip(), command)
+        raise CommandRefused(
+            "error.semantic", f'No Command "{command.type}". {hint}'.rstrip(), command
+        )
     if command.extra and app.kind == "ea":
         message = f"Only an FA may give {command.type} additional arguments."
-        raise Refused("error.semantic", message, command)
+        raise CommandRefused("error.semantic", message, command)
     for name in command.extra:
         if name not in row.extra:
             message = f'{command.type} has no additional argument "{name}" on this robot.'
-            raise Refused("error.semantic", message, command)
+            raise CommandRefused("error.semantic", message, command)
     try:
         command.args = dict(check_arguments(row, command.text, command.args))
     except ValueError as error:
-        raise Refused("error.semantic", str(error), command) from None
+        raise CommandRefused("error.semantic", str(error), command) from None
     if problem := too_long(len(command.text or ""), silence(command)):
-        raise Refused("error.semantic", f"{problem} Divide it.", command)
+        raise CommandRefused("error.semantic", f"{problem} Divide it.", command)
     command.now = command.now or row.now
 
 
@@ -105,11 +107,11 @@ def check_in_unit(command: Command, row: CommandType, owned: frozenset[str]) -> 
     if row.feedback or row.leaves:
         what = "works in loops" if row.feedback else "leaves the user"
         message = f"{row.name} cannot be part of a unit: it {what}."
-        raise Refused("error.semantic", message, command)
+        raise CommandRefused("error.semantic", message, command)
     lacking = sorted(row.occupied(command.text) - owned)
     if lacking:
         message = f"{row.name} needs {', '.join(lacking)}, which its unit does not own."
-        raise Refused("error.semantic", message, command)
+        raise CommandRefused("error.semantic", message, command)
 
 
 def group_devices(group: Group, table: Table) -> frozenset[str]:
@@ -145,7 +147,7 @@ class Maker:
         what: Command | Group,
         now: int,
         state: int,
-        run: Run | None = None,
+        run: AwaitedRun | None = None,
         unit: Behavior | None = None,
     ) -> Behavior:
         """One AB for a Command (U1) or for a group of them (U4)."""
@@ -179,7 +181,7 @@ class Maker:
         unit: Behavior | None,
     ) -> list[Behavior]:
         """The ABs of a request's steps, linked as they say; roots wait for nothing yet."""
-        run = Run(asked.run, app, len(asked.steps))
+        run = AwaitedRun(asked.run, app, len(asked.steps))
         made: list[Behavior] = []
         for step in asked.steps:
             ab = self.behavior(app, stream, step.what, now, asked.state, run, unit)

@@ -120,7 +120,7 @@ class Application:
 
 
 @dataclass(slots=True)
-class Run:
+class AwaitedRun:
     """Commands that an application sent at once and whose end it awaits."""
 
     number: int
@@ -181,7 +181,7 @@ class Behavior:
     requested: int
     document_state: int
     group: Group | None = None
-    run: Run | None = None
+    run: AwaitedRun | None = None
     unit: Behavior | None = None
     """The unit that it is in."""
     inside: Inside | None = None

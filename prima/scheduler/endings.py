@@ -10,21 +10,21 @@ from prima.scheduler.behavior import (
     RUNNING,
     WAITING,
     Application,
+    AwaitedRun,
     Behavior,
-    Run,
 )
 from prima.scheduler.mediation import Mediation
-from prima.scheduler.memory import Memory
+from prima.scheduler.memory import WorkingMemory
 
 
-def running_as(memory: Memory, name: str) -> Behavior | None:
+def running_as(memory: WorkingMemory, name: str) -> Behavior | None:
     """The running AB of that name in the transcript, if it runs still."""
     running = memory.running
     ab = running.get(name) or running.get(name.partition(".")[0])
     return ab if ab is not None and ab.id == name else None
 
 
-def question(memory: Memory) -> Behavior | None:
+def question(memory: WorkingMemory) -> Behavior | None:
     """The question that runs, if any (V1)."""
     ab = memory.occupied.get("speech-recognition")
     while ab is not None and ab.inside is not None:
@@ -179,7 +179,7 @@ def delete(mediation: Mediation, ab: Behavior, rule: str) -> None:
 
 
 def delete_rest(
-    mediation: Mediation, tree: dict[str, Behavior], run: Run | None, rule: str
+    mediation: Mediation, tree: dict[str, Behavior], run: AwaitedRun | None, rule: str
 ) -> None:
     """E1, U5: delete what has not started of a failed tree; other runs in it are cancelled."""
     for other in list(reversed(list(tree.values()))):

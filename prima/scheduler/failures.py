@@ -15,7 +15,7 @@ from prima.scheduler.endings import (
     silence,
 )
 from prima.scheduler.mediation import Mediation
-from prima.scheduler.memory import Memory
+from prima.scheduler.memory import WorkingMemory
 from prima.scheduler.streams import let_go
 
 HANG_MS: Final = 120_000
@@ -75,7 +75,7 @@ def deadline(mediation: Mediation) -> int | None:
     return min((*late, *mediation.holds.values()), default=None)
 
 
-def _lapse(memory: Memory, absence: int) -> int | None:
+def _lapse(memory: WorkingMemory, absence: int) -> int | None:
     """K1: when the user will count as absent, if anything waits for that."""
     if memory.in_view or memory.absent or not memory.engaged:
         return None

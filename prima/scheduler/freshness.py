@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Literal
 
 from prima.messages import Command, Notice
-from prima.scheduler.behavior import LINKED, WAITING, Behavior, Run
+from prima.scheduler.behavior import LINKED, WAITING, AwaitedRun, Behavior
 from prima.scheduler.endings import delete
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.selection import able
@@ -79,7 +79,7 @@ def _tell(mediation: Mediation, lost: list[Behavior]) -> None:
         mediation.tell(ab.app, None, *_notices(ab, ab.run, last=ab is told[-1]))
 
 
-def _notices(ab: Behavior, run: Run, last: bool) -> list[Notice]:
+def _notices(ab: Behavior, run: AwaitedRun, last: bool) -> list[Notice]:
     """That an AB has expired; after the last one also that what it was asked for with is done."""
     command = ab.command or Command("iu", hook=[])
     fate: Literal["cancelled", "expired"] = "expired" if run.left or run.begun else "cancelled"

@@ -13,7 +13,7 @@ from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
 from prima.messages import Command, Notice, Order, Verb
 from prima.scheduler.admission import Maker
 from prima.scheduler.behavior import Application, Behavior, Stream
-from prima.scheduler.memory import Memory
+from prima.scheduler.memory import WorkingMemory
 from prima.scheduler.policy import Policy
 from prima.scheduler.recorder import Recorder
 from prima.scheduler.robot_state import RobotState
@@ -58,7 +58,7 @@ class Mediation:
     bound: int | None = None
     absence: int = ABSENCE_MS
     patience: int = PATIENCE_MS
-    memory: Memory = field(default_factory=Memory)
+    memory: WorkingMemory = field(default_factory=WorkingMemory)
     changed: bool = False
     """Whether anything has happened since the latest selection that it may depend on."""
     halted: bool = False

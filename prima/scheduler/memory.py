@@ -13,7 +13,7 @@ from prima.scheduler.behavior import (
 )
 
 
-class Memory:
+class WorkingMemory:
     """ABs by state, the devices they occupy, the streams, and the stack of floors."""
 
     def __init__(self) -> None:

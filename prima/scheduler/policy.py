@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from prima.errors import UsageError, nearest_word, one_of
 from prima.scheduler import rules
 from prima.scheduler.behavior import Behavior
-from prima.scheduler.memory import Memory
+from prima.scheduler.memory import WorkingMemory
 from prima.scheduler.rules import Rank, Refusal
 
 Ranked = tuple[Rank, Behavior]
@@ -41,7 +41,7 @@ class Policy:
         """Whether an extension is on."""
         return extension in self.extensions
 
-    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
+    def rank(self, ab: Behavior, memory: WorkingMemory, now: int) -> Rank:
         """Where a waiting AB ranks: the smallest goes first (S2)."""
         return (
             rules.s2a(ab),
@@ -54,7 +54,7 @@ class Policy:
             rules.s2f(ab),
         )
 
-    def ranked(self, found: Iterable[Behavior], memory: Memory, now: int) -> list[Ranked]:
+    def ranked(self, found: Iterable[Behavior], memory: WorkingMemory, now: int) -> list[Ranked]:
         """Waiting ABs behind their ranks, the first one first; no two ranks are equal (S2f)."""
         return sorted(((self.rank(ab, memory, now), ab) for ab in found), key=lambda one: one[0])
 
@@ -64,7 +64,7 @@ class Policy:
         found = (rule for rule, differs in zip(self.rules, differ, strict=True) if differs)
         return next(found, self.rules[-1])
 
-    def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
+    def refusal(self, ab: Behavior, memory: WorkingMemory) -> Refusal | None:
         """What else than a device keeps the AB from starting (F2, F6, K1, X7)."""
         if memory.owed is not None:
             if rules.third_turn(ab, memory):
@@ -75,7 +75,7 @@ class Policy:
             return rules.k1(ab, memory)
         return rules.refusal(ab, memory)
 
-    def holds_back(self, ab: Behavior, memory: Memory) -> bool:
+    def holds_back(self, ab: Behavior, memory: WorkingMemory) -> bool:
         """S3, E6, X7: whether a waiting AB keeps its devices from those it outranks."""
         return ab.reaction is not None or ab.wait.overdue or rules.third_turn(ab, memory)
 
@@ -88,15 +88,15 @@ class Fifo(Policy):
     floor: bool = False
     rules: tuple[str, ...] = ("fifo", "S2f")
 
-    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
+    def rank(self, ab: Behavior, memory: WorkingMemory, now: int) -> Rank:
         """The earlier request goes first."""
         return (rules.s2e(ab), rules.s2f(ab))
 
-    def refusal(self, ab: Behavior, memory: Memory) -> Refusal | None:
+    def refusal(self, ab: Behavior, memory: WorkingMemory) -> Refusal | None:
         """Nothing but devices keeps an AB from starting."""
         return None
 
-    def holds_back(self, ab: Behavior, memory: Memory) -> bool:
+    def holds_back(self, ab: Behavior, memory: WorkingMemory) -> bool:
         """Every waiting AB holds its devices back from later ones."""
         return True
 
@@ -109,7 +109,7 @@ class Fair(Fifo):
     turning: bool = True
     rules: tuple[str, ...] = ("fair", "fifo", "S2f")
 
-    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
+    def rank(self, ab: Behavior, memory: WorkingMemory, now: int) -> Rank:
         """The application whose turn is longest ago, then the earlier request."""
         return (ab.app.last_turn, rules.s2e(ab), rules.s2f(ab))
 
@@ -122,7 +122,7 @@ class Fixed(Fifo):
     rules: tuple[str, ...] = ("fixed", "fifo", "S2f")
     first: str = ""
 
-    def rank(self, ab: Behavior, memory: Memory, now: int) -> Rank:
+    def rank(self, ab: Behavior, memory: WorkingMemory, now: int) -> Rank:
         """The named application (else the one declared first), then the earlier request."""
         top = ab.app.name == self.first if self.first else ab.app.order == 0
         return (0 if top else 1, rules.s2e(ab), rules.s2f(ab))
@@ -136,7 +136,7 @@ class Unmediated(Fifo):
     exclusive: bool = False
     rules: tuple[str, ...] = ("none", "S2f")
 
-    def holds_back(self, ab: Behavior, memory: Memory) -> bool:
+    def holds_back(self, ab: Behavior, memory: WorkingMemory) -> bool:
         """Nothing is ever held back."""
         return False
 

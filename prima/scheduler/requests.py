@@ -12,7 +12,7 @@ from prima.messages import (
     line_of,
 )
 from prima.scheduler.admission import (
-    Refused,
+    CommandRefused,
     check_command,
     check_steps,
     link,
@@ -41,7 +41,7 @@ def u3(mediation: Mediation, app: Application, asked: Request) -> None:
         check_steps(asked.steps, app, mediation.table, unit.devices if unit else None)
         if asked.words is not None and asked.words.type in mediation.table:
             check_command(asked.words, app, mediation.table)
-    except Refused as refused:
+    except CommandRefused as refused:
         e3(mediation, app, asked, refused)
     else:
         _take_in(mediation, app, asked, unit)
@@ -77,7 +77,7 @@ def x8(mediation: Mediation, ab: Behavior, asked: Request) -> None:
         ab.stale = mediation.now + asked.fresh
 
 
-def e3(mediation: Mediation, app: Application, asked: Request, refused: Refused) -> None:
+def e3(mediation: Mediation, app: Application, asked: Request, refused: CommandRefused) -> None:
     """E3: Commands are refused before they enter working memory."""
     command = refused.command
     mediation.recorder.add(

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from prima.scheduler.behavior import GONE, LINKED, RUNNING, Behavior, Stream
-from prima.scheduler.memory import Memory
+from prima.scheduler.memory import WorkingMemory
 
 Refusal = tuple[str, str]
 """The rule that keeps an AB from starting, and the AB or stream for whose sake."""
@@ -23,14 +23,14 @@ def s2a(ab: Behavior) -> int:
     return -ab.priority
 
 
-def s2b(ab: Behavior, memory: Memory) -> tuple[int, int, int]:
+def s2b(ab: Behavior, memory: WorkingMemory) -> tuple[int, int, int]:
     """Then reactions, the latest event's first; of one event, the active application's."""
     if ab.reaction is None:
         return NO_REACTION
     return (0, -ab.reaction, 0 if memory.active is ab.app else 1)
 
 
-def e6(ab: Behavior, memory: Memory, now: int) -> int:
+def e6(ab: Behavior, memory: WorkingMemory, now: int) -> int:
     """Then what others have kept from the speaker for too long, after what follows an answer."""
     if not ab.wait.overdue:
         return 1
@@ -43,13 +43,13 @@ def acknowledges(ab: Behavior, now: int) -> bool:
     return ab.stream.answered == now and ab.freed == now and "speaker" in ab.devices and not asks
 
 
-def third_turn(ab: Behavior, memory: Memory) -> bool:
+def third_turn(ab: Behavior, memory: WorkingMemory) -> bool:
     """X7: whether it is what the asker owes to an answer, or comes before that."""
     owed = memory.owed
     return owed is not None and (ab is owed or ab in before(owed, memory))
 
 
-def before(ab: Behavior, memory: Memory) -> list[Behavior]:
+def before(ab: Behavior, memory: WorkingMemory) -> list[Behavior]:
     """All that has to end before an AB may start."""
     found: list[Behavior] = []
     names = [*ab.waits_for]
@@ -61,7 +61,7 @@ def before(ab: Behavior, memory: Memory) -> list[Behavior]:
     return found
 
 
-def x7(ab: Behavior, memory: Memory) -> Refusal | None:
+def x7(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
     """X7: nobody speaks between a user's answer and what the asker says to it.
 
     Once that waits, it holds the speaker back itself (S3).
@@ -72,12 +72,12 @@ def x7(ab: Behavior, memory: Memory) -> Refusal | None:
     return None if third_turn(ab, memory) else ("X7", owed.id)
 
 
-def aside(ab: Behavior, memory: Memory) -> bool:
+def aside(ab: Behavior, memory: WorkingMemory) -> bool:
     """X7: whether it starts though another application holds the floor, and does not take it."""
     return third_turn(ab, memory) and f2(ab, memory) is not None
 
 
-def keeps_speaker(ab: Behavior, memory: Memory) -> bool:
+def keeps_speaker(ab: Behavior, memory: WorkingMemory) -> bool:
     """E6: whether another application keeps a waiting AB from the speaker, and no rule does.
 
     A floor (F2) and a channel (K1) are rules; a topic between two utterances (F6) is not.
@@ -110,12 +110,12 @@ def s2f(ab: Behavior) -> tuple[int, int]:
     return (ab.app.order, ab.serial)
 
 
-def refusal(ab: Behavior, memory: Memory) -> Refusal | None:
+def refusal(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
     """The first rule that keeps a waiting AB from starting, beside its devices."""
     return f2(ab, memory) or f6(ab, memory) or k1(ab, memory)
 
 
-def outranks(priority: int, stream: Stream, memory: Memory) -> bool:
+def outranks(priority: int, stream: Stream, memory: WorkingMemory) -> bool:
     """F2: whether a priority is higher than that of all that the floor's stream has.
 
     A way back that X1 has put in and K1 keeps counts as itself: else the floor's stream
@@ -128,7 +128,7 @@ def outranks(priority: int, stream: Stream, memory: Memory) -> bool:
     return bool(contending) and all(priority > other.priority for other in contending)
 
 
-def f2(ab: Behavior, memory: Memory) -> Refusal | None:
+def f2(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
     """Another application's floor lets start a reaction to another event, or a higher priority."""
     holder = memory.holder
     if holder is None or holder.app is ab.app:
@@ -139,7 +139,7 @@ def f2(ab: Behavior, memory: Memory) -> Refusal | None:
     return None if outranks(priority, holder, memory) else ("F2", holder.name)
 
 
-def f3(ab: Behavior, memory: Memory) -> bool:
+def f3(ab: Behavior, memory: WorkingMemory) -> bool:
     """Whether what starts by its priority while another application holds the floor takes it.
 
     It does if it needs a device of what runs or waits of the floor's stream, or of what
@@ -152,7 +152,7 @@ def f3(ab: Behavior, memory: Memory) -> bool:
     return any(ab.devices & other.devices for other in own)
 
 
-def f6(ab: Behavior, memory: Memory) -> Refusal | None:
+def f6(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
     """A topic is not spoken into: its speaker is kept between two of its utterances."""
     if "speaker" not in ab.devices or ab.reaction is not None or ab.stream is memory.holder:
         return None
@@ -172,7 +172,7 @@ def speaks_next(ab: Behavior) -> bool:
     )
 
 
-def k1(ab: Behavior, memory: Memory) -> Refusal | None:
+def k1(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
     """What leaves the user waits while another application engages them."""
     if not ab.leaves:
         return None
@@ -182,7 +182,7 @@ def k1(ab: Behavior, memory: Memory) -> Refusal | None:
     return None
 
 
-def engages(stream: Stream, memory: Memory) -> bool:
+def engages(stream: Stream, memory: WorkingMemory) -> bool:
     """K1: whether a stream in which an AB has engaged the user does so still.
 
     It does not while all that it does leaves the user, nor, unless it searches or tracks,
@@ -194,7 +194,7 @@ def engages(stream: Stream, memory: Memory) -> bool:
     return not contending or not all(ab.leaves for ab in contending)
 
 
-def x5(ab: Behavior, memory: Memory) -> bool:
+def x5(ab: Behavior, memory: WorkingMemory) -> bool:
     """Whether the floor's stream does nothing but a motion that this one can carry."""
     holder = memory.holder
     if holder is None or ab.motion != "free":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from prima.scheduler.behavior import GONE, RUNNING, Behavior, Stream
 from prima.scheduler.mediation import Mediation
-from prima.scheduler.memory import Memory
+from prima.scheduler.memory import WorkingMemory
 from prima.scheduler.rules import before
 
 
@@ -18,7 +18,7 @@ def owe(mediation: Mediation) -> None:
         memory.owed = acknowledgement(stream, memory)
 
 
-def acknowledgement(stream: Stream, memory: Memory) -> Behavior | None:
+def acknowledgement(stream: Stream, memory: WorkingMemory) -> Behavior | None:
     """The stream's next utterance, if that is soon over and comes after what is soon over.
 
     Another question is none: it lasts as long as the user takes.

@@ -7,18 +7,18 @@ from typing import NamedTuple
 from prima.script.parse import Code, Node, inner, parse_expression
 
 
-class Choice(NamedTuple):
+class PossibleText(NamedTuple):
     """A text that an expression may give, or the beginning of one."""
 
     text: str
     whole: bool
 
 
-UNKNOWN = Choice("", False)
+UNKNOWN = PossibleText("", False)
 """Any text."""
 
 
-def choices(code: str) -> list[Choice]:
+def choices(code: str) -> list[PossibleText]:
     """The texts that an expression may give: of literals, and of conditions between them.
 
     >>> choices("old ? '#ask' : '#step' + number")
@@ -28,7 +28,7 @@ def choices(code: str) -> list[Choice]:
     node = inner(parsed) if parsed is not None else None
     if parsed is None or node is None:
         return [UNKNOWN]
-    found: list[Choice] = []
+    found: list[PossibleText] = []
     waiting: list[Node | None] = [node]
     while waiting:
         node = waiting.pop()
@@ -41,7 +41,7 @@ def choices(code: str) -> list[Choice]:
     return list(dict.fromkeys(found))
 
 
-def _choice(code: Code, node: Node | None) -> Choice:
+def _choice(code: Code, node: Node | None) -> PossibleText:
     """The choice of an expression without conditions: a literal, or what begins with one."""
     whole = True
     while node is not None and node.type == "binary_expression":
@@ -50,4 +50,4 @@ def _choice(code: Code, node: Node | None) -> Choice:
             return UNKNOWN
         node, whole = node.child_by_field_name("left"), False
     text = code.of(node) if node is not None and node.type == "string" else ""
-    return Choice(text[1:-1], whole) if text and "\\" not in text else UNKNOWN
+    return PossibleText(text[1:-1], whole) if text and "\\" not in text else UNKNOWN

@@ -22,7 +22,7 @@ from prima.script.ecmascript import UNDEFINED
 from prima.script.evaluation import (
     MAX_SCRIPT_SECONDS,
     SCOPES,
-    Item,
+    EngineElement,
     Scope,
     ScriptError,
     bounded,
@@ -249,7 +249,7 @@ class Engine:
             ScriptError: it is not an array.
         """
         array = self.listed(code, scopes, most)
-        return [Item(array, index) for index in range(self.length(array))]
+        return [EngineElement(array, index) for index in range(self.length(array))]
 
     def listed(self, code: str, scopes: tuple[Scope, ...], most: int) -> Any:
         """Evaluate an expression that gives an array; give a private copy of it."""
@@ -310,7 +310,7 @@ class Engine:
         """Give a variable one of the engine's own values."""
         if value is UNDEFINED:
             self.unset(scope, name)
-        elif isinstance(value, Item):
+        elif isinstance(value, EngineElement):
             self.pick(scope, name, value.array, value.index)
         else:
             self._call(self._help["set"], (scope, name, value))

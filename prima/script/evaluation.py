@@ -38,7 +38,7 @@ class EngineLost(ScriptError):
     """The process of an engine has ended: the application that uses it can only end, too (E2)."""
 
 
-class Item:
+class EngineElement:
     """An element of an array of the engine, which stays there (``Engine.elements``)."""
 
     __slots__ = ("array", "index")

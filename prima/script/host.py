@@ -27,7 +27,7 @@ GIVES_NOTHING, GIVES_DATA, GIVES_VALUE = range(3)
 """What a method gives back: data leaves the process, a value of the engine stays."""
 
 METHODS: Mapping[str, Mapping[str, int]] = {
-    "Service": {
+    "EngineService": {
         "engine": GIVES_VALUE, "tag_engine": GIVES_VALUE, "syntax": GIVES_VALUE,
         "reset": GIVES_NOTHING,
     },
@@ -52,7 +52,7 @@ METHODS: Mapping[str, Mapping[str, int]] = {
 """What may be called of what is here, by its class."""
 
 
-class Service:
+class EngineService:
     """Answers calls; keeps what has been made until the caller drops it."""
 
     now, spent = 0, 0.0
@@ -136,9 +136,9 @@ def limit() -> None:
 
 def serve(requests: int, replies: int) -> None:
     """Answer until the caller has gone."""
-    from prima.script.wire import LONGEST_REPLY, LONGEST_REQUEST, Broken, TooMuch, receive, send
+    from prima.script.wire import LONGEST_REPLY, LONGEST_REQUEST, TooMuch, WireBroken, receive, send
 
-    service = Service()
+    service = EngineService()
     while True:
         try:
             request = receive(requests, LONGEST_REQUEST)
@@ -148,7 +148,7 @@ def serve(requests: int, replies: int) -> None:
                 send(replies, reply, LONGEST_REPLY)
             except TooMuch as error:
                 send(replies, ["error", [str(error), [], 0, 0], reply[2]], LONGEST_REPLY)
-        except Broken:
+        except WireBroken:
             return
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 from prima.messages import Json
 from prima.script import worker
 from prima.script.ecmascript import UNDEFINED
-from prima.script.evaluation import SCOPES, EngineLost, Item, Scope, bounded, plain_number
+from prima.script.evaluation import SCOPES, EngineElement, EngineLost, Scope, bounded, plain_number
 from prima.script.remote import Remote, as_data, as_value, as_values
 from prima.script.worker import Handle, Worker
 
@@ -122,7 +122,7 @@ class IsolatedEngine(Remote):
         """See :meth:`Engine.elements`."""
         array = self._call("listed", as_data(code), as_values(scopes), as_data(most))
         length = min(int(self._call("length", as_value(array))), most)
-        return [Item(array, index) for index in range(length)]
+        return [EngineElement(array, index) for index in range(length)]
 
     def assign(self, scope: Scope, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
         """See :meth:`Engine.assign`."""
@@ -144,7 +144,7 @@ class IsolatedEngine(Remote):
         """See :meth:`Engine.put`."""
         if value is UNDEFINED:
             self.unset(scope, name)
-        elif isinstance(value, Item):
+        elif isinstance(value, EngineElement):
             self._call(
                 "pick", as_value(scope), as_data(name), as_value(value.array), as_data(value.index)
             )

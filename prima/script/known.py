@@ -10,7 +10,7 @@ from prima.errors.guesses import MANY_WORDS
 from prima.script.globals import IDENTIFIER
 
 
-class Scope(set[str]):
+class NameScope(set[str]):
     """The names of the variables of one scope."""
 
     @cached_property
@@ -28,7 +28,7 @@ class Known:
 
     __slots__ = ("scopes",)
 
-    def __init__(self, *scopes: Scope) -> None:
+    def __init__(self, *scopes: NameScope) -> None:
         self.scopes = scopes
 
     def __contains__(self, name: object) -> bool:

@@ -11,7 +11,7 @@ from functools import lru_cache
 
 from prima.script.globals import GLOBALS, HANDLED
 from prima.script.parse import Code, Node, parse_expression, parse_script
-from prima.script.walk import OBJECTS, Scope, Walk
+from prima.script.walk import OBJECTS, CodeScope, Walk
 
 LONG_CODE = 500
 """Characters of code beyond which what is found in it is not kept, but of the last."""
@@ -111,7 +111,7 @@ def _of_walk(walk: Walk) -> Names:
     return made
 
 
-def _add(made: Names, top: Scope, start: int, name: str, how: str, scope: Scope) -> None:
+def _add(made: Names, top: CodeScope, start: int, name: str, how: str, scope: CodeScope) -> None:
     home = scope.home(name)
     if home is not None and home is not top:
         return

@@ -12,27 +12,29 @@ OBJECTS = frozenset(["application", "document", "dialog"])
 """Objects whose members are variables of that name (VoiceXML 2.0, 5.1.2)."""
 
 
-class Scope:
+class CodeScope:
     """The names that a function or block declares."""
 
     __slots__ = ("depth", "function", "hides", "names", "outer")
 
-    def __init__(self, outer: Scope | None, *, function: bool = False, hides: bool = False) -> None:
+    def __init__(
+        self, outer: CodeScope | None, *, function: bool = False, hides: bool = False
+    ) -> None:
         self.outer = outer
         self.depth: int = outer.depth + 1 if outer else 0
         self.names: set[str] = set()
-        self.function: Scope = self if function or outer is None else outer.function
+        self.function: CodeScope = self if function or outer is None else outer.function
         """Where ``var`` declares."""
         self.hides = hides
         """Whether any name may be declared in it: ``with``."""
 
-    def inner(self, *, function: bool = False, hides: bool = False) -> Scope:
+    def inner(self, *, function: bool = False, hides: bool = False) -> CodeScope:
         """A new scope in it."""
-        return self if self.depth >= DEEPEST else Scope(self, function=function, hides=hides)
+        return self if self.depth >= DEEPEST else CodeScope(self, function=function, hides=hides)
 
-    def home(self, name: str) -> Scope | None:
+    def home(self, name: str) -> CodeScope | None:
         """The scope that declares a name."""
-        scope: Scope | None = self
+        scope: CodeScope | None = self
         while scope is not None and name not in scope.names and not scope.hides:
             scope = scope.outer
         return scope
@@ -59,9 +61,9 @@ class Walk:
 
     def __init__(self, code: Code) -> None:
         self.code = code
-        self.top = Scope(None, function=True)
-        self.waiting: list[tuple[Node, Scope]] = [(code.root, self.top)]
-        self.found: list[tuple[int, str, str, Scope]] = []
+        self.top = CodeScope(None, function=True)
+        self.waiting: list[tuple[Node, CodeScope]] = [(code.root, self.top)]
+        self.found: list[tuple[int, str, str, CodeScope]] = []
         """Offset, name, how (``read``, ``write``, ``change``, ``ask``, ``declare`` or a holder), scope."""
         self.opaque = False
         self.given: set[int] = set()
@@ -76,33 +78,33 @@ class Walk:
             VISITS.get(node.type, Walk.all)(self, node, scope)
         return self
 
-    def tell(self, node: Node, how: str, scope: Scope) -> None:
+    def tell(self, node: Node, how: str, scope: CodeScope) -> None:
         """Note a name."""
         self.found.append((self.code.start(node), self.code.of(node), how, scope))
 
-    def push(self, node: Node | None, scope: Scope) -> None:
+    def push(self, node: Node | None, scope: CodeScope) -> None:
         """Go through a node in a scope."""
         if node is not None:
             self.waiting.append((node, scope))
 
-    def all(self, node: Node, scope: Scope) -> None:
+    def all(self, node: Node, scope: CodeScope) -> None:
         """Go through all that a node holds."""
         self.waiting += [(one, scope) for one in node.named_children]
 
     # What declares, or opens a scope ----------------------------------------------------------
 
-    def name(self, node: Node, scope: Scope) -> None:
+    def name(self, node: Node, scope: CodeScope) -> None:
         """A variable is read."""
         self.tell(node, "read", scope)
 
-    def nothing(self, _node: Node, _scope: Scope) -> None:
+    def nothing(self, _node: Node, _scope: CodeScope) -> None:
         """Nothing in it is a variable."""
 
-    def block(self, node: Node, scope: Scope) -> None:
+    def block(self, node: Node, scope: CodeScope) -> None:
         """A block has a scope of its own."""
         self.all(node, scope.inner())
 
-    def function(self, node: Node, scope: Scope) -> None:
+    def function(self, node: Node, scope: CodeScope) -> None:
         """A function's name is declared around it, or in it where it is an expression."""
         inner = scope.inner(function=True)
         name = node.child_by_field_name("name")
@@ -116,14 +118,14 @@ class Walk:
             self.bind(node.child_by_field_name(part), inner)
         self.push(node.child_by_field_name("body"), inner)
 
-    def class_(self, node: Node, scope: Scope) -> None:
+    def class_(self, node: Node, scope: CodeScope) -> None:
         """A class is declared around it, or in it where it is an expression."""
         name, inner = node.child_by_field_name("name"), scope.inner()
         if name is not None:
             self.bind(name, scope if node.type == "class_declaration" else inner)
         self.waiting += [(one, inner) for one in node.named_children if one != name]
 
-    def declaration(self, node: Node, scope: Scope) -> None:
+    def declaration(self, node: Node, scope: CodeScope) -> None:
         """``var`` declares in the function, ``let`` and ``const`` in the block."""
         home = scope.function if node.type == "variable_declaration" else scope
         for one in node.named_children:
@@ -133,7 +135,7 @@ class Walk:
             self.bind(one.child_by_field_name("name"), home)
             self.push(one.child_by_field_name("value"), scope)
 
-    def loop(self, node: Node, scope: Scope) -> None:
+    def loop(self, node: Node, scope: CodeScope) -> None:
         """``for (x in y)`` and ``for (x of y)``."""
         inner = scope.inner()
         kind = node.child_by_field_name("kind")
@@ -145,20 +147,20 @@ class Walk:
         self.push(node.child_by_field_name("right"), inner)
         self.push(node.child_by_field_name("body"), inner)
 
-    def caught(self, node: Node, scope: Scope) -> None:
+    def caught(self, node: Node, scope: CodeScope) -> None:
         """What is caught is known in its block."""
         inner = scope.inner()
         self.bind(node.child_by_field_name("parameter"), inner)
         self.push(node.child_by_field_name("body"), inner)
 
-    def with_(self, node: Node, scope: Scope) -> None:
+    def with_(self, node: Node, scope: CodeScope) -> None:
         """Names in its body may be members of its object."""
         self.push(node.child_by_field_name("object"), scope)
         self.push(node.child_by_field_name("body"), scope.inner(hides=True))
 
     # What reads or gives values ---------------------------------------------------------------
 
-    def assignment(self, node: Node, scope: Scope) -> None:
+    def assignment(self, node: Node, scope: CodeScope) -> None:
         """``x = 1`` gives ``x`` a value; ``x += 1`` reads it first."""
         left = node.child_by_field_name("left")
         if node.type == "augmented_assignment_expression":
@@ -167,11 +169,11 @@ class Walk:
             self.assign(left, scope)
         self.push(node.child_by_field_name("right"), scope)
 
-    def update(self, node: Node, scope: Scope) -> None:
+    def update(self, node: Node, scope: CodeScope) -> None:
         """``x++`` reads ``x`` and gives it a value."""
         self.change(node.child_by_field_name("argument"), scope)
 
-    def change(self, target: Node | None, scope: Scope) -> None:
+    def change(self, target: Node | None, scope: CodeScope) -> None:
         """A target is read and given a value."""
         self.push(target, scope)
         if target is not None and target.type == "identifier":
@@ -179,7 +181,7 @@ class Walk:
         elif target is not None and (found := self.of_scope(target)) is not None:
             self.given.add(self.code.start(found[1]))
 
-    def unary(self, node: Node, scope: Scope) -> None:
+    def unary(self, node: Node, scope: CodeScope) -> None:
         """``typeof x`` may be asked of what nothing declares."""
         operator = node.child_by_field_name("operator")
         argument = node.child_by_field_name("argument")
@@ -191,14 +193,14 @@ class Walk:
         else:
             self.all(node, scope)
 
-    def call(self, node: Node, scope: Scope) -> None:
+    def call(self, node: Node, scope: CodeScope) -> None:
         """``eval`` may declare and read anything."""
         function = node.child_by_field_name("function")
         if function is not None and self.code.of(function) == "eval":
             self.opaque = True
         self.all(node, scope)
 
-    def member(self, node: Node, scope: Scope) -> None:
+    def member(self, node: Node, scope: CodeScope) -> None:
         """A member's name is a variable's where the object is a scope."""
         holder = node.child_by_field_name("object")
         self.push(holder, scope)
@@ -217,7 +219,7 @@ class Walk:
         name = self.code.of(holder) if holder.type == "identifier" else ""
         return (name, part) if name in OBJECTS else None
 
-    def bind(self, target: Node | None, home: Scope) -> None:
+    def bind(self, target: Node | None, home: CodeScope) -> None:
         """Declare the names of a target: a name, a pattern or a list of parameters."""
 
         def declare(node: Node) -> None:
@@ -226,11 +228,11 @@ class Walk:
 
         self._target(target, declare, home)
 
-    def assign(self, target: Node | None, scope: Scope) -> None:
+    def assign(self, target: Node | None, scope: CodeScope) -> None:
         """The names of a target are given values."""
         self._target(target, lambda node: self.tell(node, "write", scope), scope)
 
-    def _target(self, target: Node | None, put: Callable[[Node], None], scope: Scope) -> None:
+    def _target(self, target: Node | None, put: Callable[[Node], None], scope: CodeScope) -> None:
         waiting = [] if target is None else [target]
         while waiting:
             node = waiting.pop()
@@ -255,7 +257,7 @@ class Walk:
                     self.given.add(self.code.start(found[1]))
 
 
-VISITS: Mapping[str, Callable[[Walk, Node, Scope], None]] = {
+VISITS: Mapping[str, Callable[[Walk, Node, CodeScope], None]] = {
     "identifier": Walk.name,
     "shorthand_property_identifier": Walk.name,
     "shorthand_property_identifier_pattern": Walk.name,

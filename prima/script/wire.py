@@ -23,7 +23,7 @@ class TooMuch(Exception):
     """A message is too long or nested too deep; nothing of it was sent."""
 
 
-class Broken(Exception):
+class WireBroken(Exception):
     """The other side has gone, or sent something that is not a message."""
 
 
@@ -45,7 +45,7 @@ def send(pipe: int, message: Any, longest: int) -> None:
         while left:
             left = left[os.write(pipe, left) :]
     except OSError as error:
-        raise Broken(str(error)) from None
+        raise WireBroken(str(error)) from None
 
 
 def receive(pipe: int, longest: int) -> Any:
@@ -56,11 +56,11 @@ def receive(pipe: int, longest: int) -> Any:
     """
     size: int = HEADER.unpack(_read(pipe, HEADER.size))[0]
     if size > longest:
-        raise Broken(f"a message of {size:,} bytes")
+        raise WireBroken(f"a message of {size:,} bytes")
     try:
         return json.loads(_read(pipe, size))
     except (ValueError, RecursionError) as error:
-        raise Broken(str(error)) from None
+        raise WireBroken(str(error)) from None
 
 
 def _read(pipe: int, size: int) -> bytes:
@@ -71,6 +71,6 @@ def _read(pipe: int, size: int) -> bytes:
     while len(found) < size:
         piece = os.read(pipe, min(size - len(found), CHUNK))
         if not piece:
-            raise Broken("it has gone")
+            raise WireBroken("it has gone")
         found += piece
     return bytes(found)

@@ -131,10 +131,10 @@ class Worker:
                 wire.send(self._requests, request, wire.LONGEST_REQUEST)
                 kind, result, spent = wire.receive(self._replies, wire.LONGEST_REPLY)
                 meter.spent = spent + CALL_SECONDS
-            except (wire.TooMuch, wire.Broken) as error:
+            except (wire.TooMuch, wire.WireBroken) as error:
                 queue.extend(dropped)
                 raise (
-                    self._end() if isinstance(error, wire.Broken) else ScriptError(str(error))
+                    self._end() if isinstance(error, wire.WireBroken) else ScriptError(str(error))
                 ) from None
             except BaseException:
                 self.close()  # the reply is still to come: the next call would take it for its own

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from prima.interpreter.application import Interpreter
-from prima.interpreter.bounds import Visit
+from prima.interpreter.bounds import ElementVisit
 from prima.interpreter.elements import Document
 from prima.interpreter.protocol import App
 from prima.interpreter.transfers import GoOut
@@ -67,9 +67,9 @@ class Applications:
         """Give back the processes in which code was evaluated."""
         self._engines.close()
 
-    def drain_visits(self) -> list[Visit]:
+    def drain_visits(self) -> list[ElementVisit]:
         """What each application came to since the last time, one application after the other."""
-        found: list[Visit] = []
+        found: list[ElementVisit] = []
         for app in self.named.values():
             found += app.visits
             app.visits.clear()

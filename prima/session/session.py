@@ -10,9 +10,11 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import asdict
 
 from prima.grammar.answers import Answers
-from prima.interpreter.bounds import Visit
+from prima.interpreter.bounds import ElementVisit
 from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
 from prima.messages import (
+    ApplicationLoaded,
+    ApplicationUnloaded,
     Data,
     Delayed,
     Emergency,
@@ -25,7 +27,6 @@ from prima.messages import (
     Inbound,
     Json,
     Listening,
-    Loaded,
     Narrated,
     Occurred,
     Order,
@@ -33,7 +34,6 @@ from prima.messages import (
     Record,
     Sensed,
     Transferred,
-    Unloaded,
 )
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.policy import Policy
@@ -97,7 +97,7 @@ class Session:
         text, self._hearing.unheard = self._hearing.unheard, ""
         return text
 
-    def drain_visits(self) -> list[Visit]:
+    def drain_visits(self) -> list[ElementVisit]:
         """What each application came to since the last time, one application after the other."""
         return self._apps.drain_visits()
 
@@ -196,9 +196,9 @@ class Session:
                 self._sensed(value)
             case Emergency():
                 self._emergency(value)
-            case Loaded():
+            case ApplicationLoaded():
                 self._load(value)
-            case Unloaded():
+            case ApplicationUnloaded():
                 self._unload(value)
             case Delayed() | Presence() | Narrated():
                 self._note(value)
@@ -232,7 +232,7 @@ class Session:
     def _record(self, phase: str, actor: str, **fields: Json) -> None:
         self.recorder.add(phase, actor, inbound=True, **fields)
 
-    def _load(self, value: Loaded) -> None:
+    def _load(self, value: ApplicationLoaded) -> None:
         name = value.app
         self._record("load", "environment", app=name, data=place_data(value))
         app = self._apps.load(name)
@@ -248,7 +248,7 @@ class Session:
             self._look(app, {})
         self._wiring.settle()
 
-    def _unload(self, value: Unloaded) -> None:
+    def _unload(self, value: ApplicationUnloaded) -> None:
         self._record("unload", "environment", app=value.app, data=place_data(value))
         app = self._apps.there(value.app)
         if app is not None:
@@ -335,9 +335,9 @@ class Session:
     # Outbound -----------------------------------------------------------------
 
 
-def place_data(value: Loaded | Unloaded) -> dict[str, Json] | None:
+def place_data(value: ApplicationLoaded | ApplicationUnloaded) -> dict[str, Json] | None:
     """What a record tells of an application that comes or goes with a place, or has a caller."""
     told: dict[str, Json] = {"place": value.place} if value.place else {}
-    if isinstance(value, Loaded) and value.connection:
+    if isinstance(value, ApplicationLoaded) and value.connection:
         told["connection"] = dict(value.connection)
     return told or None

@@ -9,7 +9,7 @@ from prima.devices.goals import SAY, Again, Begin, Broke, Cancel, Done, Report, 
 from prima.devices.goals import Call as Told
 from prima.devices.profile import BRAKING_MS, POINTING_MS, Profile
 from prima.messages import Json, Occurred
-from prima.sim.locomotion import Locomotion, Plan
+from prima.sim.locomotion import Locomotion, LocomotionMemory
 from prima.sim.routes import Routes
 from prima.sim.world import World, distance
 
@@ -37,7 +37,7 @@ class Effort:
     """Which device does not do it, and why."""
     lost: bool = False
     """Whether another goal has taken the wheels (only without a mediator)."""
-    plan: Plan = field(default_factory=Plan)
+    plan: LocomotionMemory = field(default_factory=LocomotionMemory)
     control: Callable[[], bool] | None = None
     """Sets the wheels; true when it has nothing left to do."""
 
@@ -146,7 +146,7 @@ class Body:
         """Begin a goal that a feedback Command works at in loops."""
         begin, move = effort.begin, self.locomotion
         args = begin.command.args
-        plan = effort.plan = Plan(since=now)
+        plan = effort.plan = LocomotionMemory(since=now)
         effort.tick = begin.tick
         match begin.kind:
             case "topological-move":

@@ -59,7 +59,7 @@ class Chance:
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class ChoiceStream:
     """The stream by which one of several is chosen, each as likely as the others."""
 
     stream: str
@@ -98,9 +98,9 @@ class Draws:
             return Chance()
         return Chance(likely, self._stream(node, "chance"))
 
-    def choice(self, node: Node) -> Choice:
+    def choice(self, node: Node) -> ChoiceStream:
         """The stream by which one of an element's children is chosen."""
-        return Choice(self._stream(node, "one-of"))
+        return ChoiceStream(self._stream(node, "one-of"))
 
     def _stream(self, node: Node, name: str) -> str:
         self.any = True

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from prima.devices.profile import Profile
 from prima.interpreter.elements import Document
 from prima.interpreter.sensors import sensors_read
-from prima.messages import Inbound, Loaded, Order, Record
+from prima.messages import ApplicationLoaded, Inbound, Order, Record
 from prima.session import AnyDocument
 from prima.sim.entrances import Entrances
 from prima.sim.map import Area, Map
@@ -89,12 +89,16 @@ class SimulatedDevices:
         while self._loads and self._loads[0][0] <= now:
             inbound.append(self._loaded(self._loads.pop(0)[2]))
         for one in self._entrances.cross(self.world.position):
-            inbound.append(self._loaded(one.app, one.place) if isinstance(one, Loaded) else one)
+            inbound.append(
+                self._loaded(one.app, one.place) if isinstance(one, ApplicationLoaded) else one
+            )
         inbound += self.robot.collect(now)
         said = self.people.collect(now)
         self._said = bool(said)
         for value in said:
-            inbound.append(self._loaded(value.app) if isinstance(value, Loaded) else value)
+            inbound.append(
+                self._loaded(value.app) if isinstance(value, ApplicationLoaded) else value
+            )
         inbound += self.services.collect(now)
         inbound += self.telephone.collect(now)
         if self._watched:
@@ -117,10 +121,10 @@ class SimulatedDevices:
             self.robot.ear.listen_on(now)
         self.people.observe(now, records)
 
-    def _loaded(self, name: str, place: str = "") -> Loaded:
+    def _loaded(self, name: str, place: str = "") -> ApplicationLoaded:
         """An application starts; one of VoiceXML is told of the user's call."""
         native = name in self._native
-        return Loaded(name, place, {} if native else self.cast.scenario.connection)
+        return ApplicationLoaded(name, place, {} if native else self.cast.scenario.connection)
 
 
 def _world(cast: Cast) -> World:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from prima.messages import Loaded, Unloaded
+from prima.messages import ApplicationLoaded, ApplicationUnloaded
 from prima.sim.map import Area, Point
 
 THRESHOLD = 0.5
@@ -29,18 +29,18 @@ class Entrances:
         """Take the robot to be in the areas of these applications."""
         self._inside = {area.id for area, name in self.offers if name in applications}
 
-    def cross(self, here: Point) -> list[Loaded | Unloaded]:
+    def cross(self, here: Point) -> list[ApplicationLoaded | ApplicationUnloaded]:
         """Load what an area offers that the robot has come into, and unload what it has left."""
         if here is self._crossed or not self.offers:
             return []
         self._crossed = here
-        crossed: list[Loaded | Unloaded] = []
+        crossed: list[ApplicationLoaded | ApplicationUnloaded] = []
         for area, name in self.offers:
             inside = area.id in self._inside
             if not inside and area.holds(here):
                 self._inside.add(area.id)
-                crossed.append(Loaded(name, area.title))
+                crossed.append(ApplicationLoaded(name, area.title))
             elif inside and not area.holds(here, THRESHOLD):
                 self._inside.discard(area.id)
-                crossed.append(Unloaded(name, area.title))
+                crossed.append(ApplicationUnloaded(name, area.title))
         return crossed

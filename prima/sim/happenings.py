@@ -83,7 +83,7 @@ ENDINGS = (
 
 
 @dataclass(slots=True)
-class Transfer:
+class CallTransfer:
     """How a call to a destination goes; times in ms."""
 
     to: str
@@ -247,7 +247,7 @@ def read_connection(node: Node) -> dict[str, Json]:
     )
 
 
-def read_transfer(draws: Draws, node: Node) -> Transfer:
+def read_transfer(draws: Draws, node: Node) -> CallTransfer:
     """How a call to a destination goes."""
     reader = draws.reader
     outcome = reader.get(node, "outcome") or ENDINGS[0]
@@ -258,7 +258,7 @@ def read_transfer(draws: Draws, node: Node) -> Transfer:
         remedy = hint or f"Write {', '.join((*UNANSWERED, *ENDINGS))}, or an error's event."
         reader.problem(node, "bad-value", message, "outcome", remedy)
     after, lasts = draws.amount(node, "after"), draws.amount(node, "lasts", 10_000)
-    return Transfer(node.get("to"), outcome, after, lasts)
+    return CallTransfer(node.get("to"), outcome, after, lasts)
 
 
 def _data(node: Node) -> dict[str, Json]:

@@ -7,7 +7,7 @@ from itertools import chain
 
 from prima.errors import Hint, Place, Problem, Span, meant, one_of, suggestion
 from prima.interpreter.elements import Document
-from prima.interpreter.events import STANDARD, Events, beginnings, event_place, near
+from prima.interpreter.events import STANDARD, KnownEvents, beginnings, event_place, near
 from prima.interpreter.surroundings import (
     PLACED,
     Sayings,
@@ -63,7 +63,7 @@ def check_hearing(cast: Cast) -> list[Problem]:
     problems += [*_late(nodes, cast.scenario.until), *_outside(nodes, cast.world)]
     problems += _nobody(nodes)
     problems += world.plan.narrow(room_beside(robot)) if world.plan is not None else ()
-    events = [Events(document) for document in documents]
+    events = [KnownEvents(document) for document in documents]
     corners = [*_corners(nodes, events, cast)]
     problems += [*corners, *_words(nodes, cast)]
     if len(documents) < len(cast.documents):
@@ -74,7 +74,7 @@ def check_hearing(cast: Cast) -> list[Problem]:
     return [*problems, *_unheard(nodes, events), *triggers]
 
 
-def _corners(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[Problem]:
+def _corners(nodes: list[Node], events: list[KnownEvents], cast: Cast) -> Iterator[Problem]:
     """A corner's event that is waited for and that no corner of the world raises: likely a slip."""
     corners = {corner.event for corner in cast.world.corners} - {"corner"}
     pages = [one.page.root for one in cast.documents if not isinstance(one, Document)]
@@ -93,14 +93,14 @@ def _corners(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[Pr
             yield Problem(place, "warning", "unknown-event", message, remedy)
 
 
-def _raised(nodes: list[Node], events: list[Events]) -> set[str]:
+def _raised(nodes: list[Node], events: list[KnownEvents]) -> set[str]:
     """The events of the language, of the scenario, and those that applications raise."""
     known = {*STANDARD, *(node.get("name") for node in nodes if node.tag == "event")}
     return known | {raised.name for one in events for raised in one.raised}
 
 
 def _waiting(
-    nodes: list[Node], events: list[Events], pages: list[Node]
+    nodes: list[Node], events: list[KnownEvents], pages: list[Node]
 ) -> Iterator[tuple[Place, str]]:
     """The events that handlers, triggers and expectations name, each with its place."""
     for handler in chain.from_iterable(one.handlers for one in events):
@@ -178,7 +178,7 @@ def _never_said(
         yield Problem(node.attribute_place(name), "warning", "never-said", message, remedy)
 
 
-def _unheard(nodes: list[Node], events: list[Events]) -> Iterator[Problem]:
+def _unheard(nodes: list[Node], events: list[KnownEvents]) -> Iterator[Problem]:
     """Events of the surroundings that no application and no trigger takes."""
     heard = {name for one in events for name in one.heard}
     heard |= {node.get("on") for node in nodes if node.tag == "when"} - {""}
@@ -191,7 +191,7 @@ def _unheard(nodes: list[Node], events: list[Events]) -> Iterator[Problem]:
             yield Problem(node.attribute_place("name"), "warning", "unheard-event", message, remedy)
 
 
-def _triggers(nodes: list[Node], events: list[Events], cast: Cast) -> Iterator[Problem]:
+def _triggers(nodes: list[Node], events: list[KnownEvents], cast: Cast) -> Iterator[Problem]:
     """Triggers and expectations of an event whose name is most likely a slip."""
     known = _raised(nodes, events) | {f"touch.{sensor}" for sensor in cast.robot.touch}
     known |= {corner.event for corner in cast.world.corners}
@@ -253,7 +253,7 @@ def _nobody(nodes: list[Node]) -> Iterator[Problem]:
         yield Problem(node.place, "warning", "missing-element", message, remedy)
 
 
-def _services(events: list[Events], cast: Cast) -> Iterator[Problem]:
+def _services(events: list[KnownEvents], cast: Cast) -> Iterator[Problem]:
     """Services that are asked and not there, if another was meant, or are another application's."""
     owners: dict[str, set[str]] = {}
     for service in cast.scenario.services:

@@ -33,7 +33,7 @@ AFTERMATH_MS = 1000
 
 
 @dataclass(slots=True)
-class Plan:
+class LocomotionMemory:
     """What a locomotion Command remembers from loop to loop; forgotten when interrupted."""
 
     path: list[Point] | None = None
@@ -77,11 +77,11 @@ class Locomotion:
             return list(left)
         return self.routes.route(self.world, to)
 
-    def note_way(self, to: str, plan: Plan) -> None:
+    def note_way(self, to: str, plan: LocomotionMemory) -> None:
         """Note where a move has stopped, and its way from there."""
         self._stopped[to] = self.world.position, list(plan.path or ())
 
-    def blocked(self, plan: Plan) -> bool:
+    def blocked(self, plan: LocomotionMemory) -> bool:
         """Whether a move has not got on for too long; another try may find another way."""
         position, heading = self.world.position, self.world.heading
         if plan.last is not None:
@@ -115,14 +115,14 @@ class Locomotion:
             speed = 10.0 if left > 0 else -10.0
         self.world.drive = (0.0, speed)
 
-    def _turned(self, plan: Plan) -> float:
+    def _turned(self, plan: LocomotionMemory) -> float:
         """How far the robot has turned since the last time (degrees)."""
         heading = self.world.heading
         before = plan.last[1] if plan.last else heading
         plan.last = (self.world.position, heading)
         return difference(heading, before)
 
-    def turn(self, plan: Plan) -> bool:
+    def turn(self, plan: LocomotionMemory) -> bool:
         """Turn by what is left of an angle."""
         plan.turn_left -= self._turned(plan)
         if abs(plan.turn_left) <= ALIGNED:
@@ -131,7 +131,7 @@ class Locomotion:
         self._rotate(plan.turn_left)
         return False
 
-    def face(self, plan: Plan) -> bool:
+    def face(self, plan: LocomotionMemory) -> bool:
         """Turn to the user, looking for them all round."""
         world = self.world
         plan.scanned += abs(self._turned(plan))
@@ -183,7 +183,7 @@ class Locomotion:
             return toward + (PASSING if aside >= 0 else -PASSING), 0.0
         return toward + (PASSING if aside >= 0 else -PASSING), profile.speed / 2
 
-    def drive_path(self, plan: Plan, command: Command) -> bool:
+    def drive_path(self, plan: LocomotionMemory, command: Command) -> bool:
         """Go through the points of the way, and turn to the heading asked for."""
         world, path = self.world, plan.path
         if path is None:
@@ -204,7 +204,7 @@ class Locomotion:
         plan.goal = True
         return True
 
-    def track(self, plan: Plan, command: Command) -> bool:
+    def track(self, plan: LocomotionMemory, command: Command) -> bool:
         """Stay at a distance (m) from the user."""
         world, keep = self.world, float(command.args["distance"])
         if world.sees_person():
@@ -228,7 +228,7 @@ class Locomotion:
             self._go(world.beside_walls(heading), fastest, left)
         return False
 
-    def search(self, plan: Plan) -> bool:
+    def search(self, plan: LocomotionMemory) -> bool:
         """Turn on while the user is not to be seen."""
         plan.turn_left -= self._turned(plan)
         if abs(plan.turn_left) > ALIGNED and not self.world.find_somebody():
@@ -238,7 +238,9 @@ class Locomotion:
             self.world.drive = (0.0, 0.0)
         return False
 
-    def dance(self, plan: Plan, motion: Motion, now: int, began: int, track: list[Point]) -> bool:
+    def dance(
+        self, plan: LocomotionMemory, motion: Motion, now: int, began: int, track: list[Point]
+    ) -> bool:
         """Go through the steps of an added motion, on top of a move that goes on (X5).
 
         Args:

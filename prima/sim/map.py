@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from prima.devices.reading import RENAME, Reader
 from prima.errors import Problem
 from prima.markup.tree import Node
-from prima.sim.plan import Plan
+from prima.sim.plan import FloorPlan
 from prima.sim.vocabulary import WORLD
 
 Point = tuple[float, float]
@@ -58,7 +58,7 @@ class Map:
     areas: list[Area] = field(default_factory=list)
     warnings: list[Problem] = field(default_factory=list)
     """What is odd in its document, and no error."""
-    plan: Plan | None = None
+    plan: FloorPlan | None = None
     """Its ways and walls with their elements, of a world that has been read."""
 
     def point(self, name: str) -> Point | None:
@@ -142,8 +142,10 @@ def _read_areas(reader: Reader, world: Map, seen: set[str]) -> None:
         world.areas.append(Area(name, title, low, high, offered, node))
 
 
-def _plan(root: Node, world: Map) -> Plan:
+def _plan(root: Node, world: Map) -> FloorPlan:
     """A world's map with its elements."""
     places = {node.get("id"): node for node in root.all("place")}
     ways = [(node.get("from"), node.get("to"), node) for node in root.all("way")]
-    return Plan(world.places, places, ways, list(zip(world.walls, root.all("wall"), strict=True)))
+    return FloorPlan(
+        world.places, places, ways, list(zip(world.walls, root.all("wall"), strict=True))
+    )

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from prima.errors import UsageError, did_you_mean, one_of
 from prima.language.values import DRAWABLE
-from prima.markup.edits import Edit, set_attribute, set_text
+from prima.markup.edits import TextEdit, set_attribute, set_text
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute
 from prima.sim.vocabulary import SCENARIO
@@ -52,7 +52,7 @@ MOST_TOLD = 12
 """Names that a message lists."""
 
 
-class Target(NamedTuple):
+class ScenarioValue(NamedTuple):
     """A value of a scenario: an attribute of an element, or its text."""
 
     path: str
@@ -80,14 +80,14 @@ class Target(NamedTuple):
             self.attribute is None or self.attribute.name not in LIGHT
         )
 
-    def edit(self, value: str) -> Edit:
+    def edit(self, value: str) -> TextEdit:
         """Give it a value; an empty one takes the attribute, or the element of a text, away."""
         if self.attribute is None:
             return set_text(self.node, value)
         return set_attribute(self.node, self.attribute.name, value)
 
 
-def find(root: Node, path: str) -> Target:
+def find(root: Node, path: str) -> ScenarioValue:
     """The value that a path means in a scenario.
 
     Raises:
@@ -109,13 +109,13 @@ class _Search:
     def wrong(self, why: str) -> UsageError:
         return UsageError(f'"{self.path}" is no value of the scenario. {why}'.rstrip())
 
-    def found(self) -> Target:
+    def found(self) -> ScenarioValue:
         node = self.root
         for index, (name, which) in enumerate(self.steps):
             last = which is None and index == len(self.steps) - 1
             attribute = _attribute(node, name) if last else None
             if attribute is not None and not (index == 0 and self.named(name)):
-                return Target(self.path, node, attribute)
+                return ScenarioValue(self.path, node, attribute)
             node = self.below(node, name, which, index == 0)
         return self.own(node)
 
@@ -157,19 +157,19 @@ class _Search:
         hint = did_you_mean(name, names) or f"There are {one_of(sorted(names)[:MOST_TOLD])}."
         return hint if names else f"<{node.tag}> has no attributes."
 
-    def own(self, node: Node) -> Target:
+    def own(self, node: Node) -> ScenarioValue:
         """An element's own value."""
         own = OWN.get(node.tag)
         if node.tag == "when":
             own = "at" if "at" in node.attributes else "after"
         if own == "":
-            return Target(self.path, node, None)
+            return ScenarioValue(self.path, node, None)
         attribute = _attribute(node, own or "")
         if attribute is None:
             names = [one.name for one in SCENARIO.elements[node.key].attributes]
             ways = one_of([f"{self.path}.{name}" for name in names][:MOST_TOLD])
             raise self.wrong(f"<{node.tag}> has no value of its own: write {ways}.")
-        return Target(self.path, node, attribute)
+        return ScenarioValue(self.path, node, attribute)
 
 
 def _attribute(node: Node, name: str) -> Attribute | None:

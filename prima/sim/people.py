@@ -11,15 +11,15 @@ from prima.devices.senses import sensor_value
 from prima.grammar.text import fold
 from prima.interpreter.selection import takes
 from prima.messages import (
+    ApplicationLoaded,
+    ApplicationUnloaded,
     Emergency,
     Heard,
     Inbound,
     Json,
-    Loaded,
     Narrated,
     Occurred,
     Record,
-    Unloaded,
 )
 from prima.sim.happenings import Doing, When
 from prima.sim.robot import Robot
@@ -44,7 +44,7 @@ OVER = ("end", "cancel", "fail")
 
 
 @dataclass(slots=True, order=True)
-class Script:
+class TriggeredScript:
     """What follows a trigger: what is left of it, and when it goes on (ms)."""
 
     time: int
@@ -81,9 +81,9 @@ class People:
         """What is waited for in records of a phase, with its number in the scenario."""
         self._fired: dict[int, int] = {}
         self._seen: dict[int, int] = {}
-        self._scripts: list[Script] = []
+        self._scripts: list[TriggeredScript] = []
         """What is still to be done, as a heap: what comes next is first."""
-        self._playing: list[Script] = []
+        self._playing: list[TriggeredScript] = []
         """What is being done at this instant, and not in the heap meanwhile."""
         self._serial = 0
         self._listens = False
@@ -102,10 +102,10 @@ class People:
 
     def _begin(
         self, doings: list[Doing], time: int, triggered: bool, who: str = "", number: int = 1
-    ) -> Script:
+    ) -> TriggeredScript:
         self._serial += 1
         who = who or self.first
-        script = Script(time, triggered, self._serial, list(doings), who, number)
+        script = TriggeredScript(time, triggered, self._serial, list(doings), who, number)
         heappush(self._scripts, script)
         return script
 
@@ -195,7 +195,7 @@ class People:
             self._follow(who, keep)
         return made
 
-    def _go_on(self, script: Script, now: int) -> list[Inbound]:
+    def _go_on(self, script: TriggeredScript, now: int) -> list[Inbound]:
         made: list[Inbound] = []
         while script.time <= now:
             if script.speaking:
@@ -218,7 +218,7 @@ class People:
         """What somebody does, for the reader."""
         return [Narrated("user", f"{who} {what}" if self._several else what)]
 
-    def _do(self, doing: Doing, script: Script, now: int) -> list[Inbound]:
+    def _do(self, doing: Doing, script: TriggeredScript, now: int) -> list[Inbound]:
         values, who = doing.values, script.who
         match doing.name:
             case "one-of":
@@ -257,7 +257,7 @@ class People:
                 return self._happen(doing, now)
         return []
 
-    def _speak(self, text: str, script: Script, now: int) -> None:
+    def _speak(self, text: str, script: TriggeredScript, now: int) -> None:
         """Begin to say something; what is recorded is over after a silence, or cut off."""
         self.robot.speech_begins(now)
         script.began, script.speaking, script.told = now, text, {}
@@ -278,7 +278,7 @@ class People:
                 script.lasts, script.told = longest, {"toolong": True}
         script.time = now + script.lasts + silence
 
-    def _timeline(self, text: str) -> voice.Timeline:
+    def _timeline(self, text: str) -> voice.SpeechTimeline:
         return voice.timeline(text, voice.language(text), self.robot.profile.voices, ())
 
     def _hang_up(self, now: int) -> Inbound:
@@ -318,12 +318,12 @@ class People:
             case "release":
                 return [Emergency(False, bool(values["resume"]))]
             case "unload":
-                return [Unloaded(values["application"])]
+                return [ApplicationUnloaded(values["application"])]
             case "load":
-                return [Loaded(values["application"])]
+                return [ApplicationLoaded(values["application"])]
         return []
 
-    def _walk(self, doing: Doing, script: Script, now: int) -> list[Inbound]:
+    def _walk(self, doing: Doing, script: TriggeredScript, now: int) -> list[Inbound]:
         values, who, speed = doing.values, script.who, self._speeds[script.who]
         goal = self.world.map.point(values["to"]) if values["to"] else (values["x"], values["y"])
         self._following.pop(who, None)
@@ -350,6 +350,6 @@ class People:
             world.walk(who, goal, self._speeds[who])
 
 
-def _part(said: voice.Timeline, ms: int) -> str:
+def _part(said: voice.SpeechTimeline, ms: int) -> str:
     """What has been said after a time: whole words, unless not even one is over."""
     return said.heard(ms) or said.text[: max(sum(1 for end in said.ends if end <= ms), 1)]

@@ -48,7 +48,7 @@ def apart(one: Segment, two: Segment) -> float:
     return min(*(off_line(end, *two) for end in one), *(off_line(end, *one) for end in two))
 
 
-class Plan:
+class FloorPlan:
     """A map's places (m) by name, with its ways and walls; each with its element."""
 
     def __init__(

@@ -13,8 +13,8 @@ from prima.script.sandbox import START
 from prima.sim.chance import Amount, Draws
 from prima.sim.expectations import Expectation, read_expectations
 from prima.sim.happenings import (
+    CallTransfer,
     Service,
-    Transfer,
     When,
     check_where,
     read_answer,
@@ -74,7 +74,7 @@ class Scenario:
     services: list[Service]
     connection: dict[str, Json]
     """What is known of the user's call, as ``session.connection`` has it."""
-    transfers: list[Transfer]
+    transfers: list[CallTransfer]
     expectations: list[Expectation]
     """What ``prima test`` checks, in document order."""
     draws: Draws

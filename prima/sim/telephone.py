@@ -6,19 +6,19 @@ from collections.abc import Iterable
 from heapq import heappop, heappush
 
 from prima.messages import Inbound, Order, Transferred
-from prima.sim.happenings import AT_ONCE, UNANSWERED, Transfer
+from prima.sim.happenings import AT_ONCE, UNANSWERED, CallTransfer
 
 ANSWERED = "answered"
-NOBODY = Transfer("", "noanswer", AT_ONCE, AT_ONCE)
+NOBODY = CallTransfer("", "noanswer", AT_ONCE, AT_ONCE)
 """How a bridged call goes where the scenario says nothing."""
-GIVEN_AWAY = Transfer("", "unknown", AT_ONCE, AT_ONCE)
+GIVEN_AWAY = CallTransfer("", "unknown", AT_ONCE, AT_ONCE)
 """How other calls go there: somebody answers, and the user is gone."""
 
 
 class Telephone:
     """Puts calls through as the scenario says, and tells what becomes of them."""
 
-    def __init__(self, transfers: Iterable[Transfer] = (), seed: int = 1) -> None:
+    def __init__(self, transfers: Iterable[CallTransfer] = (), seed: int = 1) -> None:
         self._seed = seed
         self._transfers = list(transfers)
         self._made: dict[str, int] = {}
@@ -43,7 +43,7 @@ class Telephone:
             ends = begins + max(call.lasts.ms(self._seed, made), 1)
             self._later(ends, Transferred(order.app, serial, uri, then))
 
-    def _of(self, uri: str) -> Transfer | None:
+    def _of(self, uri: str) -> CallTransfer | None:
         """How the next call to a destination goes: by what says most of it, in order."""
         fitting = [one for one in self._transfers if uri.startswith(one.to)]
         if not fitting:

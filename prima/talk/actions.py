@@ -6,14 +6,14 @@ from dataclasses import dataclass, replace
 
 from prima.errors import DocumentError, Problem, UsageError
 from prima.interpreter.elements import Document
-from prima.interpreter.events import Events
+from prima.interpreter.events import KnownEvents
 from prima.sim.devices import Cast
 from prima.sim.happenings import Doing
 from prima.sim.hearing import check_hearing
 from prima.sim.rehearsal import Rehearsal, check_cast
 from prima.sim.scenario import Scenario, read_scenario
 from prima.talk.scene import Scene, when
-from prima.talk.typed import Line, Names
+from prima.talk.typed import TypedLine, TypedNames
 
 FILE = "typed"
 """The file name under which typed lines are read as a scenario."""
@@ -31,7 +31,7 @@ class Played:
     after: str
 
 
-def doings_of(line: Line, scene: Scene, cast: Cast) -> list[Doing]:
+def doings_of(line: TypedLine, scene: Scene, cast: Cast) -> list[Doing]:
     """The actions of a line, read and checked as a scenario's ``when``.
 
     Raises:
@@ -88,10 +88,10 @@ def _check_loaded(rehearsal: Rehearsal, doing: Doing) -> None:
         raise UsageError(f'"{app.name}" is not loaded. Load it with /load.')
 
 
-def names_of(cast: Cast) -> Names:
+def names_of(cast: Cast) -> TypedNames:
     """The names that typed lines may use."""
-    events = [Events(one) for one in cast.documents if isinstance(one, Document)]
-    return Names(
+    events = [KnownEvents(one) for one in cast.documents if isinstance(one, Document)]
+    return TypedNames(
         sensors=frozenset(cast.robot.touch),
         points=frozenset(cast.world.places) | frozenset(cast.world.things),
         devices=frozenset(cast.robot.devices),

@@ -14,7 +14,7 @@ from prima.loading.writing import write_whole
 from prima.scheduler.behavior import LINKED, RUNNING, WAITING, Behavior, Stream
 from prima.talk.game import Game
 from prima.talk.scene import MARK, seconds
-from prima.talk.typed import Line, help_text, read_line
+from prima.talk.typed import TypedLine, help_text, read_line
 from prima.transcript.row import Row, describe
 from prima.transcript.run import run_of
 from prima.transcript.why import explained
@@ -156,7 +156,7 @@ class Conversation:
         self.wrong += 1
         self.screen.tell(message)
 
-    def _do(self, line: Line) -> None:
+    def _do(self, line: TypedLine) -> None:
         self.game.do(line, think=not self.real)
         self._told = ""
         if self.real:

@@ -17,7 +17,7 @@ from prima.sim.rehearsal import Rehearsal
 from prima.sim.services import Web
 from prima.talk.actions import Played, check_there, doings_of, names_of, scenario_of
 from prima.talk.scene import Scene, comment, seconds, when
-from prima.talk.typed import Line
+from prima.talk.typed import TypedLine
 from prima.transcript.lines import finished
 from prima.transcript.row import Row
 from prima.transcript.rows import GrowingTable
@@ -39,7 +39,7 @@ Sink = Callable[[list[Record]], object]
 
 
 @dataclass(frozen=True, slots=True)
-class Point:
+class ReturnPoint:
     """A state to go back to: a time (ms), and the number of lines by then."""
 
     clock: int
@@ -87,7 +87,7 @@ class Game:
         self._web = web
         self._sink = sink
         self.lines: list[Played] = []
-        self.points: list[Point] = []
+        self.points: list[ReturnPoint] = []
         self._begin()
 
     def _begin(self) -> None:
@@ -233,7 +233,7 @@ class Game:
 
     # Doing ----------------------------------------------------------------------------
 
-    def do(self, line: Line, think: bool = False) -> int:
+    def do(self, line: TypedLine, think: bool = False) -> int:
         """Let the user act now; return when they begin (ms).
 
         Args:
@@ -288,7 +288,7 @@ class Game:
 
     def keep(self) -> None:
         """Save this state, to go back to it."""
-        self.points.append(Point(self.clock, len(self.lines), self.passing))
+        self.points.append(ReturnPoint(self.clock, len(self.lines), self.passing))
         del self.points[:-MOST_LINES]
 
     def undo(self) -> None:

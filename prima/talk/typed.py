@@ -16,7 +16,7 @@ PIECE = re.compile(r"(?:^|\s+)(?=/[^\W\d])")
 
 
 @dataclass(frozen=True, slots=True)
-class Names:
+class TypedNames:
     """Names that commands may use in the current run."""
 
     sensors: frozenset[str] = frozenset()
@@ -28,7 +28,7 @@ class Names:
 
 
 @dataclass(frozen=True, slots=True)
-class Command:
+class TypedCommand:
     """A command: its usage, help and element."""
 
     name: str
@@ -36,12 +36,12 @@ class Command:
     help: str
     element: Callable[[str], str] | None = None
     """Makes the element of a ``when`` from the arguments; None for controls."""
-    names: Callable[[Names], Iterable[str]] = lambda names: ()
+    names: Callable[[TypedNames], Iterable[str]] = lambda names: ()
     """Possible arguments."""
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class TypedLine:
     """A line: actions as XML, and the time (ms) to wait after them, if given.
 
     ``control`` is the command of a line without actions, ``rest`` its arguments.
@@ -157,50 +157,50 @@ def _read(kind: str, text: str) -> int:
 COMMANDS = {
     one.name: one
     for one in (
-        Command("say", "/say TEXT", "says something, as does a line without a command",
+        TypedCommand("say", "/say TEXT", "says something, as does a line without a command",
             _text("say")),
-        Command("touch", "/touch SENSOR", "touches the robot", _word("touch", "sensor"),
+        TypedCommand("touch", "/touch SENSOR", "touches the robot", _word("touch", "sensor"),
             lambda names: names.sensors),
-        Command("walk", "/walk PLACE, /walk X Y", "walks to a place or thing, or to a point in metres",
+        TypedCommand("walk", "/walk PLACE, /walk X Y", "walks to a place or thing, or to a point in metres",
             _walk, lambda names: names.points),
-        Command("look", "/look at PLACE, /look at robot", "looks at something", _look,
+        TypedCommand("look", "/look at PLACE, /look at robot", "looks at something", _look,
             lambda names: [f"at {one}" for one in (*names.points, "robot")]),
-        Command("follow", "/follow, /follow METRES", "follows the robot", _follow),
-        Command("stay", "/stay", "stays where they are", _plain("stay")),
-        Command("leave", "/leave", "goes away, out of sight", _plain("leave")),
-        Command("hang-up", "/hang-up", "hangs up", _plain("hang-up")),
-        Command("message", "/message from NAME: TEXT", "a message arrives", _message),
-        Command("event", "/event NAME KEY=VALUE ...", "an event of the surroundings", _event,
+        TypedCommand("follow", "/follow, /follow METRES", "follows the robot", _follow),
+        TypedCommand("stay", "/stay", "stays where they are", _plain("stay")),
+        TypedCommand("leave", "/leave", "goes away, out of sight", _plain("leave")),
+        TypedCommand("hang-up", "/hang-up", "hangs up", _plain("hang-up")),
+        TypedCommand("message", "/message from NAME: TEXT", "a message arrives", _message),
+        TypedCommand("event", "/event NAME KEY=VALUE ...", "an event of the surroundings", _event,
             lambda names: names.events),
-        Command("sensor", "/sensor NAME=VALUE", "a sensor's value changes", _sensor),
-        Command("fail", "/fail DEVICE, /fail DEVICE hangs", "a device fails, or hangs", _fail,
+        TypedCommand("sensor", "/sensor NAME=VALUE", "a sensor's value changes", _sensor),
+        TypedCommand("fail", "/fail DEVICE, /fail DEVICE hangs", "a device fails, or hangs", _fail,
             lambda names: names.devices),
-        Command("repair", "/repair DEVICE", "the device works again", _word("repair", "device"),
+        TypedCommand("repair", "/repair DEVICE", "the device works again", _word("repair", "device"),
             lambda names: names.devices),
-        Command("emergency", "/emergency", "the emergency stop is pressed", _plain("emergency")),
-        Command("release", "/release, /release false",
+        TypedCommand("emergency", "/emergency", "the emergency stop is pressed", _plain("emergency")),
+        TypedCommand("release", "/release, /release false",
             "it is released; with false, stopped behaviors are given up", _release),
-        Command("unload", "/unload APPLICATION", "an application is removed",
+        TypedCommand("unload", "/unload APPLICATION", "an application is removed",
             _word("unload", "application"), lambda names: names.applications),
-        Command("load", "/load APPLICATION", "an application that has ended starts again",
+        TypedCommand("load", "/load APPLICATION", "an application that has ended starts again",
             _word("load", "application"), lambda names: names.applications),
-        Command("note", "/note TEXT", "a remark for the reader", _text("note")),
-        Command("wait", "/wait TIME", "time passes, as in /wait 3s"),
-        Command("go", "/go", "time passes until the run needs you, as after an empty line"),
-        Command("step", "/step", "time passes until the next row"),
-        Command("back", "/back TIME", "goes back to a time, as in /back 5s"),
-        Command("undo", "/undo", "undoes the last line"),
-        Command("why", "/why, /why ROW", "explains the last row, or another"),
-        Command("who", "/who", "shows what runs, what waits and what is asked"),
-        Command("save", "/save FILE", "writes the session as a scenario"),
-        Command("help", "/help, /help COMMAND", "shows this help"),
-        Command("quit", "/quit", "ends the session"),
+        TypedCommand("note", "/note TEXT", "a remark for the reader", _text("note")),
+        TypedCommand("wait", "/wait TIME", "time passes, as in /wait 3s"),
+        TypedCommand("go", "/go", "time passes until the run needs you, as after an empty line"),
+        TypedCommand("step", "/step", "time passes until the next row"),
+        TypedCommand("back", "/back TIME", "goes back to a time, as in /back 5s"),
+        TypedCommand("undo", "/undo", "undoes the last line"),
+        TypedCommand("why", "/why, /why ROW", "explains the last row, or another"),
+        TypedCommand("who", "/who", "shows what runs, what waits and what is asked"),
+        TypedCommand("save", "/save FILE", "writes the session as a scenario"),
+        TypedCommand("help", "/help, /help COMMAND", "shows this help"),
+        TypedCommand("quit", "/quit", "ends the session"),
     )
 }  # fmt: skip
 """All commands, in the order of the help."""
 
 
-def read_line(text: str) -> Line:
+def read_line(text: str) -> TypedLine:
     """Read a line.
 
     Raises:
@@ -210,7 +210,7 @@ def read_line(text: str) -> Line:
     words = text.split(maxsplit=1)
     name = _name(words[0])[0] if words else "wait"
     if COMMANDS[name].element is None and name != "wait":
-        return Line(control=name, rest="".join(words[1:]).strip())
+        return TypedLine(control=name, rest="".join(words[1:]).strip())
     pieces = [" ".join(piece.split()) for piece in PIECE.split(text)]
     made: list[str] = []
     linger = 0
@@ -223,8 +223,8 @@ def read_line(text: str) -> Line:
         linger = 0
         made.append(_element(name, rest))
     if made:
-        return Line("".join(made), linger)
-    return Line(linger=linger, control="wait" if linger else "go")
+        return TypedLine("".join(made), linger)
+    return TypedLine(linger=linger, control="wait" if linger else "go")
 
 
 def _wait(rest: str) -> int:
@@ -260,7 +260,7 @@ def _name(piece: str) -> tuple[str, str]:
     return word, rest.strip()
 
 
-def complete(text: str, names: Names, options: Iterable[str]) -> list[str]:
+def complete(text: str, names: TypedNames, options: Iterable[str]) -> list[str]:
     """Completions of a line: commands, their arguments, answers to a question."""
     start = max(match.end() for match in re.finditer(r"(?:^|\s+(?=/))", text))
     before, piece = text[:start], text[start:]

@@ -13,7 +13,7 @@ from prima.testing.excerpts import around
 from prima.testing.facts import Fact, RunFacts, Window
 from prima.testing.matching import fits, most_alike, text_of, triggers, values
 from prima.testing.sentences import event_of, expected, seconds, subject, times
-from prima.testing.tracing import Change
+from prima.testing.tracing import StateChange
 
 MOST_TOLD = 5
 """Times that a message lists."""
@@ -30,10 +30,10 @@ class Failure:
 
 def check(scenario: Scenario, run: RunFacts) -> list[Failure]:
     """The failures of a scenario's expectations, in document order."""
-    return Checker(scenario, run).failures
+    return ExpectationChecker(scenario, run).failures
 
 
-class Checker:
+class ExpectationChecker:
     """Checks the expectations of one scenario."""
 
     def __init__(self, scenario: Scenario, run: RunFacts) -> None:
@@ -226,7 +226,7 @@ class Checker:
         return found, f'It never does. Nearest: {who} {name} "{text}" {self._at([found])}.'
 
 
-def _spans(changes: list[Change]) -> Iterable[tuple[Change, int | None]]:
+def _spans(changes: list[StateChange]) -> Iterable[tuple[StateChange, int | None]]:
     """Each state with the time when it was left; None if it never was."""
     for index, change in enumerate(changes):
         later = changes[index + 1].time if index + 1 < len(changes) else None

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from prima.markup.tree import Node
-from prima.testing.tracing import Mark, Marks
+from prima.testing.tracing import Mark, ReachedElements
 
 FORMS = frozenset({"form", "menu"})
 ITEMS = frozenset({"block", "field", "initial", "object", "record", "subdialog", "transfer", "iu"})
@@ -25,7 +25,7 @@ WIDEST = 60
 
 
 @dataclass(frozen=True, slots=True)
-class Point:
+class CoveragePoint:
     """Something that a run can reach: its line, kind, description, and the point around it."""
 
     line: int
@@ -41,7 +41,7 @@ class Point:
 class DocumentCoverage:
     """A document's points, and the numbers of those that were reached."""
 
-    points: list[Point]
+    points: list[CoveragePoint]
     reached: set[int] = field(default_factory=set)
 
     @property
@@ -50,11 +50,11 @@ class DocumentCoverage:
         return 100 * len(self.reached) / len(self.points) if self.points else 100.0
 
     @property
-    def missing(self) -> list[Point]:
+    def missing(self) -> list[CoveragePoint]:
         """The points that were not reached."""
         return [one for number, one in enumerate(self.points) if number not in self.reached]
 
-    def outermost(self) -> list[Point]:
+    def outermost(self) -> list[CoveragePoint]:
         """The points that were not reached, without those inside them."""
         return [one for one in self.missing if one.inside is None or one.inside in self.reached]
 
@@ -63,11 +63,11 @@ Coverage = dict[str, DocumentCoverage]
 """By the paths of the documents."""
 
 
-def covered(marks: Marks) -> Coverage:
+def covered(marks: ReachedElements) -> Coverage:
     """The coverage of one run."""
     found: Coverage = {}
     for file, root in marks.roots.items():
-        held: list[tuple[Point, bool]] = list(_points(root, marks.marks[file]))
+        held: list[tuple[CoveragePoint, bool]] = list(_points(root, marks.marks[file]))
         name = os.path.normpath(file)
         reached = {number for number, (_, is_reached) in enumerate(held) if is_reached}
         found[name] = DocumentCoverage([point for point, _ in held], reached)
@@ -92,7 +92,7 @@ def total(coverage: Coverage) -> float:
 # Points ----------------------------------------------------------------------------
 
 
-def _points(root: Node, marks: set[Mark]) -> Iterator[tuple[Point, bool]]:
+def _points(root: Node, marks: set[Mark]) -> Iterator[tuple[CoveragePoint, bool]]:
     """All points of a document in order, and whether each was reached."""
     count = 0
     stack: list[tuple[Node, str, int | None]] = [(root, "", None)]
@@ -100,7 +100,7 @@ def _points(root: Node, marks: set[Mark]) -> Iterator[tuple[Point, bool]]:
         node, parent, inside = stack.pop()
         for kind, what, line, reached in _of(node, parent, marks):
             last = max(one.place.line for one in node.walk()) if kind == "in" else line
-            yield Point(line, kind, what, inside, last), reached
+            yield CoveragePoint(line, kind, what, inside, last), reached
             inside = count if kind == "in" else inside
             count += 1
         stack += [(child, node.tag, inside) for child in reversed(node.nodes)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from prima.testing.tracing import States
+from prima.testing.tracing import StateHistory
 from prima.transcript.record import Entry
 from prima.transcript.row import Row
 from prima.transcript.run import Run
@@ -58,14 +58,14 @@ class RunFacts:
 
     facts: list[Fact]
     rows: list[Row]
-    states: States
+    states: StateHistory
     end: int
     """When it ended (ms)."""
     ended: dict[str, str] = field(default_factory=dict)
     """Why applications ended."""
 
 
-def make_run(run: Run, rows: list[Row], states: States) -> RunFacts:
+def make_run(run: Run, rows: list[Row], states: StateHistory) -> RunFacts:
     """Collect the facts of a run."""
     ended = {one.app: one.outcome for one in run.of("unload") if one.actor == "mediator"}
     return RunFacts(list(_facts(run)), rows, states, round(run.end * 1000), ended)

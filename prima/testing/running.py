@@ -26,7 +26,7 @@ Status = Literal["passed", "failed", "error", "invalid"]
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class TestOptions:
     """How to test scenarios: the policy (None for their own), and how to compare tables."""
 
     policy: str | None = None
@@ -65,7 +65,7 @@ class Result:
         return bool(self.expectations) or self.golden in ("same", "differs")
 
 
-def run_one(path: str, choice: Choice) -> Result:
+def run_one(path: str, choice: TestOptions) -> Result:
     """Test one scenario.
 
     Raises:
@@ -91,7 +91,7 @@ def run_one(path: str, choice: Choice) -> Result:
     return made
 
 
-def _rehearse(loaded: Loaded, choice: Choice, made: Result) -> None:
+def _rehearse(loaded: Loaded, choice: TestOptions, made: Result) -> None:
     scenario = loaded.cast.scenario
     made.name, made.expectations = scenario.id, len(scenario.expectations)
     transcript = api.rehearse(loaded, choice.policy, visits=True)
@@ -149,7 +149,7 @@ def _unexpected(failures: Iterable[str], loaded: Loaded) -> list[Failure]:
     return unexpected
 
 
-def run_all(paths: list[str], choice: Choice, jobs: int = 1) -> Iterator[Result]:
+def run_all(paths: list[str], choice: TestOptions, jobs: int = 1) -> Iterator[Result]:
     """Test scenarios; the results come in order.
 
     Args:
@@ -173,7 +173,7 @@ def run_all(paths: list[str], choice: Choice, jobs: int = 1) -> Iterator[Result]
             yield found
 
 
-def _run_or_error(choice: Choice, path: str) -> Result | UsageError | RunError:
+def _run_or_error(choice: TestOptions, path: str) -> Result | UsageError | RunError:
     """As :func:`run_one`; an error is returned, so that it can leave the process."""
     try:
         return run_one(path, choice)

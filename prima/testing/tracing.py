@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from prima.interpreter.bounds import Visit
+    from prima.interpreter.bounds import ElementVisit
     from prima.markup.tree import Node
 
 Mark = tuple[int, str]
@@ -16,7 +16,7 @@ Mark = tuple[int, str]
 
 
 @dataclass(slots=True)
-class Change:
+class StateChange:
     """An application enters a state at a time (ms); an empty name means none."""
 
     time: int
@@ -26,21 +26,21 @@ class Change:
 
 
 @dataclass(slots=True)
-class States:
+class StateHistory:
     """The states of each application over time."""
 
-    changes: dict[str, list[Change]] = field(default_factory=dict)
+    changes: dict[str, list[StateChange]] = field(default_factory=dict)
 
     def note(self, app: str, time: int, state: str, passing: bool = False) -> None:
         """Record that an application enters a state."""
         held = self.changes.setdefault(app, [])
         if held and held[-1].passing and held[-1].time == time:
             held.pop()
-        held.append(Change(time, state, passing))
+        held.append(StateChange(time, state, passing))
 
 
 @dataclass(slots=True)
-class Marks:
+class ReachedElements:
     """Elements reached, by the path of the document."""
 
     roots: dict[str, Node] = field(default_factory=dict)
@@ -48,18 +48,18 @@ class Marks:
     marks: dict[str, set[Mark]] = field(default_factory=dict)
 
 
-def states_of(visits: Iterable[Visit]) -> States:
+def states_of(visits: Iterable[ElementVisit]) -> StateHistory:
     """The states that applications were in, in the order of a run."""
-    states = States()
+    states = StateHistory()
     for visit in visits:
         if visit.what in ("enter", "leave"):
             states.note(visit.app, visit.time, visit.name, passing=visit.what == "leave")
     return states
 
 
-def marks_of(visits: Iterable[Visit]) -> Marks:
+def marks_of(visits: Iterable[ElementVisit]) -> ReachedElements:
     """The elements reached in documents that are files, not in services' answers."""
-    marks = Marks()
+    marks = ReachedElements()
     paths: dict[int, str] = {}
     """The paths of documents, by the identity of their sources."""
     for visit in visits:
@@ -76,6 +76,6 @@ def marks_of(visits: Iterable[Visit]) -> Marks:
     return marks
 
 
-def _is_file(visit: Visit) -> bool:
+def _is_file(visit: ElementVisit) -> bool:
     assert visit.node is not None
     return "://" not in visit.node.source.file and Path(visit.name).is_file()

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 
 @dataclass(slots=True)
-class Delay:
+class ReactionDelay:
     """An event, and the time (s) until an application's first Command because of it."""
 
     event: str
@@ -51,5 +51,5 @@ class Criteria:
     """Reactions in which the robot said something or turned to the user."""
     response_mean: float = 0.0
     response_max: float = 0.0
-    delays: list[Delay] = field(default_factory=list)
+    delays: list[ReactionDelay] = field(default_factory=list)
     """The delay of each application's reaction to each event."""

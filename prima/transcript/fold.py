@@ -10,18 +10,18 @@ from prima.transcript.observer import Observer
 from prima.transcript.record import Entry
 from prima.transcript.spans import (
     OPEN,
-    Behavior,
-    Floor,
+    BehaviorSpan,
+    DeviceUse,
+    FloorSpan,
     Hold,
     Life,
-    Piece,
     Reaction,
     Run,
     Saying,
     Spell,
-    State,
-    Stream,
-    Use,
+    StreamPiece,
+    StreamSpan,
+    StreamState,
     base,
 )  # fmt: skip
 
@@ -37,14 +37,14 @@ class Fold:
     def __init__(self) -> None:
         self.now = 0.0
         self.entries: list[Entry] = []
-        self.behaviors: dict[str, Behavior] = {}
+        self.behaviors: dict[str, BehaviorSpan] = {}
         self.spells: list[Spell] = []
-        self.uses: list[Use] = []
+        self.uses: list[DeviceUse] = []
         self.sayings: list[Saying] = []
-        self.streams: dict[str, Stream] = {}
+        self.streams: dict[str, StreamSpan] = {}
         self.lives: list[Life] = []
-        self.states: list[State] = []
-        self.floors: list[Floor] = []
+        self.states: list[StreamState] = []
+        self.floors: list[FloorSpan] = []
         self.holds: list[Hold] = []
         self.reactions: list[Reaction] = []
         self.events: dict[int, Entry] = {}
@@ -54,10 +54,10 @@ class Fold:
         self._came: dict[int, float] = {}
         """The times of events."""
         self._answered: set[tuple[str, int]] = set()
-        self._of: dict[str, Stream] = {}
+        self._of: dict[str, StreamSpan] = {}
         """The streams of behaviors."""
         self._alive: dict[str, Life] = {}
-        self._state: dict[str, State] = {}
+        self._state: dict[str, StreamState] = {}
         self._held: dict[str, Hold] = {}
         self._do: dict[str, Callable[[Entry, str], None]] = {
             "request": self._request,
@@ -127,10 +127,10 @@ class Fold:
     # Behaviors ------------------------------------------------------------------------------
 
     def _request(self, entry: Entry, name: str) -> None:
-        known = self.behaviors.setdefault(name, Behavior(name, entry, True))
+        known = self.behaviors.setdefault(name, BehaviorSpan(name, entry, True))
         known.asked, known.requested, known.state = entry, True, "waiting"
         if entry.tree not in self.streams:
-            self.streams[entry.tree] = Stream(entry.tree, entry, entry.app, self.now)
+            self.streams[entry.tree] = StreamSpan(entry.tree, entry, entry.app, self.now)
         self._of[name] = self.streams[entry.tree]
         if entry.tree not in self._alive:
             life = self._alive[entry.tree] = Life(self.now, tree=entry.tree, app=entry.app)
@@ -141,24 +141,24 @@ class Fold:
         if entry.unit:
             self._tell(name, entry)
         self._let_go(name)
-        behavior = self.behaviors.setdefault(name, Behavior(name, entry, False))
+        behavior = self.behaviors.setdefault(name, BehaviorSpan(name, entry, False))
         behavior.state = "running"
         if behavior.began is None:
             behavior.began = entry.time
         spell = self._spell(behavior, entry)
         if not spell.unit:
             for device in entry.devices:
-                spell.uses.setdefault(device, Use(self.now, device=device, spell=spell))
+                spell.uses.setdefault(device, DeviceUse(self.now, device=device, spell=spell))
         if spell.start.text and (entry.resumed or entry.behavior.partition(".")[2] in ("", "1")):
             spell.saying = Saying(self.now, spell=spell)
         if entry.tree and entry.tree not in self._state:
             self._change(
-                entry.tree, State(self.now, tree=entry.tree, app=entry.app, state="active")
+                entry.tree, StreamState(self.now, tree=entry.tree, app=entry.app, state="active")
             )
         if name in self._of:
             self._begin(self._of[name], name)
 
-    def _spell(self, behavior: Behavior, entry: Entry) -> Spell:
+    def _spell(self, behavior: BehaviorSpan, entry: Entry) -> Spell:
         """The spell that a start continues, or a new one."""
         spell = behavior.spell
         if spell is not None and spell.paused and spell.end == self.now and not entry.resumed:
@@ -209,7 +209,7 @@ class Fold:
         if behavior is not None and behavior.spell and entry.device in behavior.spell.uses:
             self._release(behavior.spell.uses.pop(entry.device), self.now, "lost", entry.by)
 
-    def _close(self, behavior: Behavior, outcome: str, by: str, open_: bool = False) -> None:
+    def _close(self, behavior: BehaviorSpan, outcome: str, by: str, open_: bool = False) -> None:
         """End a spell; one that waits for its next loop ended with its last."""
         spell, behavior.spell = behavior.spell, None
         if spell is None:
@@ -222,7 +222,7 @@ class Fold:
         spell.outcome, spell.by = outcome, by
         spell.close(end, OPEN if open_ else len(self.entries))
 
-    def _release(self, use: Use, end: float, outcome: str, by: str) -> None:
+    def _release(self, use: DeviceUse, end: float, outcome: str, by: str) -> None:
         use.outcome, use.by = outcome, by
         use.close(end, len(self.entries))
         self.uses.append(use)
@@ -253,7 +253,7 @@ class Fold:
     def _floor(self, entry: Entry, _: str) -> None:
         if self.floors:
             self.floors[-1].close(self.now, len(self.entries))
-        self.floors.append(Floor(self.now, stack=entry.floor, rule=entry.rule))
+        self.floors.append(FloorSpan(self.now, stack=entry.floor, rule=entry.rule))
 
     def _event(self, entry: Entry, _: str) -> None:
         if entry.serial is not None:
@@ -270,7 +270,7 @@ class Fold:
 
     # Streams --------------------------------------------------------------------------------
 
-    def _change(self, tree: str, new: State | None) -> None:
+    def _change(self, tree: str, new: StreamState | None) -> None:
         """End a stream's state, and begin another."""
         if old := self._state.pop(tree, None):
             old.close(self.now, len(self.entries))
@@ -280,13 +280,13 @@ class Fold:
 
     def _suspend(self, entry: Entry, _: str) -> None:
         tree, by, rule = entry.tree, entry.by, entry.rule
-        new = State(self.now, tree=tree, app=entry.app, state="suspended", rule=rule, by=by)
+        new = StreamState(self.now, tree=tree, app=entry.app, state="suspended", rule=rule, by=by)
         self._change(tree, new)
         if tree in self.streams:
-            self.streams[tree].away = Piece(self.now, self.now, "away", by, rule)
+            self.streams[tree].away = StreamPiece(self.now, self.now, "away", by, rule)
 
     def _resume(self, entry: Entry, _: str) -> None:
-        new = State(self.now, tree=entry.tree, app=entry.app, state="active", rule=entry.rule)
+        new = StreamState(self.now, tree=entry.tree, app=entry.app, state="active", rule=entry.rule)
         self._change(entry.tree, new)
         if entry.tree in self.streams:
             self._return(self.streams[entry.tree])
@@ -304,27 +304,27 @@ class Fold:
         if life is not None and (not life.windows or life.windows[-1] != self.now):
             life.windows.append(self.now)
 
-    def _begin(self, stream: Stream, name: str) -> None:
+    def _begin(self, stream: StreamSpan, name: str) -> None:
         """Record that an AB of a stream runs."""
         if not stream.running:
             stream.since = self.now
         stream.running.add(name)
         stream.ended = False
 
-    def _stop(self, stream: Stream, name: str) -> None:
+    def _stop(self, stream: StreamSpan, name: str) -> None:
         if name in stream.running:
             stream.running.remove(name)
             if not stream.running:
-                stream.put(Piece(stream.since, self.now, "runs"))
+                stream.put(StreamPiece(stream.since, self.now, "runs"))
                 stream.paused = self.now
 
-    def _return(self, stream: Stream) -> None:
+    def _return(self, stream: StreamSpan) -> None:
         if stream.away is not None:
             stream.away.end = self.now
             stream.put(stream.away)
             stream.away = None
 
-    def _break(self, stream: Stream) -> None:
+    def _break(self, stream: StreamSpan) -> None:
         """Record that another application broke the stream before it goes on."""
         paused = self.now if stream.paused is None else stream.paused
         begin = min(paused, self._observer.broken_since)
@@ -334,12 +334,12 @@ class Fold:
             if other.app != stream.app
             and any(piece.begin >= begin for piece in other.pieces if piece.kind == "runs")
         ]
-        stream.put(Piece(begin, self.now, "broken", ", ".join(came[:3])))
+        stream.put(StreamPiece(begin, self.now, "broken", ", ".join(came[:3])))
 
-    def _finish(self, stream: Stream) -> None:
+    def _finish(self, stream: StreamSpan) -> None:
         """End a stream with the transcript."""
         if stream.running:
-            stream.put(Piece(stream.since, self.now, "runs"))
+            stream.put(StreamPiece(stream.since, self.now, "runs"))
         self._return(stream)
         if stream.end < 0 or not stream.ended:
             stream.end = self.now

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from prima.messages import Record
-from prima.transcript.criteria import Criteria, Delay
+from prima.transcript.criteria import Criteria, ReactionDelay
 from prima.transcript.perceived import AwaitedAnswer, AwaitingEvent, PerceivedStream
 from prima.transcript.record import Entry
 
@@ -206,7 +206,7 @@ class Observer:
             found.reaction_max = max(found.reaction_max, seconds)
             found.late_reactions += seconds > LATE_REACTION
             self._delayed += int(seconds * PARTS)
-            delay = Delay(event.name, serial, app, seconds)
+            delay = ReactionDelay(event.name, serial, app, seconds)
             tree.owed = [*tree.owed[-MOST_STREAMS:], (event.time, delay)]
             if self._keeps_delays:
                 found.delays.append(delay)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from prima.transcript.criteria import Delay
+from prima.transcript.criteria import ReactionDelay
 from prima.transcript.record import Entry
 
 
@@ -31,7 +31,7 @@ class PerceivedStream:
     """Whether another application has spoken, by no reaction, since it last did."""
     since: float = 0.0
     """When another application came in or spoke into it."""
-    owed: list[tuple[float, Delay]] = field(default_factory=list)
+    owed: list[tuple[float, ReactionDelay]] = field(default_factory=list)
     """Events that it reacts to and has not responded to, with their times."""
     begun: bool = False
     engaged: bool = False

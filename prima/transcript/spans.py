@@ -18,7 +18,7 @@ def base(name: str) -> str:
 
 
 @dataclass(slots=True)
-class Span:
+class TimeSpan:
     """Something with a duration; an open one ends with the transcript."""
 
     begin: float
@@ -37,7 +37,7 @@ class Span:
 
 
 @dataclass(slots=True)
-class Behavior:
+class BehaviorSpan:
     """An Atomic Behavior: its request and state."""
 
     name: str
@@ -55,10 +55,10 @@ class Behavior:
 
 
 @dataclass(slots=True, kw_only=True)
-class Spell(Span):
+class Spell(TimeSpan):
     """An AB from a start to an end; loops without a gap between them are one spell."""
 
-    behavior: Behavior
+    behavior: BehaviorSpan
     start: Entry
     """The record of its first start."""
     cuts: list[float] = field(default_factory=list)
@@ -69,7 +69,7 @@ class Spell(Span):
     """The spells in a unit."""
     paused: bool = False
     """Whether its last loop has ended, and the next has not begun."""
-    uses: dict[str, Use] = field(default_factory=dict)
+    uses: dict[str, DeviceUse] = field(default_factory=dict)
     saying: Saying | None = None
 
     @property
@@ -79,7 +79,7 @@ class Spell(Span):
 
 
 @dataclass(slots=True, kw_only=True)
-class Use(Span):
+class DeviceUse(TimeSpan):
     """A device that a spell has."""
 
     device: str
@@ -89,7 +89,7 @@ class Use(Span):
 
 
 @dataclass(slots=True, kw_only=True)
-class Saying(Span):
+class Saying(TimeSpan):
     """What a spell says, until it listens or is over; ``heard`` if it was broken off."""
 
     spell: Spell
@@ -98,7 +98,7 @@ class Saying(Span):
 
 
 @dataclass(slots=True, kw_only=True)
-class Hold(Span):
+class Hold(TimeSpan):
     """A waiting AB is held back by a rule."""
 
     name: str
@@ -108,7 +108,7 @@ class Hold(Span):
 
 
 @dataclass(slots=True, kw_only=True)
-class Floor(Span):
+class FloorSpan(TimeSpan):
     """The stack of streams on the floor, the holder last; empty where nobody has it."""
 
     stack: list[str]
@@ -116,7 +116,7 @@ class Floor(Span):
 
 
 @dataclass(slots=True, kw_only=True)
-class State(Span):
+class StreamState(TimeSpan):
     """A stream is ``active`` or ``suspended``."""
 
     tree: str
@@ -127,7 +127,7 @@ class State(Span):
 
 
 @dataclass(slots=True, kw_only=True)
-class Life(Span):
+class Life(TimeSpan):
     """A stream from its first request to its end."""
 
     tree: str
@@ -137,7 +137,7 @@ class Life(Span):
 
 
 @dataclass(slots=True)
-class Piece:
+class StreamPiece:
     """Something of a stream: it ``runs``, is ``away`` (suspended, then resumed) or ``broken``.
 
     It is broken where another application has come in by no reaction; ``by`` says for whom.
@@ -151,7 +151,7 @@ class Piece:
 
 
 @dataclass(slots=True)
-class Stream:
+class StreamSpan:
     """A Communication Stream with its pieces."""
 
     name: str
@@ -161,17 +161,17 @@ class Stream:
     begin: float
     end: float = -1.0
     ended: bool = False
-    pieces: list[Piece] = field(default_factory=list)
+    pieces: list[StreamPiece] = field(default_factory=list)
     running: set[str] = field(default_factory=set)
     since: float = 0.0
     """When the first of what runs began."""
     paused: float | None = None
     """When the last of what ran ended."""
 
-    away: Piece | None = None
+    away: StreamPiece | None = None
     """Since when it is suspended, if it is."""
 
-    def put(self, piece: Piece) -> None:
+    def put(self, piece: StreamPiece) -> None:
         """Add a piece; what runs on without a gap is one."""
         last = self.pieces[-1] if self.pieces else None
         if last and piece.kind == last.kind == "runs" and last.end == piece.begin:
@@ -198,14 +198,14 @@ class Run:
     end: float
     apps: list[str]
     """The applications as they were loaded."""
-    behaviors: dict[str, Behavior]
+    behaviors: dict[str, BehaviorSpan]
     spells: list[Spell]
-    uses: list[Use]
+    uses: list[DeviceUse]
     sayings: list[Saying]
-    streams: dict[str, Stream]
+    streams: dict[str, StreamSpan]
     lives: list[Life]
-    states: list[State]
-    floors: list[Floor]
+    states: list[StreamState]
+    floors: list[FloorSpan]
     holds: list[Hold]
     reactions: list[Reaction]
     events: dict[int, Entry]

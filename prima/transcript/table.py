@@ -41,7 +41,7 @@ def _pad(text: str, columns: int) -> str:
     return text + " " * max(columns - width(text), 0)
 
 
-class Layout(NamedTuple):
+class ColumnWidths(NamedTuple):
     """The widths of the table's columns."""
 
     apps: int
@@ -56,13 +56,13 @@ class Layout(NamedTuple):
         return 4 + 2 + self.numbers + 1 + self.times + 2 + 3 + 2 + self.apps + 2
 
 
-def layout(apps: Iterable[str], columns: int = COLUMNS, why: bool = False) -> Layout:
+def layout(apps: Iterable[str], columns: int = COLUMNS, why: bool = False) -> ColumnWidths:
     """A layout for applications' names, at most this wide.
 
     Names of applications are not broken. If they leave too little room for the behaviour,
     the table is wider.
     """
-    made = Layout(max([3, *map(width, apps)]), 0, why=why)
+    made = ColumnWidths(max([3, *map(width, apps)]), 0, why=why)
     return made._replace(behavior=max(columns - made.left - (14 if why else 7), NARROWEST))
 
 
@@ -78,7 +78,7 @@ def format_rows(rows: list[Row], why: bool = False, columns: int = COLUMNS) -> s
     return "\n".join(lines) + "\n"
 
 
-def shape_of(rows: list[Row], why: bool = False, columns: int = COLUMNS) -> Layout:
+def shape_of(rows: list[Row], why: bool = False, columns: int = COLUMNS) -> ColumnWidths:
     """The layout of rows: as wide as the longest, and at most ``columns``."""
     made = layout((row.app for row in rows), columns, why)
     if rows:
@@ -91,14 +91,14 @@ def shape_of(rows: list[Row], why: bool = False, columns: int = COLUMNS) -> Layo
     return made._replace(behavior=min(longest, made.behavior))
 
 
-def format_head(shape: Layout) -> str:
+def format_head(shape: ColumnWidths) -> str:
     """The table's head."""
     head = f"{'No.':>{6 + shape.numbers}}  {_pad('Time', shape.times - 1)}  Who"
     head += f"  {_pad('App', shape.apps)}  {_pad('Behavior', shape.behavior)}  Event"
     return head + ("  Rule" if shape.why else "")
 
 
-def format_row(row: Row, shape: Layout) -> list[str]:
+def format_row(row: Row, shape: ColumnWidths) -> list[str]:
     """The lines of one row."""
     mark = f"{'*' if row.star else ' '}{row.bracket or ' '}"
     left = f"  {mark}  {row.number:>{shape.numbers}} {row.time:>{shape.times}.2f}"

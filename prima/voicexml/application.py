@@ -8,7 +8,7 @@ from itertools import pairwise
 from pathlib import PurePath
 
 from prima.grammar.answers import Answers
-from prima.interpreter.bounds import Visit
+from prima.interpreter.bounds import ElementVisit
 from prima.interpreter.places import source
 from prima.interpreter.protocol import Answer, App
 from prima.interpreter.transfers import GoOut, Thrown
@@ -38,8 +38,8 @@ from prima.voicexml.machine import Machine
 from prima.voicexml.state import (
     SCOPES,
     Flow,
-    Heard,
     Resume,
+    TakenUtterance,
     UnitOver,
     thrown_of_event,
 )
@@ -56,7 +56,7 @@ class VoiceInterpreter(App[AnyEngine]):
         self.document = document
         engine = (engines or Engines()).engine(document.id, document.kind, SCOPES)
         super().__init__(document.id, document.kind, engine)
-        self.heard: Heard | None = None
+        self.heard: TakenUtterance | None = None
         self.note_document(document.page)
         self._machine = Machine(self)
         self._flow: Flow | None = None
@@ -101,7 +101,7 @@ class VoiceInterpreter(App[AnyEngine]):
         """A document is there, whatever becomes of it; its path is relative to the first one's."""
         first, file = self.document.page, self.document.file
         path = file if page is first else str(PurePath(file).parent / page.root.source.file)
-        self.visits.append(Visit(self.name, max(self.now, 0), "document", page.root, path))
+        self.visits.append(ElementVisit(self.name, max(self.now, 0), "document", page.root, path))
 
     def takes(self, name: str) -> bool:
         """Whether a handler in scope takes an event of the robot."""
@@ -195,7 +195,7 @@ class VoiceInterpreter(App[AnyEngine]):
             return None  # told when the question was asked
         if self.heard is None and context.item is not None and context.item.tag == "record":
             text, sure = said[0]
-            self.heard = Heard(text, text, context.item, context.page, sure)
+            self.heard = TakenUtterance(text, text, context.item, context.page, sure)
             self.heard.recognised = False
         if self.heard is None:
             return None

@@ -13,9 +13,9 @@ from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json, Transferred
 from prima.voicexml.arranging import take_last_said
 from prima.voicexml.fetching import gathered
-from prima.voicexml.owner import Owner
+from prima.voicexml.owner import MachineOwner
 from prima.voicexml.questions import open_to_answers
-from prima.voicexml.state import Context, Flow, Heard, HungUp, Resume, thrown_outside
+from prima.voicexml.state import Context, Flow, HungUp, Resume, TakenUtterance, thrown_outside
 
 CONNECT_MS = 60_000
 """How long it may take until somebody answers where ``connecttimeout`` does not say."""
@@ -35,7 +35,7 @@ class Call:
     kind: str
     """``bridge``, ``blind`` or ``consultation``."""
     serial: int = 0
-    heard: Heard | None = None
+    heard: TakenUtterance | None = None
     """What the caller has said to end it."""
     connected: int | None = None
     """When somebody has answered (ms)."""
@@ -51,7 +51,7 @@ class Call:
 class Calls:
     """Makes the calls of one application."""
 
-    def __init__(self, owner: Owner) -> None:
+    def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
         self.app = owner.app
 

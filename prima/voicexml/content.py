@@ -14,10 +14,10 @@ from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
 from prima.voicexml.dom import DOM, plain_tree
 from prima.voicexml.elements import INPUTS
 from prima.voicexml.fetching import decoded
-from prima.voicexml.owner import Owner
+from prima.voicexml.owner import MachineOwner
 from prima.voicexml.prompts import Speaker
 from prima.voicexml.speech import Speech
-from prima.voicexml.state import SCOPES, Context, Flow, GoDialog, HungUp, Request
+from prima.voicexml.state import SCOPES, Context, Flow, GoDialog, HungUp, UriRequest
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 """Items that take input or a result; a block and an initial are control items (2.3)."""
@@ -30,7 +30,7 @@ SERVICE = "service:"
 class Content(Speaker):
     """Runs executable content for one application; it takes time only where something is fetched."""
 
-    def __init__(self, owner: Owner) -> None:
+    def __init__(self, owner: MachineOwner) -> None:
         super().__init__(owner)
         self._maker: Scope | None = None
 
@@ -220,7 +220,7 @@ class Content(Speaker):
         uri = self.word(node, "next", context, local)
         service, _, dialog = uri.removeprefix(SERVICE).partition("#")
         if not uri.startswith(SERVICE) or not dialog:
-            request = Request(node.get("method"), values)
+            request = UriRequest(node.get("method"), values)
             yield from self.owner.go(context, uri, node, request)
             return
         if context.page.dialog(dialog) is None:
@@ -263,7 +263,7 @@ class Content(Speaker):
     def data(self, node: Node, scope: Scope, context: Context, local: Scope) -> Flow:
         """Fetch an XML document as a read-only DOM (VoiceXML 2.1, 5)."""
         self.check_name(node)
-        request = Request(node.get("method"), self.named(node, context, local))
+        request = UriRequest(node.get("method"), self.named(node, context, local))
         uri = context.page.resolve(self.word(node, "src", context, local), node)
         content = yield from self.owner.fetch(uri, node, request)
         if not node.get("name"):

@@ -157,10 +157,10 @@ def plain_tree(uri: str, data: bytes, place: str) -> Json:
         text = parse(uri, data).source.text
     except DocumentError as error:
         raise Thrown("error.badfetch", f"{place}: {error.problems[0]}", place) from None
-    return _Builder().build(text)
+    return _DomBuilder().build(text)
 
 
-class _Builder:
+class _DomBuilder:
     """Takes down what a document that is known to be well-formed is made of."""
 
     def __init__(self) -> None:

@@ -9,7 +9,7 @@ from prima.interpreter.transfers import MAX_DEPTH, GoBack, GoItem, GoOut, Thrown
 from prima.markup.tree import Node
 from prima.script.evaluation import Scope, ScriptError
 from prima.voicexml.elements import HANDLERS, handler_names, handler_number
-from prima.voicexml.owner import Owner
+from prima.voicexml.owner import MachineOwner
 from prima.voicexml.state import Context, Flow, HungUp, Unasked
 
 ASKED_AGAIN = ("noinput", "nomatch", "help", "maxspeechtimeout")
@@ -32,7 +32,7 @@ WORDS = {
 class Events:
     """Handles the events of one application."""
 
-    def __init__(self, owner: Owner) -> None:
+    def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
         self.engine = owner.engine
 

@@ -16,9 +16,9 @@ from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Data, Fetched
 from prima.voicexml.document import FetchError, Page, broken, of_web
-from prima.voicexml.owner import Owner
+from prima.voicexml.owner import MachineOwner
 from prima.voicexml.reading import read_page
-from prima.voicexml.state import Flow, Request, Resume
+from prima.voicexml.state import Flow, Resume, UriRequest
 
 STEP_BYTES = 200
 """Bytes of a resource that count as one step."""
@@ -37,7 +37,7 @@ class Missing(Thrown):
 
 
 def load_page(
-    owner: Owner, uri: str, node: Node, request: Request | None = None
+    owner: MachineOwner, uri: str, node: Node, request: UriRequest | None = None
 ) -> Generator[None, Resume, Page]:
     """Fetch and read another document of the application.
 
@@ -67,7 +67,7 @@ def load_page(
     return page
 
 
-def _read(owner: Owner, uri: str, data: bytes) -> Page:
+def _read(owner: MachineOwner, uri: str, data: bytes) -> Page:
     """A document; that of a host is no part of the folder, whatever URI the folder stands for."""
     if uri in owner.hosted:
         whole = owner.document.outside(uri)
@@ -76,7 +76,7 @@ def _read(owner: Owner, uri: str, data: bytes) -> Page:
 
 
 def fetch(
-    owner: Owner, uri: str, node: Node, request: Request | None = None
+    owner: MachineOwner, uri: str, node: Node, request: UriRequest | None = None
 ) -> Generator[None, Resume, bytes]:
     """A resource's bytes.
 
@@ -87,7 +87,7 @@ def fetch(
     asked = owner.document.outside(whole)
     if not asked:
         return _weighed(owner, _file(owner, whole, node), node)
-    answer = yield from _asked(owner, asked, node, request or Request())
+    answer = yield from _asked(owner, asked, node, request or UriRequest())
     if answer.problem:
         name = f"error.badfetch.http.{answer.status}" if answer.status else "error.badfetch"
         missing = "the folder has no such file; " if asked != whole else ""
@@ -99,7 +99,7 @@ def fetch(
     return _weighed(owner, answer.body.encode(answer.charset), node)
 
 
-def _weighed(owner: Owner, data: bytes, node: Node) -> bytes:
+def _weighed(owner: MachineOwner, data: bytes, node: Node) -> bytes:
     """Count what is to be read as steps: to read much, again and again, is a loop as well."""
     for _ in range(len(data) // STEP_BYTES):
         owner.count_step(node)
@@ -107,7 +107,7 @@ def _weighed(owner: Owner, data: bytes, node: Node) -> bytes:
 
 
 def _asked(
-    owner: Owner, uri: str, node: Node, request: Request
+    owner: MachineOwner, uri: str, node: Node, request: UriRequest
 ) -> Generator[None, Resume, Fetched]:
     """Ask for a resource, and play prompts and fetch audio until its answer is there (6.1.1)."""
     timeout = milliseconds(_setting(owner, node, "fetchtimeout"), FETCH_TIMEOUT)
@@ -132,13 +132,13 @@ def _check_reach(where: str, uri: str, node: Node) -> None:
         raise Thrown.at(node, "error.badfetch", f"{uri}: {HOSTS_ONLY}")
 
 
-def _setting(owner: Owner, node: Node, name: str) -> str:
+def _setting(owner: MachineOwner, node: Node, name: str) -> str:
     """A fetch's setting: the element's own, or the property of that name (6.3.5)."""
     own = node.get(name)
     return own or (owner.setting(owner.context, name) if owner.context is not None else "")
 
 
-def _file(owner: Owner, uri: str, node: Node) -> bytes:
+def _file(owner: MachineOwner, uri: str, node: Node) -> bytes:
     _check_reach(uri, uri, node)
     try:
         return owner.document.fetch(uri)
@@ -149,7 +149,7 @@ def _file(owner: Owner, uri: str, node: Node) -> bytes:
 # Grammars -----------------------------------------------------------------------------------
 
 
-def held(owner: Owner, uri: str, node: Node) -> bytes:
+def held(owner: MachineOwner, uri: str, node: Node) -> bytes:
     """A grammar's bytes: a file's, or what :func:`gathered` has asked for.
 
     Raises:
@@ -166,20 +166,20 @@ def held(owner: Owner, uri: str, node: Node) -> bytes:
     return found
 
 
-def _held_as(owner: Owner, uri: str, node: Node) -> str:
+def _held_as(owner: MachineOwner, uri: str, node: Node) -> str:
     """What a resource that a grammar names is known by: its name where it is in the folder."""
     whole, site = urldefrag(uri)[0], owner.document.page.site
     return whole if site is None or of_web(node.source.file) else site.name(whole)
 
 
-def refusal(owner: Owner, by: str, uri: str, node: Node) -> str:
+def refusal(owner: MachineOwner, by: str, uri: str, node: Node) -> str:
     """Why one grammar may not refer to another, by their URIs; nothing if it may."""
     if _held_as(owner, by, node) not in owner.hosted:
         return ""
     return "" if owner.document.outside(_held_as(owner, uri, node)) else HOSTS_ONLY
 
 
-def gathered(owner: Owner, use: Callable[[], object]) -> Flow:
+def gathered(owner: MachineOwner, use: Callable[[], object]) -> Flow:
     """Do what needs grammars, once all that they are made of has been asked for."""
     while True:
         try:

@@ -15,9 +15,9 @@ from prima.messages import Hypothesis, Json, Say
 from prima.script.budget import Budget
 from prima.voicexml.document import Page
 from prima.voicexml.fetching import held, refusal
-from prima.voicexml.matching import Found, Listener, keys, listener, phrase, ways
-from prima.voicexml.owner import Owner
-from prima.voicexml.state import Context, Heard
+from prima.voicexml.matching import GrammarMatch, Listener, keys, listener, phrase, ways
+from prima.voicexml.owner import MachineOwner
+from prima.voicexml.state import Context, TakenUtterance
 
 UNIVERSALS = {"help": "help", "cancel": "cancel", "exit": "exit"}
 """Commands that listen everywhere once the property ``universals`` names them (6.3.6)."""
@@ -40,7 +40,7 @@ class Active:
 class Inputs:
     """Finds and matches the grammars of one application."""
 
-    def __init__(self, owner: Owner) -> None:
+    def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
         self._loaded: dict[tuple[str, int, str], tuple[Page, Listener]] = {}
         """With the page that each is of: the next one of its URI may be another document."""
@@ -75,7 +75,7 @@ class Inputs:
             self._words = Answers(options, grammars)
         return self._words
 
-    def hear(self, context: Context, said: Sequence[Hypothesis]) -> Heard | None:
+    def hear(self, context: Context, said: Sequence[Hypothesis]) -> TakenUtterance | None:
         """What the most specific grammars take of what was said, or None (3.1.4).
 
         The likeliest hypothesis that any grammar takes decides which those are; further results
@@ -85,7 +85,7 @@ class Inputs:
         engine = self.owner.engine
         self._budget = Budget(engine.now, host=getattr(engine, "host", None))
         first: Active | None = None
-        results: list[Found] = []
+        results: list[GrammarMatch] = []
         for text, sure in said:
             if len(results) >= most:
                 break
@@ -100,7 +100,7 @@ class Inputs:
         best, *others = results[:most]
         further = [(one.utterance, one.interpretation, one.confidence) for one in others]
         owner, page = first.owner, first.page
-        return Heard(
+        return TakenUtterance(
             best.utterance, best.interpretation, owner, page, best.confidence, best.mode, further
         )
 
@@ -128,12 +128,12 @@ class Inputs:
 
     def _taken(
         self, context: Context, said: str, mode: str, sure: float, first: Active | None
-    ) -> tuple[Active | None, list[Found]]:
+    ) -> tuple[Active | None, list[GrammarMatch]]:
         """What grammars of one scope take: of ``first``'s, or the first that takes anything."""
         most = self.most_results(context)
         least = self.owner.number(context, "confidencelevel", USUAL_CONFIDENCE)
         least = least if 0 <= least <= 1 else USUAL_CONFIDENCE
-        results: list[Found] = []
+        results: list[GrammarMatch] = []
         for active in self._active:
             if first is not None and active.level is not first.level:
                 continue

@@ -13,10 +13,10 @@ from prima.voicexml.arranging import parts_of
 from prima.voicexml.calls import Calls
 from prima.voicexml.document import Page
 from prima.voicexml.elements import INPUTS
-from prima.voicexml.owner import Owner
-from prima.voicexml.recorder import Recordings
+from prima.voicexml.owner import MachineOwner
+from prima.voicexml.recorder import RecordItems
 from prima.voicexml.results import RESULTS, shadow
-from prima.voicexml.state import Context, Flow, GoDialog, Heard, Params, Request
+from prima.voicexml.state import Context, Flow, GoDialog, Params, TakenUtterance, UriRequest
 
 ABSENT = object()
 """What stands for a slot that an interpretation lacks: null is a value."""
@@ -25,15 +25,15 @@ ABSENT = object()
 class Items:
     """Fills the form items of one application."""
 
-    def __init__(self, owner: Owner) -> None:
+    def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
         self.engine = owner.engine
-        self.recorder = Recordings(owner)
+        self.recorder = RecordItems(owner)
         self.calls = Calls(owner)
 
     # What the user said ---------------------------------------------------------------
 
-    def process(self, context: Context, heard: Heard) -> Flow:
+    def process(self, context: Context, heard: TakenUtterance) -> Flow:
         """What the user said goes to the item, form, link or choice that has taken it."""
         owner = heard.owner
         self.owner.app.note(owner, "in" if owner.tag in ("link", "choice") else "heard")
@@ -64,7 +64,7 @@ class Items:
         uri = content.word(node, "next", context, local)
         yield from self.owner.go(context, uri, node)
 
-    def remember(self, context: Context, heard: Heard) -> None:
+    def remember(self, context: Context, heard: TakenUtterance) -> None:
         """Set ``application.lastresult$`` (5.1.5); what was said is recorded where that is asked for.
 
         Of what is heard with ``recordutterance`` the words are the recording (2.1, 7.2).
@@ -73,7 +73,7 @@ class Items:
             heard.recorded = self.recorder.keep(heard.utterance)
         results = [shadow(heard)]
         for utterance, interpretation, confidence in heard.others:
-            further = Heard(
+            further = TakenUtterance(
                 utterance, interpretation, heard.owner, heard.page, confidence, heard.mode
             )
             results.append(shadow(further))
@@ -81,7 +81,7 @@ class Items:
         self.engine.set(local, "$results", results)
         self.engine.assign(context.application, "lastresult$", RESULTS, context.scopes(local))
 
-    def _fill(self, context: Context, heard: Heard) -> list[Node]:
+    def _fill(self, context: Context, heard: TakenUtterance) -> list[Node]:
         """Give items their values (3.1.6): an item's own grammar one, a form's perhaps many."""
         owner, found = heard.owner, heard.interpretation
         if owner.tag not in ("form", "menu"):
@@ -95,7 +95,7 @@ class Items:
                 filled.append(item)
         return filled
 
-    def _give(self, context: Context, item: Node, value: Json, heard: Heard) -> None:
+    def _give(self, context: Context, item: Node, value: Json, heard: TakenUtterance) -> None:
         self.fill(context, item, value, shadow(heard))
 
     def fill(
@@ -144,7 +144,7 @@ class Items:
         uri = self.owner.content.word(item, "src", context, self.owner.local())
         names = item.get("namelist").split()
         values = self.owner.content.values(item, names, context, self.owner.local())
-        request = Request(item.get("method"), values) if names else None
+        request = UriRequest(item.get("method"), values) if names else None
         fetched, dialog = yield from self.owner.documents.find(context, uri, item, request)
         page = fetched or context.page
         if fetched is not None:

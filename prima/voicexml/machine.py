@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 
-from prima.interpreter.bounds import Visit
+from prima.interpreter.bounds import ElementVisit
 from prima.interpreter.places import source
 from prima.interpreter.selection import Counters, select_item, select_prompts
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, thrown_of
@@ -19,7 +19,7 @@ from prima.voicexml.events import Events
 from prima.voicexml.fetching import fetch
 from prima.voicexml.inputs import Inputs, numbered, words_of
 from prima.voicexml.items import Items
-from prima.voicexml.owner import Application
+from prima.voicexml.owner import VoiceApplication
 from prima.voicexml.questions import Questions
 from prima.voicexml.scopes import Documents
 from prima.voicexml.speech import Speech
@@ -27,11 +27,11 @@ from prima.voicexml.state import (
     Context,
     Flow,
     GoDialog,
-    Heard,
     Params,
-    Request,
     Resume,
+    TakenUtterance,
     Unasked,
+    UriRequest,
     thrown_outside,
 )
 from prima.voicexml.units import Units
@@ -46,7 +46,7 @@ DEFAULTS = {"timeout": "5s", "bargein": "true", "maxnbest": "1", "termchar": "#"
 class Machine:
     """Runs one application's dialogs; everything it does itself takes no time."""
 
-    def __init__(self, app: Application) -> None:
+    def __init__(self, app: VoiceApplication) -> None:
         self.app = app
         self.engine = app.engine
         self.document = app.document
@@ -93,7 +93,7 @@ class Machine:
         self.app.count_value(value, node)
 
     def fetch(
-        self, uri: str, node: Node, request: Request | None = None
+        self, uri: str, node: Node, request: UriRequest | None = None
     ) -> Generator[None, Resume, bytes]:
         """A resource's bytes, or ``error.badfetch``."""
         return fetch(self, uri, node, request)
@@ -107,7 +107,7 @@ class Machine:
         context: Context,
         uri: str,
         node: Node,
-        request: Request | None = None,
+        request: UriRequest | None = None,
         base: Page | None = None,
     ) -> Flow:
         """Follow a URI to a dialog (5.3.7)."""
@@ -209,7 +209,7 @@ class Machine:
                 yield from self.events.unhandled(context, thrown)
 
     def execute(
-        self, context: Context, page: Page, dialog: str, heard: Heard | None = None
+        self, context: Context, page: Page, dialog: str, heard: TakenUtterance | None = None
     ) -> Flow:
         """Run documents and dialogs of one context until it is left."""
         fetched: Page | None = page
@@ -241,7 +241,7 @@ class Machine:
 
     # Dialogs --------------------------------------------------------------------------
 
-    def dialog(self, context: Context, form: Node, heard: Heard | None) -> Flow:
+    def dialog(self, context: Context, form: Node, heard: TakenUtterance | None) -> Flow:
         """One form or menu, the state that is active until it is left."""
         outer, app = self.state, self.app
         for page in (context.page, context.root):
@@ -249,15 +249,15 @@ class Machine:
                 app.note_document(page)
         named = context.page.dialogs.items()
         self.state = next((name for name, one in named if one is form), "")
-        app.visits.append(Visit(app.name, app.now, "enter", form, self.state))
+        app.visits.append(ElementVisit(app.name, app.now, "enter", form, self.state))
         app.note(form)
         try:
             yield from self._interpret(context, form, heard)
         finally:
             self.state = outer
-            app.visits.append(Visit(app.name, app.now, "leave", None, outer))
+            app.visits.append(ElementVisit(app.name, app.now, "leave", None, outer))
 
-    def _interpret(self, context: Context, form: Node, heard: Heard | None) -> Flow:
+    def _interpret(self, context: Context, form: Node, heard: TakenUtterance | None) -> Flow:
         """Initialise, then select, collect, process (appendix C)."""
         self.app.count_step(form, DIALOG_STEPS)
         context.form, context.item, context.unit = form, None, None

@@ -33,7 +33,7 @@ LANGUAGE = re.compile(r"[A-Za-z]{2,3}(-[A-Za-z0-9]{2,8})*")
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class GrammarMatch:
     """One way in which a grammar takes an utterance."""
 
     utterance: str
@@ -51,7 +51,7 @@ class Found:
 class Listener:
     """A grammar, the words of an option, or keys."""
 
-    match: Callable[[str, str, int], list[Found]]
+    match: Callable[[str, str, int], list[GrammarMatch]]
     """Gives the ways in which it takes what was said in a mode, at most so many."""
     words: Answers = field(default_factory=Answers)
     """What of it can be said, for recognisers."""
@@ -80,13 +80,13 @@ def listener(
     """
     grammar = _loaded(node, page, uri, fetch, refusal)
 
-    def match(said: str, mode: str, most: int) -> list[Found]:
-        found: list[Found] = []
+    def match(said: str, mode: str, most: int) -> list[GrammarMatch]:
+        found: list[GrammarMatch] = []
         for one in grammar.match(said, mode=mode, most=most, budget=budget()):
             if one.error is not None:
                 tell(node, str(one.error))
                 continue
-            found.append(Found(one.utterance, one.interpretation, one.confidence, mode))
+            found.append(GrammarMatch(one.utterance, one.interpretation, one.confidence, mode))
         return found[:most]
 
     return Listener(match, Answers(grammars=() if grammar.mode == "dtmf" else (grammar,)))
@@ -167,11 +167,11 @@ def phrase(text: str, value: Json, approximate: bool) -> Listener:
     """A listener to one phrase; approximately, to some of its words in their order (2.2.5)."""
     wanted = fold(text).split()
 
-    def match(said: str, mode: str, _most: int) -> list[Found]:
+    def match(said: str, mode: str, _most: int) -> list[GrammarMatch]:
         words = fold(said).split()
         rest = iter(wanted)
         near = approximate and bool(words) and all(word in rest for word in words)
-        return [Found(said, value)] if mode == "voice" and (words == wanted or near) else []
+        return [GrammarMatch(said, value)] if mode == "voice" and (words == wanted or near) else []
 
     parts = [text, *(text.split() if approximate else ())]
     return Listener(match, Answers(dict.fromkeys(parts, value)))
@@ -181,8 +181,8 @@ def keys(dtmf: str, value: Json) -> Listener:
     """A listener to a sequence of keys."""
     wanted = dtmf.replace(" ", "")
 
-    def match(said: str, mode: str, _most: int) -> list[Found]:
+    def match(said: str, mode: str, _most: int) -> list[GrammarMatch]:
         typed = mode == "dtmf" and said == wanted
-        return [Found(wanted, value, 1.0, "dtmf")] if typed else []
+        return [GrammarMatch(wanted, value, 1.0, "dtmf")] if typed else []
 
     return Listener(match)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Generator, Sequence
 from typing import Literal, NoReturn, Protocol
 
-from prima.interpreter.bounds import Visit
+from prima.interpreter.bounds import ElementVisit
 from prima.interpreter.protocol import Answer
 from prima.interpreter.transfers import Thrown
 from prima.interpreter.units import Reach
@@ -21,10 +21,10 @@ from prima.script.isolated import AnyEngine
 from prima.voicexml.arranging import Queued
 from prima.voicexml.document import Page, VoiceDocument
 from prima.voicexml.speech import Speech
-from prima.voicexml.state import Context, Flow, Heard, Request, Resume
+from prima.voicexml.state import Context, Flow, Resume, TakenUtterance, UriRequest
 
 
-class Application(Protocol):
+class VoiceApplication(Protocol):
     """The application, as a session drives it."""
 
     name: str
@@ -32,13 +32,13 @@ class Application(Protocol):
     """The instant (ms)."""
     connection: Data
     """What is known of the user's connection (VoiceXML 5.1.4)."""
-    heard: Heard | None
+    heard: TakenUtterance | None
     """What the user said last, as a grammar took it."""
     leaving: bool
     """Whether a unit is being left: what is said in it is said to its end."""
     actions: list[Action]
     """What it wants, for the session to carry out."""
-    visits: list[Visit]
+    visits: list[ElementVisit]
     """What it came to."""
 
     @property
@@ -108,7 +108,7 @@ class Application(Protocol):
         """U5: the unit is left."""
 
 
-class Contents(Protocol):
+class VoiceContentRunner(Protocol):
     """Runs executable content, and evaluates what is in it."""
 
     def run(self, node: Node, context: Context, local: Scope) -> Flow:
@@ -145,7 +145,7 @@ class Contents(Protocol):
         """The cues of a question."""
 
 
-class Listening(Protocol):
+class ListeningGrammars(Protocol):
     """Knows which grammars listen."""
 
     def activate(self, context: Context) -> None:
@@ -161,7 +161,7 @@ class Listening(Protocol):
         """How many results are wanted at most (6.3.2)."""
 
 
-class Entering(Protocol):
+class DocumentEntering(Protocol):
     """Enters the documents of the application."""
 
     session: Scope
@@ -177,7 +177,7 @@ class Entering(Protocol):
         context: Context,
         uri: str,
         node: Node,
-        request: Request | None = None,
+        request: UriRequest | None = None,
         base: Page | None = None,
     ) -> Generator[None, Resume, tuple[Page | None, str]]:
         """The dialog that a URI names, and its document where that is fetched."""
@@ -195,7 +195,7 @@ class Recording(Protocol):
     def prepare(self, item: Node, question: Command) -> None:
         """Make a question ask for a recording."""
 
-    def take(self, context: Context, item: Node, heard: Heard, data: Data) -> Flow:
+    def take(self, context: Context, item: Node, heard: TakenUtterance, data: Data) -> Flow:
         """Fill a record with what was said."""
 
     def broken_off(self, context: Context, item: Node, event: Event) -> None:
@@ -209,10 +209,10 @@ class Filling(Protocol):
     def recorder(self) -> Recording:
         """Fills those that record."""
 
-    def process(self, context: Context, heard: Heard) -> Flow:
+    def process(self, context: Context, heard: TakenUtterance) -> Flow:
         """What the user said goes to the item, form, link or choice that has taken it."""
 
-    def remember(self, context: Context, heard: Heard) -> None:
+    def remember(self, context: Context, heard: TakenUtterance) -> None:
         """Set ``application.lastresult$`` (5.1.5)."""
 
     def fill(
@@ -234,7 +234,7 @@ class Catching(Protocol):
         """The handler that takes an event, if any."""
 
 
-class Owner(Protocol):
+class MachineOwner(Protocol):
     """The machine: what is remembered while the application runs, and how it goes on."""
 
     pages: dict[str, Page]
@@ -255,7 +255,7 @@ class Owner(Protocol):
     # Its parts:
 
     @property
-    def app(self) -> Application:
+    def app(self) -> VoiceApplication:
         """The application."""
 
     @property
@@ -271,15 +271,15 @@ class Owner(Protocol):
         """What the application wants."""
 
     @property
-    def content(self) -> Contents:
+    def content(self) -> VoiceContentRunner:
         """Runs its content."""
 
     @property
-    def inputs(self) -> Listening:
+    def inputs(self) -> ListeningGrammars:
         """Listens."""
 
     @property
-    def documents(self) -> Entering:
+    def documents(self) -> DocumentEntering:
         """Enters its documents."""
 
     @property
@@ -324,7 +324,7 @@ class Owner(Protocol):
         """Wait for the end of Commands."""
 
     def fetch(
-        self, uri: str, node: Node, request: Request | None = None
+        self, uri: str, node: Node, request: UriRequest | None = None
     ) -> Generator[None, Resume, bytes]:
         """A resource's bytes, or ``error.badfetch``."""
 
@@ -352,7 +352,7 @@ class Owner(Protocol):
         """Visit the items of the dialog, or of the unit that it is in, until none is left."""
 
     def execute(
-        self, context: Context, page: Page, dialog: str, heard: Heard | None = None
+        self, context: Context, page: Page, dialog: str, heard: TakenUtterance | None = None
     ) -> Flow:
         """Run documents and dialogs of one context until it is left."""
 
@@ -364,7 +364,7 @@ class Owner(Protocol):
         context: Context,
         uri: str,
         node: Node,
-        request: Request | None = None,
+        request: UriRequest | None = None,
         base: Page | None = None,
     ) -> Flow:
         """Follow a URI to a dialog (5.3.7)."""

@@ -24,7 +24,7 @@ from prima.voicexml.cues import (
 )
 from prima.voicexml.document import FetchError, Page, of_web
 from prima.voicexml.elements import SILENT
-from prima.voicexml.owner import Owner
+from prima.voicexml.owner import MachineOwner
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
 from prima.voicexml.speech import Speech
 from prima.voicexml.state import Context
@@ -57,7 +57,7 @@ Maker = Callable[[Node], Command]
 class Speaker:
     """Evaluates expressions, and reads prompts for their words."""
 
-    def __init__(self, owner: Owner) -> None:
+    def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
         self.engine = owner.engine
         self.mark: str | None = None

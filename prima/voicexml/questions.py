@@ -10,14 +10,14 @@ from prima.messages import Command, Cue, Data, Json
 from prima.messages import Heard as Spoken
 from prima.voicexml.arranging import Arranged, Queued, take_last_said
 from prima.voicexml.fetching import gathered
-from prima.voicexml.owner import Owner
-from prima.voicexml.state import Context, Flow, Heard, Resume, thrown_outside
+from prima.voicexml.owner import MachineOwner
+from prima.voicexml.state import Context, Flow, Resume, TakenUtterance, thrown_outside
 
 
 class Questions:
     """Asks the questions of one application."""
 
-    def __init__(self, owner: Owner) -> None:
+    def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
 
     def ask(self, context: Context, item: Node) -> Flow:
@@ -91,7 +91,7 @@ class Questions:
         said, mode = noted
         further: list[tuple[str, Json, float]] = [(one, one, less) for one, less in others]
         most = self.owner.inputs.most_results(context)
-        heard = Heard(said, said, item, context.page, sure, mode, further[: most - 1])
+        heard = TakenUtterance(said, said, item, context.page, sure, mode, further[: most - 1])
         heard.take_mark(data)
         self.owner.items_of.remember(context, heard)
 

@@ -7,8 +7,8 @@ from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import BEEP, Command, Cue, Data, Event, Json
 from prima.voicexml.matching import KEYS
-from prima.voicexml.owner import Owner
-from prima.voicexml.state import Context, Flow, Heard
+from prima.voicexml.owner import MachineOwner
+from prima.voicexml.state import Context, Flow, TakenUtterance
 
 FORMATS = frozenset(["audio/basic", "audio/x-alaw-basic", "audio/x-wav", "audio/wav"])
 """Formats that every platform records in (appendix E)."""
@@ -21,10 +21,10 @@ MAX_KNOWN = 1000
 """Recordings that are known as such when they are played back."""
 
 
-class Recordings:
+class RecordItems:
     """Fills the record items of one application."""
 
-    def __init__(self, owner: Owner) -> None:
+    def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
         self.lengths: dict[str, int] = {}
         """What has been recorded, and how long it was (ms)."""
@@ -62,7 +62,7 @@ class Recordings:
         )
         question.cues = (*bounds, *question.cues)
 
-    def take(self, context: Context, item: Node, heard: Heard, data: Data) -> Flow:
+    def take(self, context: Context, item: Node, heard: TakenUtterance, data: Data) -> Flow:
         """Fill a record with what was said.
 
         Keys alone end it before anything has been recorded: its variable stays as it is, and
@@ -71,7 +71,7 @@ class Recordings:
         items = self.owner.items_of
         said, key = divided(heard, item)
         if key:
-            items.remember(context, Heard(key, key, item, context.page, 1.0, "dtmf"))
+            items.remember(context, TakenUtterance(key, key, item, context.page, 1.0, "dtmf"))
         elif heard.recognised:
             items.remember(context, heard)
         if not said:
@@ -98,7 +98,7 @@ class Recordings:
         self.owner.items_of.fill(context, item, said, shadow)
 
 
-def divided(heard: Heard, item: Node) -> tuple[str, str]:
+def divided(heard: TakenUtterance, item: Node) -> tuple[str, str]:
     """What was said as the words that are recorded, and the keys that ended them."""
     text = heard.utterance.strip()
     ends = item.get("dtmfterm") != "false"

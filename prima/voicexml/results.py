@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from prima.messages import Json
-from prima.voicexml.state import Heard
+from prima.voicexml.state import TakenUtterance
 
 RESULTS = """(function (all) {
   const best = all[0];
@@ -13,7 +13,7 @@ RESULTS = """(function (all) {
 """Makes ``lastresult$`` of ``$results``: an array that has the best result's properties itself."""
 
 
-def shadow(heard: Heard) -> dict[str, Json]:
+def shadow(heard: TakenUtterance) -> dict[str, Json]:
     """The shadow variables of an utterance."""
     found: dict[str, Json] = {
         "utterance": heard.utterance,

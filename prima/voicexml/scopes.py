@@ -11,8 +11,8 @@ from prima.markup.uris import legal
 from prima.script.evaluation import Scope
 from prima.voicexml.document import Page
 from prima.voicexml.fetching import load_page
-from prima.voicexml.owner import Owner
-from prima.voicexml.state import Context, Flow, GoDialog, Request, Resume
+from prima.voicexml.owner import MachineOwner
+from prima.voicexml.state import Context, Flow, GoDialog, Resume, UriRequest
 
 CONNECTION = """session.connection = (function (held) {
   for (const name of ['local', 'remote', 'protocol']) held[name] = held[name] || {};
@@ -28,7 +28,7 @@ TELEPHONE = """session.telephone =
 class Documents:
     """Enters the documents of one application."""
 
-    def __init__(self, owner: Owner) -> None:
+    def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
         self.engine = owner.engine
         self.session = owner.engine.nothing
@@ -115,7 +115,7 @@ class Documents:
         context: Context,
         uri: str,
         node: Node,
-        request: Request | None = None,
+        request: UriRequest | None = None,
         base: Page | None = None,
     ) -> Flow:
         """Follow a URI, written in ``base`` or in this document, to a dialog (5.3.7).
@@ -134,7 +134,7 @@ class Documents:
         context: Context,
         uri: str,
         node: Node,
-        request: Request | None = None,
+        request: UriRequest | None = None,
         base: Page | None = None,
     ) -> Generator[None, Resume, tuple[Page | None, str]]:
         """The dialog that a URI names, and its document where that is fetched.

@@ -15,6 +15,7 @@ from prima.interpreter.acts import (
     Act,
     Assign,
     Clear,
+    CommandRun,
     CommandTemplate,
     Exit,
     Expression,
@@ -24,7 +25,6 @@ from prima.interpreter.acts import (
     If,
     Pause,
     Return,
-    Run,
     StepTemplate,
     Text,
     Throw,
@@ -40,11 +40,11 @@ from prima.interpreter.elements import (
     Subdialog,
     Unit,
 )
-from prima.interpreter.entering import Target
+from prima.interpreter.entering import FormTarget
 from prima.interpreter.units import Finder, Reach, thrown_by
 from prima.markup.tree import Node
 from prima.messages import Json
-from prima.script.choices import Choice, choices
+from prima.script.choices import PossibleText, choices
 from prima.voicexml.arranging import ARRANGING, is_unit, longest_of
 from prima.voicexml.cues import break_ms
 from prima.voicexml.document import Page
@@ -115,7 +115,7 @@ class Sketch:
         if node.tag not in ASKING:
             return Subdialog(*own, filled=filled)
         # Commands among what it asks: they are done before the question.
-        asked = tuple(one for one in self._acts(node, node.content) if isinstance(one, Run))
+        asked = tuple(one for one in self._acts(node, node.content) if isinstance(one, CommandRun))
         filled = (*filled, Filled("any", (), asked, node))
         return Field(*own, prompts=tuple(self._prompts(node)), filled=filled)
 
@@ -215,29 +215,29 @@ class Sketch:
         properties = (one for wider in self._wider for one in wider.walk() if one.key == "property")
         return any(one.get("name") == "fetchaudio" for one in properties)
 
-    def leads(self, act: Goto | Subdialog) -> list[Target]:
+    def leads(self, act: Goto | Subdialog) -> list[FormTarget]:
         """The dialogs that an element leads to, of this document or of others."""
         node, where = act.node, "src" if isinstance(act, Subdialog) else "next"
         if node.tag not in LEADING:
             return []  # somebody else's number, or an object
         if where in node.attributes:
-            return self._targets(node, Choice(node.get(where).strip(), True))
+            return self._targets(node, PossibleText(node.get(where).strip(), True))
         found = choices(node.get("srcexpr" if where == "src" else "expr"))
         return [target for one in found for target in self._targets(node, one)]
 
-    def _targets(self, node: Node, uri: Choice) -> list[Target]:
+    def _targets(self, node: Node, uri: PossibleText) -> list[FormTarget]:
         """The dialog of a URI, or those of all URIs that begin so."""
         own = self.page.uri
         if uri.text[:1] == "#" or (not uri.text and not uri.whole):
-            return [Target(f"{own}#{uri.text[1:]}", uri.whole)]
+            return [FormTarget(f"{own}#{uri.text[1:]}", uri.whole)]
         base, name = urldefrag(self.page.resolve(uri.text, node) if uri.text else "")
         parts = urlsplit(base)
         if parts.scheme == "service" and name:
-            return [Target(f"{own}#{name}", uri.whole)]
+            return [FormTarget(f"{own}#{name}", uri.whole)]
         if not parts.path or parts.scheme or parts.netloc:
             return []
         mark = "#" if uri.whole or "#" in uri.text else ""
-        return [Target(f"{parts.path}{mark}{name}", uri.whole)]
+        return [FormTarget(f"{parts.path}{mark}{name}", uri.whole)]
 
     # Events -------------------------------------------------------------------------------
 
@@ -312,9 +312,9 @@ def _speak(words: Text, node: Node) -> CommandTemplate:
     return CommandTemplate("speak", {}, words, False, (), (), node)
 
 
-def _run(commands: list[CommandTemplate]) -> Run:
+def _run(commands: list[CommandTemplate]) -> CommandRun:
     steps = [StepTemplate(one, (index - 1,) if index else ()) for index, one in enumerate(commands)]
-    return Run(tuple(steps), commands[0].node)
+    return CommandRun(tuple(steps), commands[0].node)
 
 
 def _is_item(node: Node) -> bool:

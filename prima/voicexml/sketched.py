@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from prima.errors import Problem
-from prima.interpreter.entering import Source
+from prima.interpreter.entering import EnteredDocument
 from prima.interpreter.events import beginnings
 from prima.interpreter.repeats import told_twice
 from prima.interpreter.units import Reached, long_unit, speak, unit_problem, unit_speaks
@@ -63,14 +63,16 @@ def _check_units(sketch: Sketch, root: Page | None) -> Iterator[Problem]:
             yield from long_unit(node, speak(commands_in(node), page.lang))
 
 
-def _source(sketch: Sketch, root: Page | None) -> Source:
+def _source(sketch: Sketch, root: Page | None) -> EnteredDocument:
     """A document as what is told twice is looked for in it."""
     own = {
         *OWN,
         *thrown_in(sketch.page.root),
         *(thrown_in(root.root) if root is not None else ()),
     }
-    return Source(sketch.document, lambda name: _is_foreign(name, own), sketch.leads, queues=True)
+    return EnteredDocument(
+        sketch.document, lambda name: _is_foreign(name, own), sketch.leads, queues=True
+    )
 
 
 def added_in_units(page: Page, commands: Mapping[str, CommandType]) -> Iterator[Problem]:

@@ -30,7 +30,7 @@ Flow = Generator[None, Resume, None]
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
+class UriRequest:
     """What goes along with a URI: a submit's, subdialog's or data's method and values."""
 
     method: str = "get"
@@ -38,7 +38,7 @@ class Request:
 
 
 @dataclass(slots=True)
-class Heard:
+class TakenUtterance:
     """An utterance that an active grammar has taken (5.1.5)."""
 
     utterance: str
@@ -142,7 +142,11 @@ class GoDialog(Transfer):
     """A goto or submit, or an utterance that another dialog's grammar has taken."""
 
     def __init__(
-        self, page: Page | None, dialog: str, heard: Heard | None = None, submitted: bool = False
+        self,
+        page: Page | None,
+        dialog: str,
+        heard: TakenUtterance | None = None,
+        submitted: bool = False,
     ) -> None:
         super().__init__(dialog)
         self.submitted = submitted

@@ -15,7 +15,7 @@ from prima.script.evaluation import ScriptError
 from prima.voicexml.arranging import longest_of
 from prima.voicexml.document import Page
 from prima.voicexml.elements import HANDLERS, ITEMS
-from prima.voicexml.owner import Owner
+from prima.voicexml.owner import MachineOwner
 from prima.voicexml.sketch import Sketch
 from prima.voicexml.state import Context, Flow, HungUp, UnitOver
 
@@ -23,7 +23,7 @@ from prima.voicexml.state import Context, Flow, HungUp, UnitOver
 class Units:
     """Opens and closes the units of one application."""
 
-    def __init__(self, owner: Owner) -> None:
+    def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
         self._reached: dict[int, tuple[Node, Page | None, Reach]] = {}
         """What each unit reaches, with the application root that was its document's then."""

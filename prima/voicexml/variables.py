@@ -18,7 +18,7 @@ from prima.errors.diagnoses.names import UNDECLARED_VARIABLE
 from prima.markup.spans import Declarations
 from prima.markup.tree import Node
 from prima.script.globals import IDENTIFIER
-from prima.script.known import Known, Scope
+from prima.script.known import Known, NameScope
 from prima.script.names import Names, Use, expression_names, script_names
 from prima.script.walk import OBJECTS
 from prima.voicexml.checks import FORM_ITEMS, NAMING, is_code
@@ -85,7 +85,7 @@ class Level:
     nodes: list[Node] = field(default_factory=list)
     inner: list[Node] = field(default_factory=list)
     """Those whose content has a scope of its own."""
-    names: Scope = field(default_factory=Scope)
+    names: NameScope = field(default_factory=NameScope)
     by_node: dict[int, set[str]] = field(default_factory=dict)
     ordered: bool = False
     """Whether all of it is evaluated in document order."""
@@ -186,7 +186,7 @@ class _Look:
 
     def problems(self) -> Iterator[Problem]:
         """Warnings of all that is used and not declared."""
-        everywhere = Scope(name for one in self.dialogs.values() for name in one.names)
+        everywhere = NameScope(name for one in self.dialogs.values() for name in one.names)
         application = {"application": self.shared[-1]}
         outer = Known(*self.shared[1:])
         setup = [node for node in self.own.nodes if node.tag in SETUP]
@@ -203,7 +203,7 @@ class _Look:
             yield from self.contents(dialog, Known(*self.shared, dialog.names), members)
 
     def contents(
-        self, level: Level, outer: Known, members: Mapping[str, Scope]
+        self, level: Level, outer: Known, members: Mapping[str, NameScope]
     ) -> Iterator[Problem]:
         """Check the executable content in a scope."""
         for node in level.inner:
@@ -222,7 +222,7 @@ class _Look:
         return NOT_DECLARED.at(place, hint, name=read.name)
 
     def check(
-        self, nodes: Iterable[Node], level: Level, outer: Known, members: Mapping[str, Scope]
+        self, nodes: Iterable[Node], level: Level, outer: Known, members: Mapping[str, NameScope]
     ) -> Iterator[Problem]:
         """Check elements in a scope: what they use is declared before them there, or around it."""
         seen: set[str] = set()
@@ -238,7 +238,7 @@ class _Look:
             yield from self.members(node, members)
             seen |= level.by_node.get(node.index, set())
 
-    def members(self, node: Node, known: Mapping[str, Scope]) -> Iterator[Problem]:
+    def members(self, node: Node, known: Mapping[str, NameScope]) -> Iterator[Problem]:
         """Warnings of members of scopes that must be there and are not."""
         for read in _members(node):
             holder, _, name = read.name.partition(".")
@@ -340,7 +340,7 @@ def _early(read: Read) -> Problem:
     return DECLARED_AFTER.at(read.place, name=read.name)
 
 
-def _no_member(read: Read, holder: str, name: str, scope: Scope) -> Problem:
+def _no_member(read: Read, holder: str, name: str, scope: NameScope) -> Problem:
     at = read.place._replace(column=read.place.column + len(holder) + 1)
     hint = suggestion(name, scope.written, Span.of(at, name))
     return NO_MEMBER.at(read.place, hint, scope=holder, name=name)

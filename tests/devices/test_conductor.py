@@ -24,13 +24,13 @@ from prima.devices.goals import (
     Accepted,
     Back,
     Begin,
-    Bounds,
     Broke,
     Call,
     Cancel,
     Done,
     Lost,
     Progress,
+    RecordingBounds,
     Report,
     Safe,
     Stand,
@@ -38,11 +38,12 @@ from prima.devices.goals import (
 )
 from prima.devices.loop import Loop
 from prima.devices.profile import Profile
-from prima.devices.settings import Limits
+from prima.devices.settings import DriverLimits
 from prima.interpreter.reader import read_document
 from prima.invariants import check
 from prima.language.commands import TABLE_4_2
 from prima.messages import (
+    ApplicationLoaded,
     Command,
     Cue,
     Data,
@@ -53,7 +54,6 @@ from prima.messages import (
     Heard,
     Inbound,
     Listening,
-    Loaded,
     Order,
     Presence,
     Record,
@@ -64,7 +64,7 @@ from tests.helpers.generated.plays import Play, plays
 from tests.helpers.generated.world import APPS
 from tests.invariants.test_properties import examples
 
-LIMITS = Limits(accept=500, progress=None, cancel=2000)
+LIMITS = DriverLimits(accept=500, progress=None, cancel=2000)
 DEVICES = frozenset(device for row in TABLE_4_2.values() for device in row.devices) | {"speaker"}
 LONGEST = 1_000_000
 
@@ -87,7 +87,7 @@ class Adversary:
         self._serial = count()
         self._now = 0
         for number, start in enumerate(play.loads):
-            self.plan(start, Loaded(APPS[number]))
+            self.plan(start, ApplicationLoaded(APPS[number]))
         for time, value in play.events:
             self.plan(time, value)
 
@@ -215,7 +215,7 @@ def test_no_device_is_given_two_tasks_whatever_the_driver_does(
 class Desk:
     """A conductor, with what it says."""
 
-    def __init__(self, limits: Limits = LIMITS) -> None:
+    def __init__(self, limits: DriverLimits = LIMITS) -> None:
         profile = Profile("any", commands=dict(TABLE_4_2), devices=DEVICES)
         self.conductor = Conductor(
             profile, lambda: {"x": 1.0, "y": 2.0, "heading": 0.0}, lambda _: limits
@@ -342,7 +342,7 @@ def test_a_recording_is_a_goal_of_its_own_with_its_bounds() -> None:
     question = Command("q-and-a", {"timeout": 5000}, "Speak.", lang="en", cues=RECORDED)
     _, goal = desk.order("start", "a#1", question)
     assert isinstance(goal, Begin)
-    assert (goal.kind, goal.bounds) == (RECORD, Bounds(8000, 1500))
+    assert (goal.kind, goal.bounds) == (RECORD, RecordingBounds(8000, 1500))
 
 
 @pytest.mark.parametrize("lacks", [True, False])
@@ -406,7 +406,7 @@ def test_a_driver_that_does_not_accept_has_failed() -> None:
 
 
 def test_a_driver_that_reports_no_more_has_failed() -> None:
-    desk = Desk(Limits(accept=500, progress=1000, cancel=2000))
+    desk = Desk(DriverLimits(accept=500, progress=1000, cancel=2000))
     (goal,) = desk.order("start", "a#1", TURN)
     desk.report(Accepted(goal.key))  # type: ignore[union-attr]
     desk.now = 900

@@ -7,12 +7,22 @@ from typing import Any
 import pytest
 
 from prima.devices.ear import Ear
-from prima.devices.goals import Bounds
+from prima.devices.goals import RecordingBounds
 from prima.devices.loop import Loop
 from prima.devices.senses import LOST_AFTER_MS, Sensors, Sight
-from prima.devices.speech import Marks, Utterance
+from prima.devices.speech import SpeechMarks, Utterance
 from prima.language.commands import TABLE_4_2
-from prima.messages import Command, Cue, Ended, Inbound, Loaded, Occurred, Order, Record, Sensed
+from prima.messages import (
+    ApplicationLoaded,
+    Command,
+    Cue,
+    Ended,
+    Inbound,
+    Occurred,
+    Order,
+    Record,
+    Sensed,
+)
 from prima.scheduler.policy import policy_named
 from prima.session import Session
 
@@ -88,7 +98,7 @@ def test_the_bounds_of_a_recording() -> None:
     assert ear.recording() is None
     ear.drop("a#1")
     ear.ask("a#2", question(Cue(0, "record", 8000), Cue(0, "finalsilence", 1500)))
-    assert ear.recording() == Bounds(8000, 1500)
+    assert ear.recording() == RecordingBounds(8000, 1500)
 
 
 def test_sight_finds_at_once_and_loses_after_a_while() -> None:
@@ -142,7 +152,7 @@ def test_marks_are_told_and_gone_on_from() -> None:
                                   data={"passed": 2}), {"en": 10.0})  # fmt: skip
     assert again is not None
     assert again.ends < said.ends
-    marks = Marks()
+    marks = SpeechMarks()
     assert marks.heard(0, "a", said) == {"markname": "begin", "marktime": 0}
     marks.end(said.ends, "a", said)
     asked = Utterance.of(said.ends, start(Cue(0, "earlier")), {"en": 10.0})
@@ -156,7 +166,7 @@ class Still:
     awaits = False
 
     def __init__(self) -> None:
-        self.left: list[Inbound] = [Loaded("nobody")]
+        self.left: list[Inbound] = [ApplicationLoaded("nobody")]
         self.seen: list[Record] = []
 
     def due(self) -> int | None:

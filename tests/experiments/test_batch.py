@@ -14,7 +14,7 @@ from bench import batch as bench
 from prima import cli
 from prima.errors import UsageError
 from prima.experiments.batch import run_batch, run_job
-from prima.experiments.plan import Job, Options, Plan, stem_of
+from prima.experiments.plan import BatchPlan, Job, Options, stem_of
 from prima.experiments.rows import format_row
 from tests.helpers.batches import HELLO, POLICIES, WRONG, files, prima, scenario, write
 
@@ -222,14 +222,14 @@ def test_a_disk_that_is_full_ends_the_batch(stage: Path) -> None:
 
 # From Python ------------------------------------------------------------------------------------
 def test_from_python(stage: Path) -> None:
-    plan = Plan(["a/one.xml", "b"], ["prima", "fifo"], "runs")
+    plan = BatchPlan(["a/one.xml", "b"], ["prima", "fifo"], "runs")
     assert len(plan) == len(list(plan)) == 6
     rows = list(run_batch(plan, Options(), workers=2))
     assert [row.exit for row in rows] == [0] * 6
     assert rows[0].transcript == "runs/a/one.prima.jsonl"
     assert format_row(rows[0], 10).startswith("a/one.xml   prima        0  over")
     with pytest.raises(UsageError, match="There is no policy"):
-        Plan(["a"], ["x"])
+        BatchPlan(["a"], ["x"])
 
 
 def test_the_measurement_compares_what_it_measures(

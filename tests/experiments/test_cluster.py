@@ -22,7 +22,7 @@ from types import SimpleNamespace
 import prima as package
 from prima.errors import RunError, UsageError
 from prima.experiments.cluster import cluster
-from prima.experiments.sweep import Question, Sweep
+from prima.experiments.sweep import Sweep, SweepQuestion
 from prima.experiments.variants import Made, Stage, Variant
 from prima.pool import Died
 from tests import ROOT
@@ -149,7 +149,7 @@ class Deadly(Stage):
 def test_a_worker_that_dies_each_time_costs_that_run(dask: Cluster) -> None:
     dask.worker()
     dask.worker()
-    sweep = Sweep(Question(("visit.xml",), {"touch": "0s..1s/100ms"}))
+    sweep = Sweep(SweepQuestion(("visit.xml",), {"touch": "0s..1s/100ms"}))
     deadly = Deadly.of(["visit.xml"], ["touch"], sweep.stage.settings)
     results: list[Any] = []
     with cluster(dask.address)(deadly) as runs:

@@ -14,8 +14,8 @@ import pytest
 
 import prima as package
 from prima.errors import UsageError
-from prima.experiments.explore import Exploration, Plan
-from prima.experiments.sweep import Question, Sweep
+from prima.experiments.explore import Exploration, ExplorationPlan
+from prima.experiments.sweep import Sweep, SweepQuestion
 from tests.helpers.batches import files, until
 from tests.helpers.command import prima
 from tests.helpers.sweeps import VISIT, write_visit
@@ -31,7 +31,7 @@ def visit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def swept(**vary: str) -> list[dict[str, Any]]:
-    sweep = Sweep(Question(("visit.xml",), vary))
+    sweep = Sweep(SweepQuestion(("visit.xml",), vary))
     names = [one.name for one in sweep.columns]
     return [
         dict(zip(names, sweep.row(one, sweep.stage.run(one), ""), strict=True)) for one in sweep
@@ -117,7 +117,7 @@ def test_a_broken_rule_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
         return [f"{late} at {touched[0]}: a reaction waits"] if touched[0] > 3 else []
 
     monkeypatch.setattr("prima.experiments.examine.check", check)
-    exploration = Exploration(Plan("visit.xml"))
+    exploration = Exploration(ExplorationPlan("visit.xml"))
     from tests.experiments.test_interrupted_sweeps import here
 
     for _ in exploration.explore(here(lambda run, _number, one: run(one))):

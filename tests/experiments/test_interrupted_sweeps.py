@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 from prima.experiments.pools import local
-from prima.experiments.sweep import Output, Question, Sweep
+from prima.experiments.sweep import Output, Sweep, SweepQuestion
 from prima.experiments.variants import Made, Stage, Variant
 from prima.pool import Died
 from tests.helpers.batches import until
@@ -115,7 +115,7 @@ def test_parquet_is_there_after_an_interrupt() -> None:
             raise KeyboardInterrupt
         return run(one)
 
-    sweep = Sweep(Question(("visit.xml",), {"touch": "0s..8s/1s"}))
+    sweep = Sweep(SweepQuestion(("visit.xml",), {"touch": "0s..8s/1s"}))
     with pytest.raises(KeyboardInterrupt):
         list(Output(sweep, "t.parquet", here(work)).write())
     assert parquet.read_table("t.parquet").num_rows == 3
@@ -127,7 +127,7 @@ def test_a_worker_that_dies_costs_its_own_run() -> None:
     def work(run: Run, number: int, one: Variant) -> Made | Died:
         return Died(-9) if number == 1 else run(one)
 
-    sweep = Sweep(Question(("visit.xml",), {"touch": "0s..2s/1s"}))
+    sweep = Sweep(SweepQuestion(("visit.xml",), {"touch": "0s..2s/1s"}))
     rows = [dict(zip([one.name for one in sweep.columns], row, strict=True))
             for row in sweep.results(here(work))]  # fmt: skip
     assert [row["exit"] for row in rows] == [0, 3, 0]

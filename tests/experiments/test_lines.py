@@ -9,7 +9,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from prima.experiments.examine import Seen
-from prima.experiments.lines import Line, Piece, Point, Search, moments, pieces, shift, shrunk
+from prima.experiments.lines import (
+    EventLine,
+    LinePiece,
+    Point,
+    Search,
+    moments,
+    pieces,
+    shift,
+    shrunk,
+)
 
 INSTANTS = [0, 400, 900, 901, 2500]
 
@@ -44,7 +53,7 @@ def done(search: Search[T], make: Callable[[Point], Seen] = run) -> tuple[T, int
 @given(st.integers(0, 3000), st.integers(0, 3000))
 def test_a_line_finds_every_piece(here: int, other: int) -> None:
     """Every order that any time brings, with the boundaries of each."""
-    found, runs = done(Line((here, other), 0, 0, 3000).search())
+    found, runs = done(EventLine((here, other), 0, 0, 3000).search())
     assert found == pieces({time: run((time, other)).order for time in range(3001)})
     assert runs < 120
 
@@ -56,7 +65,7 @@ def test_a_line_tries_its_grid() -> None:
         asked.append(point[0])
         return Seen(order="same")
 
-    done(Line((1000,), 0, 0, 2000, step=300).search(), make)
+    done(EventLine((1000,), 0, 0, 2000, step=300).search(), make)
     assert {100, 400, 700, 1000, 1300, 1600, 1900, 0, 2000} <= set(asked)
 
 
@@ -70,8 +79,8 @@ def test_when_an_event_shows() -> None:
 
 def test_pieces_are_joined() -> None:
     orders = {5: "a", 1: "a", 9: "b", 3: "a", 12: "a"}
-    assert pieces(orders) == [Piece(1, 5, "a"), Piece(9, 9, "b"), Piece(12, 12, "a")]
-    assert Piece(3, 7, "a").nearest(1) == 3 and Piece(3, 7, "a").nearest(5) == 5
+    assert pieces(orders) == [LinePiece(1, 5, "a"), LinePiece(9, 9, "b"), LinePiece(12, 12, "a")]
+    assert LinePiece(3, 7, "a").nearest(1) == 3 and LinePiece(3, 7, "a").nearest(5) == 5
 
 
 @given(st.integers(0, 3000), st.integers(0, 3000), st.integers(500, 2500))

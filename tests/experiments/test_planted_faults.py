@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from prima import api
-from prima.experiments.explore import Exploration, Plan
+from prima.experiments.explore import Exploration, ExplorationPlan
 from prima.experiments.explored import Explored, carried_out
 from prima.experiments.pools import local
 from tests import ROOT
@@ -140,7 +140,7 @@ def write(folder: Path, fault: Fault) -> str:
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_planted_fault_is_found_and_its_case_kept(name: str, tmp_path: Path) -> None:
     fault = FAULTS[name]
-    exploration = Exploration(Plan(write(tmp_path, fault), within=fault.within))
+    exploration = Exploration(ExplorationPlan(write(tmp_path, fault), within=fault.within))
     for _ in carried_out(exploration, local(1), tmp_path / "out", resume=False):
         pass
     assert exploration.complete

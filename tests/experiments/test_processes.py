@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from prima.experiments.batch import run_batch
-from prima.experiments.plan import Job, Options, Plan, Row
+from prima.experiments.plan import BatchPlan, BatchRow, Job, Options
 from prima.pool import Died
 from tests import ROOT
 from tests.helpers.batches import (
@@ -74,13 +74,15 @@ def test_a_script_needs_no_guard(stage: Path) -> None:
 
 
 def test_how_the_death_of_a_process_is_told(stage: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    fates: list[Row | Died] = [Died(-9), Died(3), Died(11), Row("b/one.xml", "prima")]
+    fates: list[BatchRow | Died] = [Died(-9), Died(3), Died(11), BatchRow("b/one.xml", "prima")]
 
-    def mock(_function: object, items: Plan, *_: object) -> Iterator[tuple[Job, Row | Died]]:
+    def mock(
+        _function: object, items: BatchPlan, *_: object
+    ) -> Iterator[tuple[Job, BatchRow | Died]]:
         yield from zip(items, fates, strict=True)
 
     monkeypatch.setattr("prima.experiments.batch.spread", mock)
-    rows = list(run_batch(Plan(["a", "b/one.xml"]), Options()))
+    rows = list(run_batch(BatchPlan(["a", "b/one.xml"]), Options()))
     assert [row.exit for row in rows] == [3, 3, 3, 0]
     assert [row.messages for row in rows[:3]] == [
         ["its process was killed by the signal SIGKILL; was there no memory left?"],

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from prima.experiments.batch import run_job
-from prima.experiments.ledger import Inputs
+from prima.experiments.ledger import InputDigests
 from prima.experiments.plan import Job, Options
 from tests.helpers.batches import HELLO, POLICIES, files, prima, scenario, write
 
@@ -102,7 +102,7 @@ def test_what_an_application_fetches_counts_as_well(stage: Path) -> None:
 
 
 def test_what_is_no_file_has_no_digest(stage: Path) -> None:
-    inputs = Inputs("a/one.xml")
+    inputs = InputDigests("a/one.xml")
     for name in ("a/one.xml", "/dev/zero", "a", "a/gone.xml", "a/\0"):
         inputs.text(Path(name).absolute())
     assert [value is None for value in inputs.digests.values()] == [False, True, True, True, True]

@@ -9,7 +9,7 @@ import pytest
 
 from prima.errors import UsageError
 from prima.experiments import variants
-from prima.experiments.variants import Settings, Stage, Variant
+from prima.experiments.variants import ExperimentSettings, Stage, Variant
 from tests.helpers.spoken import recording
 from tests.helpers.sweeps import VISIT, write_visit
 from tests.helpers.voice import vxml
@@ -38,7 +38,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_a_packed_stage_needs_no_file(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    stage = Stage.of(["visit.xml"], ["touch"], Settings())
+    stage = Stage.of(["visit.xml"], ["touch"], ExperimentSettings())
     unpacked = pickle.dumps(stage)
     stage.pack()
     sent = pickle.dumps(stage)
@@ -54,7 +54,7 @@ def test_a_packed_stage_needs_no_file(folder: Path, monkeypatch: pytest.MonkeyPa
 
 
 def test_too_much_to_pack(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    stage = Stage.of(["visit.xml"], ["touch"], Settings())
+    stage = Stage.of(["visit.xml"], ["touch"], ExperimentSettings())
     monkeypatch.setattr(variants, "MOST_SENT", 100)
     with pytest.raises(UsageError, match=r"shop: a cluster needs the files .* folder of its own"):
         stage.pack()
@@ -65,7 +65,7 @@ def test_too_much_to_pack(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_a_file_that_changes_afterwards_counts_as_it_was(folder: Path) -> None:
-    stage = Stage.of(["visit.xml"], ["touch"], Settings())
+    stage = Stage.of(["visit.xml"], ["touch"], ExperimentSettings())
     before = stage.run(HERE)
     Path("pet.xml").write_text("<broken")
     assert stage.run(Variant(1, 0, "", 0, ("1s",))) == before

@@ -12,7 +12,14 @@ import pytest
 
 from prima import api, cli
 from prima.errors import UsageError
-from prima.experiments.study import POLICIES, Result, format_csv, format_table, situations, study
+from prima.experiments.study import (
+    POLICIES,
+    StudyResult,
+    format_csv,
+    format_table,
+    situations,
+    study,
+)
 from prima.messages import Command, Emergency, Ended, Occurred
 from prima.transcript.criteria import Criteria
 from prima.transcript.measures import Measure
@@ -289,11 +296,11 @@ def test_a_printed_table_is_read_back() -> None:
 
 
 @cache
-def results() -> list[Result]:
+def results() -> list[StudyResult]:
     return list(study())
 
 
-def of(policy: str) -> list[Result]:
+def of(policy: str) -> list[StudyResult]:
     return [result for result in results() if result.policy == policy]
 
 

@@ -13,7 +13,7 @@ import pytest
 from prima.api import rehearse
 from prima.errors import DocumentError, UsageError
 from prima.experiments.pools import local
-from prima.experiments.sweep import Output, Question, Sweep, estimate
+from prima.experiments.sweep import Output, Sweep, SweepQuestion, estimate
 from prima.experiments.variants import Stage, Variant, signature
 from tests.helpers.batches import files
 from tests.helpers.command import prima
@@ -31,13 +31,13 @@ def visit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def rows(**options: Any) -> list[dict[str, Any]]:
     """The table of a sweep of the visit, made in this process."""
-    sweep = Sweep(Question(("visit.xml",), **options))
+    sweep = Sweep(SweepQuestion(("visit.xml",), **options))
     made = (sweep.row(one, sweep.stage.run(one), "") for one in sweep)
     return [dict(zip([one.name for one in sweep.columns], row, strict=True)) for row in made]
 
 
 def written(name: str, pool: Any = None, resume: bool = False, **options: Any) -> Output:
-    out = Output(Sweep(Question(("visit.xml",), **options)), name, pool or local(2))
+    out = Output(Sweep(SweepQuestion(("visit.xml",), **options)), name, pool or local(2))
     for _ in out.write(resume):
         pass
     return out
@@ -86,7 +86,7 @@ def test_documents_worlds_and_scenarios_are_factors_too() -> None:
     made = rows(vary={"application[2].src": "guide.xml|other.xml"})
     assert [one["expects_failed"] for one in made] == [0, 1]
     Path("again.xml").write_text(VISIT.replace('until="30s"', 'until="3s"'))
-    both = Sweep(Question(("visit.xml", "again.xml"), TOUCH))
+    both = Sweep(SweepQuestion(("visit.xml", "again.xml"), TOUCH))
     assert [both.row(one, both.stage.run(one), "")[1] for one in both] == (
         ["visit.xml"] * 4 + ["again.xml"] * 4
     )
@@ -112,7 +112,7 @@ def test_seeds_draw_and_the_same_seed_is_the_same_run() -> None:
 
 
 def test_a_stage_is_content_and_reads_no_file(visit: Path) -> None:
-    stage = Stage.of(["visit.xml"], ["touch"], Sweep(Question(("visit.xml",))).stage.settings)
+    stage = Stage.of(["visit.xml"], ["touch"], Sweep(SweepQuestion(("visit.xml",))).stage.settings)
     sent = pickle.dumps(stage)
     here = stage.run(Variant(0, 0, "", 0, ("1s",)))
     for one in visit.iterdir():
@@ -176,7 +176,7 @@ def test_what_a_sweep_will_cost() -> None:
     done = prima("sweep", "visit.xml", "--vary", "touch=0s..6s/2ms", "--plan")
     assert done.returncode == 0
     assert done.stdout.startswith("3001 runs: about ") and "a table of about 0." in done.stdout
-    assert "with 1 process (" in estimate(Sweep(Question(("visit.xml",), TOUCH)), 1)
+    assert "with 1 process (" in estimate(Sweep(SweepQuestion(("visit.xml",), TOUCH)), 1)
 
 
 @pytest.mark.parametrize(
@@ -197,13 +197,13 @@ def test_what_a_sweep_will_cost() -> None:
 )
 def test_mistakes_are_told_before_the_first_run(options: dict[str, Any], why: str) -> None:
     with pytest.raises(UsageError, match=why):
-        Sweep(Question(("visit.xml",), **options))
+        Sweep(SweepQuestion(("visit.xml",), **options))
 
 
 def test_a_scenario_with_errors() -> None:
     Path("visit.xml").write_text(VISIT.replace("<robot", "<robbot"))
     with pytest.raises(DocumentError):
-        Sweep(Question(("visit.xml",)))
+        Sweep(SweepQuestion(("visit.xml",)))
 
 
 def test_a_run_that_fails_is_a_row() -> None:

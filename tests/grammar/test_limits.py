@@ -200,7 +200,7 @@ def language(part: object, known: dict[str, Said]) -> Said:
             return {tokens} if len(tokens) <= LONGEST else set()
         case model.Reference(rule=rule):
             return known[rule.name] if rule else set()
-        case model.Choice(parts=parts):
+        case model.Alternatives(parts=parts):
             return {one for inner in parts for one in language(inner, known)}
         case model.Sequence(parts=parts):
             found: Said = {()}

@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from prima.grammar.answers import Answers
-from prima.grammar.model import Choice, Part, PrefixIndex, Repeat, Sequence
+from prima.grammar.model import Alternatives, Part, PrefixIndex, Repeat, Sequence
 from prima.script.budget import MOST_MATCHING, Budget
 from tests.helpers.robot import document, read
 
@@ -40,9 +40,9 @@ def unindexed(part: Part) -> None:
     todo = [part]
     while todo:
         one = todo.pop()
-        if isinstance(one, Choice):
+        if isinstance(one, Alternatives):
             one.index = PrefixIndex({}, [], list(range(len(one.parts))))
-        if isinstance(one, Choice | Sequence):
+        if isinstance(one, Alternatives | Sequence):
             todo += one.parts
         elif isinstance(one, Repeat):
             todo.append(one.part)

@@ -15,7 +15,7 @@ import pytest
 from lxml import etree
 
 from prima.graph import FORMATS, cards, picture, run, states, text, treepicture
-from prima.graph.layout import Link, arrange, distances
+from prima.graph.layout import LayoutEdge, arrange, distances
 from prima.graph.model import Graph, clean
 from prima.graph.svg import SIZE, measure
 from prima.transcript.run import run_of
@@ -144,7 +144,7 @@ def test_boxes_of_a_layer_never_touch(seed: int) -> None:
         for two in targets:
             low, high = sorted((one, two), key=lambda box: layers[box])
             if layers[low] < layers[high]:
-                links.append(Link(low, high, 5, 5))
+                links.append(LayoutEdge(low, high, 5, 5))
     layout = arrange(sizes, layers, links, 12)
     for layer in range(max(layers) + 1):
         held = sorted((layout.aside[i], sizes[i]) for i, one in enumerate(layers) if one == layer)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from prima.graph import cards, states, text
-from prima.graph.labels import Reply, condition, ordinal
+from prima.graph.labels import AnswerLabel, condition, ordinal
 from tests import ROOT
 from tests.helpers.graphs import app, drawn, named, vxml, ways
 
@@ -223,7 +223,7 @@ def test_a_return_leads_to_all_that_call_a_way_to_it(tmp_path: Path) -> None:
 def test_a_condition_on_the_answer_is_told_as_the_answer(
     code: str, name: str, truth: bool, told: str
 ) -> None:
-    assert condition(code, Reply(name, truth)) == told
+    assert condition(code, AnswerLabel(name, truth)) == told
 
 
 def test_ordinals() -> None:

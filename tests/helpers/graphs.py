@@ -10,7 +10,7 @@ import pydot
 
 from prima import api
 from prima.graph import states
-from prima.graph.model import Graph, Node
+from prima.graph.model import Graph, GraphNode
 from tests import ROOT
 from tests.helpers import command
 
@@ -48,7 +48,7 @@ def ways(graph: Graph, title: str) -> dict[str, list[str]]:
     }
 
 
-def named(graph: Graph, title: str) -> Node:
+def named(graph: Graph, title: str) -> GraphNode:
     [node] = [node for node in graph.nodes.values() if node.title == title]
     return node
 

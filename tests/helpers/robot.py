@@ -6,7 +6,17 @@ from prima.errors import Problem
 from prima.interpreter.elements import Document
 from prima.interpreter.reader import read_document
 from prima.language.commands import TABLE_4_2
-from prima.messages import Ended, Failed, Heard, Inbound, Listening, Loaded, Occurred, Order, Record
+from prima.messages import (
+    ApplicationLoaded,
+    Ended,
+    Failed,
+    Heard,
+    Inbound,
+    Listening,
+    Occurred,
+    Order,
+    Record,
+)
 from prima.scheduler.policy import policy_named
 from prima.session import Session
 
@@ -41,7 +51,7 @@ class Bench:
         self.now = 0
         self.records: list[Record] = []
         self.orders: list[Order] = []
-        self.step(*[Loaded(one.id) for one in made])
+        self.step(*[ApplicationLoaded(one.id) for one in made])
 
     def step(self, *inbound: Inbound, at: int | None = None) -> None:
         self.now = self.now + 100 if at is None else at

@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 from pathlib import Path
 
-from prima.testing.running import Choice, Result, run_one
+from prima.testing.running import Result, TestOptions, run_one
 from tests import ROOT
 
 DEMOS = sorted((ROOT / "documents" / "scenarios").rglob("*.xml"))
@@ -57,4 +57,4 @@ def write(folder: Path, expected: str, desk: str = DESK) -> Path:
 
 
 def outcome(folder: Path, expected: str, desk: str = DESK) -> Result:
-    return run_one(str(write(folder, expected, desk)), Choice())
+    return run_one(str(write(folder, expected, desk)), TestOptions())

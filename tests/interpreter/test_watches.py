@@ -8,7 +8,7 @@ from prima.interpreter.acts import Expression
 from prima.interpreter.application import Interpreter
 from prima.interpreter.frame import Fiber
 from prima.interpreter.sensors import sensors_read
-from prima.messages import Loaded, Sensed, Unloaded
+from prima.messages import ApplicationLoaded, ApplicationUnloaded, Sensed
 from tests.helpers.robot import CAUGHT, Bench, document
 
 
@@ -45,9 +45,9 @@ def test_what_a_document_watches_for_may_be_so_when_it_is_loaded() -> None:
     watching = """<watch name="low" when="sensor.battery?.level &lt; 20"/>
       <form id="a"><on event="low"><log>low</log></on></form>"""
     bench = Bench('<form id="a"/>', document(watching, "ea", "late"))
-    bench.step(Unloaded("late"))
+    bench.step(ApplicationUnloaded("late"))
     bench.step(Sensed({"battery.level": 10}))
-    bench.step(Loaded("late"))
+    bench.step(ApplicationLoaded("late"))
     assert bench.logs() == ["low"]
     bench.step(Sensed({"battery.level": 9}))
     assert bench.logs() == ["low"]

@@ -17,7 +17,7 @@ from prima.scheduler import (
 )
 from prima.scheduler.behavior import Application, Behavior, Stream
 from prima.scheduler.mediation import Mediation
-from prima.scheduler.memory import Memory
+from prima.scheduler.memory import WorkingMemory
 from prima.scheduler.policy import Policy
 from prima.scheduler.robot_state import Effects, RobotState
 from prima.scheduler.rules import Refusal
@@ -38,10 +38,10 @@ def at_events(*deeds: tuple[str, Ask | Leave]) -> Script:
 def devices_shared(patch: pytest.MonkeyPatch) -> None:
     """S1 is gone."""
 
-    def conflict(memory: Memory, ab: Behavior) -> None:
+    def conflict(memory: WorkingMemory, ab: Behavior) -> None:
         return None
 
-    rebind(patch, Memory, "conflict", conflict)
+    rebind(patch, WorkingMemory, "conflict", conflict)
 
 
 def running_cut(patch: pytest.MonkeyPatch) -> None:
@@ -78,32 +78,32 @@ def run_twice(patch: pytest.MonkeyPatch) -> None:
 
 def children_lost(patch: pytest.MonkeyPatch) -> None:
     """A parent's end takes its children with it."""
-    remove = Memory.remove
+    remove = WorkingMemory.remove
 
-    def forget(memory: Memory, ab: Behavior) -> None:
+    def forget(memory: WorkingMemory, ab: Behavior) -> None:
         remove(memory, ab)
         for child in ab.children:
             if child.name in memory.behaviors:
                 remove(memory, child)
 
-    rebind(patch, Memory, "remove", forget)
+    rebind(patch, WorkingMemory, "remove", forget)
 
 
 def children_early(patch: pytest.MonkeyPatch) -> None:
     """Children do not wait for their parents."""
-    add = Memory.add
+    add = WorkingMemory.add
 
-    def at_once(memory: Memory, ab: Behavior) -> None:
+    def at_once(memory: WorkingMemory, ab: Behavior) -> None:
         ab.waits_for.clear()
         add(memory, ab)
 
-    rebind(patch, Memory, "add", at_once)
+    rebind(patch, WorkingMemory, "add", at_once)
 
 
 def never_resumed(patch: pytest.MonkeyPatch) -> None:
     """What is not reactive waits for nothing, for ever."""
 
-    def refusal(policy: Policy, ab: Behavior, memory: Memory) -> Refusal | None:
+    def refusal(policy: Policy, ab: Behavior, memory: WorkingMemory) -> Refusal | None:
         return None if ab.reaction is not None else ("F2", "nobody")
 
     rebind(patch, Policy, "refusal", refusal)
@@ -112,7 +112,7 @@ def never_resumed(patch: pytest.MonkeyPatch) -> None:
 def floor_ignored(patch: pytest.MonkeyPatch) -> None:
     """F2 is gone."""
 
-    def refused(ab: Behavior, memory: Memory) -> None:
+    def refused(ab: Behavior, memory: WorkingMemory) -> None:
         return None
 
     rebind(patch, rules, "f2", refused)
@@ -121,7 +121,7 @@ def floor_ignored(patch: pytest.MonkeyPatch) -> None:
 def nothing_held_back(patch: pytest.MonkeyPatch) -> None:
     """S3 is gone."""
 
-    def holds_back(policy: Policy, ab: Behavior, memory: Memory) -> bool:
+    def holds_back(policy: Policy, ab: Behavior, memory: WorkingMemory) -> bool:
         return False
 
     rebind(patch, Policy, "holds_back", holds_back)
@@ -130,7 +130,7 @@ def nothing_held_back(patch: pytest.MonkeyPatch) -> None:
 def reactions_unranked(patch: pytest.MonkeyPatch) -> None:
     """S2b is gone."""
 
-    def rank(ab: Behavior, memory: Memory) -> tuple[int, ...]:
+    def rank(ab: Behavior, memory: WorkingMemory) -> tuple[int, ...]:
         return (0, 0, 0)
 
     rebind(patch, rules, "s2b", rank)
@@ -139,7 +139,7 @@ def reactions_unranked(patch: pytest.MonkeyPatch) -> None:
 def channel_ignored(patch: pytest.MonkeyPatch) -> None:
     """K1 is gone."""
 
-    def refused(ab: Behavior, memory: Memory) -> None:
+    def refused(ab: Behavior, memory: WorkingMemory) -> None:
         return None
 
     rebind(patch, rules, "k1", refused)
@@ -178,7 +178,7 @@ def anything_composed(patch: pytest.MonkeyPatch) -> None:
 def carried_by_anything(patch: pytest.MonkeyPatch) -> None:
     """X5 lets a move go on whatever the floor's stream does."""
 
-    def composes(ab: Behavior, memory: Memory) -> bool:
+    def composes(ab: Behavior, memory: WorkingMemory) -> bool:
         return ab.motion == "free"
 
     rebind(patch, rules, "x5", composes)
@@ -252,10 +252,10 @@ def nothing_interrupted(patch: pytest.MonkeyPatch) -> None:
 def inserted_beside(patch: pytest.MonkeyPatch) -> None:
     """X4 puts something in, and what it is put in for does not wait."""
 
-    def unwait(memory: Memory, ab: Behavior) -> None:
+    def unwait(memory: WorkingMemory, ab: Behavior) -> None:
         return None
 
-    rebind(patch, Memory, "unwait", unwait)
+    rebind(patch, WorkingMemory, "unwait", unwait)
 
 
 def nothing_put_in(patch: pytest.MonkeyPatch) -> None:
@@ -339,7 +339,7 @@ def held_without_channel(patch: pytest.MonkeyPatch) -> None:
     """X3 keeps the stream, but not the channel."""
     engages = rules.engages
 
-    def unless_held(stream: Stream, memory: Memory) -> bool:
+    def unless_held(stream: Stream, memory: WorkingMemory) -> bool:
         return stream.held_until is None and engages(stream, memory)
 
     rebind(patch, rules, "engages", unless_held)

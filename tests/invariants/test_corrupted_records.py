@@ -14,7 +14,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from prima.invariants import check
-from prima.messages import Emergency, Inbound, Occurred, Unloaded
+from prima.messages import ApplicationUnloaded, Emergency, Inbound, Occurred
 from tests.helpers.generated.plays import Play, perform, plays
 from tests.helpers.generated.world import APPS, World
 
@@ -223,7 +223,7 @@ TOLD = play(
     events=(at(10),),
 )
 """An application hears that its stream has to wait (C2)."""
-TAKEN_OUT = play(form(SAY.format("Long.")), IDLE, events=((10, Unloaded("ea")),))
+TAKEN_OUT = play(form(SAY.format("Long.")), IDLE, events=((10, ApplicationUnloaded("ea")),))
 
 
 def listens_on(records: Records) -> Records:

@@ -206,7 +206,7 @@ STEPS = int(os.environ.get("PRIMA_STEPS", "2"))
 def test_a_device_may_fail_at_every_step_of_a_scenario(path: Path, how: str) -> None:
     """The run ends as it would have, nothing of it is a defect, and the rules are kept."""
     from prima import load_scenario, rehearse
-    from prima.loading.files import Contents, in_place_of_files
+    from prima.loading.files import GivenFiles, in_place_of_files
 
     text, hangs = path.read_text(encoding="utf-8"), str(how == "hangs").lower()
     whole = rehearse(load_scenario(path), "prima").records
@@ -217,7 +217,7 @@ def test_a_device_may_fail_at_every_step_of_a_scenario(path: Path, how: str) -> 
             if how == "works again":
                 happens += f'<when at="{time + 2500}ms"><repair device="{device}"/></when>'
             failing = text.replace("</scenario>", f"{happens}</scenario>")
-            with in_place_of_files(Contents({path: failing.encode()})):
+            with in_place_of_files(GivenFiles({path: failing.encode()})):
                 loaded = load_scenario(path)
                 made = rehearse(loaded, "prima")
             found = check(made.records, calling=callers(loaded.cast.documents))

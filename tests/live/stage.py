@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from prima.devices.conductor import Conductor
-from prima.devices.goals import Bounds, Speaks
+from prima.devices.goals import RecordingBounds, Speaks
 from prima.devices.loop import Loop
 from prima.devices.settings import FOREVER, DriverSettings
 from prima.errors import Place
@@ -90,7 +90,7 @@ class Hearing:
     def speech_ends(self) -> None:
         """What was heard tells of it."""
 
-    def recording(self) -> Bounds | None:
+    def recording(self) -> RecordingBounds | None:
         return self._conductor.ear.recording()
 
     def longest_answer(self) -> int:

@@ -30,7 +30,7 @@ from prima.devices.profile import Profile, read_robot
 from prima.errors import UsageError
 from prima.live.drivers.console import ConsoleDriver
 from prima.live.drivers.console.commands import COMMANDS, help_text, read_typed, waits
-from prima.live.drivers.console.lines import Lines
+from prima.live.drivers.console.lines import LineSource
 from prima.messages import Command, Emergency, Heard, Occurred, Sensed
 from prima.sim.map import read_world
 from prima.talk.typed import COMMANDS as TALK
@@ -278,7 +278,7 @@ def test_more_input_than_anybody_hears_is_not_kept() -> None:
     os.set_blocking(sink, False)
 
     async def play() -> int:
-        lines, written = Lines(source), 0
+        lines, written = LineSource(source), 0
         for _ in range(200):
             await asyncio.sleep(0.001)
             try:

@@ -18,7 +18,7 @@ from prima.journal import replay_instants
 from prima.live.devices import LiveDevices
 from prima.live.journal import Journal, Redactor, catch_up, going_on, known, read_broken
 from prima.live.prepared import prepared
-from prima.live.visit import Chosen, Settings, begin
+from prima.live.visit import Chosen, LiveSettings, begin
 from prima.messages import Record
 from prima.sim.devices import Cast
 from prima.transcript.lines import finished
@@ -261,8 +261,8 @@ def test_a_scenario_with_free_answers_has_none_of_them_in_a_redacted_journal(
 ) -> None:
     journal = tmp_path / "visit.jsonl"
     scenario = "documents/scenarios/follow-during-navigation.xml"
-    visit = begin(Chosen(scenario=scenario), Settings(speed=1000, redact=True), str(journal))
+    visit = begin(Chosen(scenario=scenario), LiveSettings(speed=1000, redact=True), str(journal))
     visit.run(lambda _: None, lambda _: None)
     assert "I see" not in journal.read_text()
     with pytest.raises(UsageError, match="is for a new journal"):
-        prepared(Chosen(), Settings(redact=True), None, str(journal))
+        prepared(Chosen(), LiveSettings(redact=True), None, str(journal))

@@ -17,7 +17,7 @@ from prima.live.driver import Refused, Unreachable, Unusable
 from prima.live.drivers import driver_class
 from prima.live.drivers.reachy import DRIVER, driver
 from prima.live.drivers.reachy.link import read_address
-from prima.live.drivers.reachy.pose import Pose, read_pose, read_step
+from prima.live.drivers.reachy.pose import HeadPose, read_pose, read_step
 from prima.live.told import Teller
 from prima.messages import Command, Occurred, Sensed
 from prima.sim.map import Map
@@ -373,11 +373,11 @@ def test_what_is_no_address_is_told_before_the_run(written: str) -> None:
 
 
 def test_poses_are_read_as_they_are_sent() -> None:
-    pose = Pose(body=150.0, pan=20.0, tilt=-10.0, roll=5.0, lift=8.0, left=30.0, right=-20.0)
+    pose = HeadPose(body=150.0, pan=20.0, tilt=-10.0, roll=5.0, lift=8.0, left=30.0, right=-20.0)
     sent = pose.goto(1.0)
     back = read_pose({**sent, "antennas_position": sent["antennas"]})
     assert max(pose.off(back).values()) < 1e-9
-    assert read_pose(UPRIGHT).near(Pose())
+    assert read_pose(UPRIGHT).near(HeadPose())
 
 
 @pytest.mark.parametrize(
@@ -390,7 +390,7 @@ def test_poses_are_read_as_they_are_sent() -> None:
     ],
 )
 def test_parts_go_no_further_than_they_can(step: dict[str, float], reason: str) -> None:
-    at = Pose(body=10.0, pan=30.0)
+    at = HeadPose(body=10.0, pan=30.0)
     with pytest.raises(Refused) as told:
         at.moved(step)
     assert str(told.value) == reason

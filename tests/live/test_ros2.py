@@ -13,7 +13,7 @@ from prima.errors import UsageError
 from prima.live.driver import Refused, Unusable
 from prima.live.drivers.ros2 import DRIVER
 from prima.live.drivers.ros2.messages import fill, interface, paths, plain
-from prima.live.ros import Use, uses
+from prima.live.ros import RosUse, uses
 from prima.sim.map import Map
 from tests.live.test_mapped import ROBOT
 
@@ -48,7 +48,7 @@ def test_the_type_tells_the_kind(written: str, kind: str) -> None:
     made = driver(f'<does command="turn" by="/x" {written} stop="/stop"/>')
     used = uses(made.settings)
     assert [one.kind for one in used] == [kind, "service"]
-    assert used[1] == Use("service", "/stop", "")
+    assert used[1] == RosUse("service", "/stop", "")
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from prima.errors import UsageError
 from prima.live.driver import Unreachable, Unusable
 from prima.live.drivers.rosbridge import DRIVER
 from prima.live.drivers.rosbridge.link import RosbridgeLink
-from prima.live.ros import Use
+from prima.live.ros import RosUse
 from prima.sim.map import Map
 from tests.live.test_mapped import ROBOT
 
@@ -64,10 +64,10 @@ def test_what_is_missing_is_told_although_the_last_answer_is_late(answers: int, 
     class Late(RosbridgeLink):
         asked = 0
 
-        async def _missing(self) -> list[Use]:
+        async def _missing(self) -> list[RosUse]:
             self.asked += 1
             await asyncio.sleep(0 if self.asked <= answers else 1000)
-            return [Use("action", "/go", "my_robot/action/Go")]
+            return [RosUse("action", "/go", "my_robot/action/Go")]
 
     async def connect() -> None:
         link = Late("ws://robot", 0.3, 1.0)

@@ -10,7 +10,7 @@ import pytest
 from prima import api
 from prima.devices.goals import Accepted, Begin, Lost, Stopped
 from prima.devices.loop import Loop
-from prima.devices.settings import USUAL, DriverSettings, Limits
+from prima.devices.settings import USUAL, DriverLimits, DriverSettings
 from prima.errors import Place, RunError
 from prima.grammar.answers import Answers
 from prima.grammar.phrases import phrases
@@ -286,4 +286,4 @@ def test_a_report_that_is_late_or_of_nobody_changes_nothing(stage: Stage) -> Non
     answer_when_asked(voice)
     body.begun = lambda goal: body.tell(Lost(frozenset(), "nothing is lost"))
     assert carried_out(loop)[-1]["outcome"] == "over"
-    assert Limits(1).over(Limits(2, 3)) == Limits(1, 3)
+    assert DriverLimits(1).over(DriverLimits(2, 3)) == DriverLimits(1, 3)

@@ -23,8 +23,8 @@ from prima.live.drivers.sim import SimDriver
 from prima.live.drivers.speech import SpeechDriver
 from prima.live.drivers.speech.segments import Segments
 from prima.live.drivers.speech.sound import RATE, Pipes
-from prima.live.ros import CANCELED, Outcome, Sent, Use
-from prima.live.visit import Chosen, Settings, begin
+from prima.live.ros import CANCELED, Outcome, RosUse, Sent
+from prima.live.visit import Chosen, LiveSettings, begin
 from prima.messages import Command, Emergency, Record
 from prima.sim.map import Map
 from tests.live.fake_reachy import FakeReachy, fake_reachy
@@ -67,10 +67,10 @@ class FakeLink:
     def __init__(self) -> None:
         self.going: list[asyncio.Future[Outcome]] = []
 
-    async def connect(self, uses: list[Use], driver: Driver) -> None:
+    async def connect(self, uses: list[RosUse], driver: Driver) -> None:
         """It is there."""
 
-    async def send_goal(self, use: Use, values: dict[str, Any], on: Callable[[], None]) -> Sent:
+    async def send_goal(self, use: RosUse, values: dict[str, Any], on: Callable[[], None]) -> Sent:
         end: asyncio.Future[Outcome] = asyncio.get_running_loop().create_future()
         self.going.append(end)
         return Sent(end, self.cancel_all)
@@ -87,10 +87,10 @@ class FakeLink:
             if not end.done():
                 end.set_exception(Unreachable(reason))
 
-    async def call(self, use: Use, values: dict[str, Any]) -> dict[str, Any]:
+    async def call(self, use: RosUse, values: dict[str, Any]) -> dict[str, Any]:
         return {}
 
-    def publish(self, use: Use, values: dict[str, Any]) -> None:
+    def publish(self, use: RosUse, values: dict[str, Any]) -> None:
         """Nobody listens."""
 
     async def ping(self) -> None:
@@ -251,7 +251,7 @@ def test_whatever_happens_the_robot_is_made_safe(
     (tmp_path / "robot.xml").write_text(ROBOT.format(inside))
     (tmp_path / "works.xml").write_text(APPLICATION.format(does))
     chosen = Chosen(str(tmp_path / "robot.xml"), fas=(str(tmp_path / "works.xml"),))
-    visit = begin(chosen, Settings(), None)
+    visit = begin(chosen, LiveSettings(), None)
     (driver,) = visit.loop.devices.drivers  # type: ignore[attr-defined]
     seen: dict[str, Any] = {"safe": 0, "went on": False, "left": None}
     safe, cancel = driver.safe, driver.cancel

@@ -14,9 +14,9 @@ from prima.devices.goals import (
     SAY,
     Accepted,
     Begin,
-    Bounds,
     Broke,
     News,
+    RecordingBounds,
     Report,
     Speaks,
     Stopped,
@@ -27,7 +27,7 @@ from prima.errors import UsageError
 from prima.grammar import load
 from prima.grammar.answers import Answers
 from prima.live.driver import Unusable
-from prima.live.drivers.speech import Piece, SpeechDriver, heard, pieces, read_options
+from prima.live.drivers.speech import SpeechDriver, SpokenPiece, heard, pieces, read_options
 from prima.live.drivers.speech.jsgf import jsgf, spelt
 from prima.live.drivers.speech.nearest import hypotheses, likeness
 from prima.live.drivers.speech.segments import BEFORE_S, Segments
@@ -185,7 +185,7 @@ def test_pipes_give_whole_chunks_and_play_in_real_time() -> None:
 
 def test_pauses_lie_between_the_pieces_of_a_text() -> None:
     command = Command("speak", {}, "One. Two.", cues=(Cue(4, "pause", 500), Cue(9, "mark", "m")))
-    assert list(pieces(command)) == [Piece("One.", 500, 0), Piece("Two.", 0, 5)]
+    assert list(pieces(command)) == [SpokenPiece("One.", 500, 0), SpokenPiece("Two.", 0, 5)]
     assert list(pieces(Command("speak", {}, " "))) == []
 
 
@@ -283,7 +283,7 @@ EAR = frozenset({"speech-recognition"})
 
 
 async def recorded(
-    told: list[Report | News], sound: bytes, bounds: Bounds, recordings: Recordings
+    told: list[Report | News], sound: bytes, bounds: RecordingBounds, recordings: Recordings
 ) -> None:
     driver = await quick(told)
     driver.recordings = recordings
@@ -303,7 +303,7 @@ def test_what_the_user_says_is_recorded_without_the_silence_behind_it(tmp_path: 
     told: list[Report | News] = []
     kept = Recordings(str(tmp_path / "visit.jsonl"))
     sound = QUIET * 4 + LOUD * 20 + QUIET * 40
-    asyncio.run(recorded(told, sound, Bounds(silence=320), kept))
+    asyncio.run(recorded(told, sound, RecordingBounds(silence=320), kept))
     data = (tmp_path / "visit-1.wav").read_bytes()
     facts = {"duration": 24 * 32, "size": len(data), "type": "audio/x-wav", "maxtime": False}
     assert told[:4] == [Accepted("a"), Speaks(True), Heard("visit-1.wav", facts), Stopped("a")]
@@ -314,7 +314,7 @@ def test_what_the_user_says_is_recorded_without_the_silence_behind_it(tmp_path: 
 def test_a_recording_is_cut_off_at_its_longest_time() -> None:
     told: list[Report | News] = []
     kept = Recordings()
-    asyncio.run(recorded(told, LOUD * 40, Bounds(longest=640), kept))
+    asyncio.run(recorded(told, LOUD * 40, RecordingBounds(longest=640), kept))
     assert isinstance(told[2], Heard)
     assert (told[2].text, told[2].data["maxtime"]) == ("recording-1.wav", True)
     assert kept.samples("recording-1.wav") == LOUD * 20

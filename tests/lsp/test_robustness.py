@@ -24,7 +24,7 @@ from prima.lsp.outline import links, outline
 from prima.lsp.paths import path_of
 from prima.lsp.problems import check, spots
 from prima.lsp.protocol import Server
-from prima.lsp.scan import Page
+from prima.lsp.scan import ScannedText
 from prima.lsp.tables import resolve
 from prima.lsp.text import UTF8, UTF16, UTF32, Lines
 from prima.lsp.workspace import Workspace
@@ -155,7 +155,7 @@ def test_offsets_and_positions_are_each_other_s(text: str, encoding: str) -> Non
 @settings(max_examples=200, deadline=None)
 @given(text=st.text(alphabet="<>/=\"'ab !-[]?\n", max_size=60))
 def test_tags_of_any_text_are_inside_it_and_in_order(text: str) -> None:
-    page = Page(text)
+    page = ScannedText(text)
     resolve(page)
     starts = [tag.start for tag in page.tags]
     assert starts == sorted(set(starts))

@@ -17,7 +17,7 @@ from prima.checks.codes import diagnoses
 from prima.errors import Diagnosis, Fix, Problem, UsageError
 from prima.errors.rendering import TOKEN
 from prima.handbook.examples import FOLDER, Example, beside, data, examples, shown
-from prima.loading.files import Contents, in_place_of_files
+from prima.loading.files import GivenFiles, in_place_of_files
 from prima.lsp.fixes import changes
 from prima.lsp.text import Lines
 from tests import ROOT
@@ -388,7 +388,7 @@ def mended(path: Path, fix: Fix) -> list[Problem]:
     text = lines.text
     for change in sorted(changes(lines, fix), key=lambda one: -one.start):
         text = text[: change.start] + change.text + text[change.end :]
-    with in_place_of_files(Contents({path.resolve(): text.encode()})):
+    with in_place_of_files(GivenFiles({path.resolve(): text.encode()})):
         return problems_of(path)
 
 

@@ -23,7 +23,7 @@ from prima.report import MOST_ROWS, make
 from prima.report.lanes import make_lanes
 from prima.report.parts import json_text, text
 from prima.report.view import language
-from prima.report.walk import Walk, reported, walk_of
+from prima.report.walk import RobotWalk, reported, walk_of
 from prima.transcript.lines import read_lines
 from prima.transcript.row import Row
 from prima.transcript.rules import RULES
@@ -341,7 +341,7 @@ def test_the_scenario_gives_the_map_and_the_users_way(policy: str) -> None:
 def test_a_run_that_comes_out_otherwise_has_only_its_reports() -> None:
     records = json.loads(json.dumps(run().records))
     records[30]["time"] += 0.001
-    walk: Walk = walk_of(api.Transcript(records, "x"), api.load_scenario(SCENARIO))
+    walk: RobotWalk = walk_of(api.Transcript(records, "x"), api.load_scenario(SCENARIO))
     assert walk.source == "reports" and walk.plan and not walk.person
 
 

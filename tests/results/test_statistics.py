@@ -16,7 +16,7 @@ from prima.results.statistics import (
     MANN_WHITNEY,
     MOST_DISTINCT,
     SPEARMAN,
-    Result,
+    TestResult,
     Untested,
     Values,
     compare,
@@ -36,12 +36,12 @@ def groups(*sizes: int) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
     return np.repeat(np.arange(len(sizes)), sizes)
 
 
-def result_of(found: Result | Untested) -> Result:
-    assert isinstance(found, Result), found
+def result_of(found: TestResult | Untested) -> TestResult:
+    assert isinstance(found, TestResult), found
     return found
 
 
-def why(found: Result | Untested) -> str:
+def why(found: TestResult | Untested) -> str:
     assert isinstance(found, Untested)
     return found.why
 

@@ -6,12 +6,12 @@ import pytest
 
 from prima.interpreter.bounds import MOST_BRIEF
 from prima.messages import (
+    ApplicationLoaded,
+    ApplicationUnloaded,
     Ended,
     Failed,
-    Loaded,
     Occurred,
     Sensed,
-    Unloaded,
 )
 from tests.helpers.plays import NESTED, stepped
 from tests.helpers.robot import Bench, document
@@ -364,9 +364,9 @@ def test_an_application_that_is_loaded_again_gives_no_name_out_twice() -> None:
     # What its former life still runs may make ABs when the new one has made some.
     _, records = stepped(
         NESTED.format("<speak>Zero.</speak>", ""),
-        (0, (Loaded("ea"),)),
-        (50, (Unloaded("ea"),)),
-        (60, (Loaded("ea"),)),
+        (0, (ApplicationLoaded("ea"),)),
+        (50, (ApplicationUnloaded("ea"),)),
+        (60, (ApplicationLoaded("ea"),)),
         (100, (Ended("ea#3"),)),
     )
     names = [record["behavior"] for record in records if record["phase"] == "request"]

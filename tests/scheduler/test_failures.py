@@ -10,11 +10,11 @@ import pytest
 from prima.invariants import check
 from prima.language.commands import TABLE_4_2
 from prima.messages import (
+    ApplicationLoaded,
     Command,
     Emergency,
     Ended,
     Group,
-    Loaded,
     Occurred,
     Step,
 )
@@ -319,7 +319,7 @@ def test_a_unit_of_which_only_what_was_out_of_time_is_left_ends_in_an_emergency(
     # and was then put back among the waiting ones.
     session, records = stepped(
         NESTED.format("", " longest='1s'"),
-        (0, (Loaded("ea"),)),
+        (0, (ApplicationLoaded("ea"),)),
         (100, (Ended("ea#3"),)),
         (1200, ()),
         (1500, (Emergency(True),)),

@@ -36,7 +36,7 @@ from prima.scheduler.admission import Maker
 from prima.scheduler.behavior import Application, Behavior, Stream
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.mediator import Mediator
-from prima.scheduler.memory import Memory
+from prima.scheduler.memory import WorkingMemory
 from prima.scheduler.policy import Policy, Ranked
 from prima.session import hearing
 from prima.session.hearing import Hearing
@@ -127,14 +127,16 @@ def any_loser(patch: pytest.MonkeyPatch) -> None:
 def ended_is_active(patch: pytest.MonkeyPatch) -> None:
     """S2b: whose AB started last is active, whether its stream has ended or not."""
     latest: list[Stream] = []
-    start = Memory.start
+    start = WorkingMemory.start
 
-    def note(memory: Memory, ab: Behavior, now: int) -> None:
+    def note(memory: WorkingMemory, ab: Behavior, now: int) -> None:
         latest.append(ab.stream)
         start(memory, ab, now)
 
-    patch.setattr(Memory, "start", note)
-    patch.setattr(Memory, "active", property(lambda memory: latest[-1].app if latest else None))
+    patch.setattr(WorkingMemory, "start", note)
+    patch.setattr(
+        WorkingMemory, "active", property(lambda memory: latest[-1].app if latest else None)
+    )
 
 
 def only_placed(
@@ -160,12 +162,12 @@ def always_at_the_goal(
     u2(mediation, ab, True, data, inbound)
 
 
-def any_running(memory: Memory, ab: Behavior) -> Behavior | None:
+def any_running(memory: WorkingMemory, ab: Behavior) -> Behavior | None:
     """S4: whatever runs keeps everything from starting."""
     return next(iter(memory.running.values()), None)
 
 
-def waits_for_what_runs(ab: Behavior, memory: Memory) -> tuple[str, str] | None:
+def waits_for_what_runs(ab: Behavior, memory: WorkingMemory) -> tuple[str, str] | None:
     """F4: whatever runs of another application holds a floor."""
     return next((("F2", one.id) for one in memory.running.values() if one.app is not ab.app), None)
 
@@ -177,7 +179,7 @@ def chance(patch: pytest.MonkeyPatch) -> None:
 
 
 MUTANTS: list[tuple[str, str, Patch]] = [
-    ("s1", "dropped", put(Memory, "conflict", nothing)),
+    ("s1", "dropped", put(WorkingMemory, "conflict", nothing)),
     ("s2a", "dropped", put(rules, "s2a", lambda ab: 0)),
     ("s2a", "reversed", put(rules, "s2a", lambda ab: ab.priority)),
     ("s2b", "dropped", put(rules, "s2b", lambda ab, memory: rules.NO_REACTION)),
@@ -270,9 +272,9 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("u2", "one loop", put(endings, "u2", always_at_the_goal)),
     ("u3", "dropped", put(admission, "link", nothing)),
     ("u4", "dropped", put(admission, "group_devices", lambda group, table: frozenset())),
-    ("u6", "dropped", put(Memory, "conflict", nothing)),
+    ("u6", "dropped", put(WorkingMemory, "conflict", nothing)),
     ("o4", "the state does not go on", put(Interpreter, "go_on_entering", nothing)),
-    ("s4", "one at a time", put(Memory, "conflict", any_running)),
+    ("s4", "one at a time", put(WorkingMemory, "conflict", any_running)),
     ("s5", "chance", chance),
     ("c1", "dropped", put(streams, "c1", nothing)),
     ("c4", "dropped", put(streams, "open_window", nothing)),
@@ -282,7 +284,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("k2", "one priority", put(CommandType, "priority", property(lambda row: 1))),
     ("k3", "a channel is made", put(Policy, "has", lambda policy, extension: extension == "x4")),
     ("v1", "the question first", put(Hearing, "_follow_links", lambda *given: False)),
-    ("v2", "dropped", put(Memory, "conflict", nothing)),
+    ("v2", "dropped", put(WorkingMemory, "conflict", nothing)),
     ("v3", "events first", put(Session, "_class", lambda session, value: (0, 0))),
     ("e1", "dropped", put(failures, "e1", nothing)),
     ("e2", "dropped", put(requests, "e2", nothing)),

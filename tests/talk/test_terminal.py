@@ -178,6 +178,6 @@ def test_a_clock_leaves_out_what_was_typed(
                 return "yes"
             raise TimeoutError
 
-    clock, hand = terminal.Clock(), Hand()
+    clock, hand = terminal.PausingClock(), Hand()
     assert clock.line(hand, 10_000) == "yes"
     assert clock.now == 600 - 100 * len(begun)

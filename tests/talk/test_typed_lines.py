@@ -13,7 +13,7 @@ from prima.devices.lines import LONGEST_LINE
 from prima.errors import UsageError
 from prima.grammar.answers import Answers
 from prima.grammar.phrases import phrases
-from prima.talk.typed import COMMANDS, Names, complete, read_line
+from prima.talk.typed import COMMANDS, TypedNames, complete, read_line
 from tests.helpers.robot import document
 from tests.helpers.talking import ASKS, room, start
 
@@ -86,7 +86,9 @@ def test_whatever_is_typed_is_read_or_refused(text: str) -> None:
 
 
 # Completion ------------------------------------------------------------------------
-NAMES = Names(frozenset({"head", "back"}), frozenset({"poster"}), applications=frozenset({"a"}))
+NAMES = TypedNames(
+    frozenset({"head", "back"}), frozenset({"poster"}), applications=frozenset({"a"})
+)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 from prima.testing.coverage import Coverage, merge, total
 from prima.testing.junit import cobertura
-from prima.testing.running import Choice, run_all, run_one
+from prima.testing.running import TestOptions, run_all, run_one
 from prima.testing.summary import format_result
 from tests.helpers.testing import write
 
@@ -45,7 +45,7 @@ EVERYTHING = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="
 
 def coverage_of(folder: Path, desk: str, name: str = "desk.xml") -> dict[tuple[int, str], bool]:
     """The points of a document, by line and kind, with whether they were reached."""
-    choice = Choice(coverage=True)
+    choice = TestOptions(coverage=True)
     found = run_one(str(write(folder, "", desk)), choice).coverage
     one = found[str(folder / name)]
     return {
@@ -115,7 +115,7 @@ def test_what_is_covered_of_voicexml(tmp_path: Path) -> None:
     (tmp_path / "lift.vxml").write_text(VOICE, encoding="utf-8")
     path = write(tmp_path, '<answer to="Stop or go?">stop</answer>\n<expect state="over"/>')
     path.write_text(path.read_text().replace('src="desk.xml"', 'src="lift.vxml"'))
-    found = run_one(str(path), Choice(coverage=True))
+    found = run_one(str(path), TestOptions(coverage=True))
     assert found.status == "passed", format_result(found)
     one = found.coverage[str(tmp_path / "lift.vxml")]
     missing = {(point.line, point.kind) for point in one.missing}
@@ -138,7 +138,7 @@ def test_runs_add_up(tmp_path: Path) -> None:
     other.write_text(path.read_text().replace(">Three.<", ">One.<").replace('"lift"', '"other"', 1))
     coverage: Coverage = {}
     shares = []
-    for result in run_all([str(path), str(other)], Choice(coverage=True)):
+    for result in run_all([str(path), str(other)], TestOptions(coverage=True)):
         merge(coverage, result.coverage)
         shares.append(total(coverage))
     assert shares[0] < shares[1] < 100
@@ -154,5 +154,5 @@ def test_documents_that_no_run_loads_are_counted(tmp_path: Path) -> None:
     path.write_text(
         path.read_text().replace('"desk.xml"', '"desk.xml" start="50s"').replace("60s", "1s")
     )
-    found = run_one(str(path), Choice(coverage=True)).coverage
+    found = run_one(str(path), TestOptions(coverage=True)).coverage
     assert found[str(tmp_path / "desk.xml")].reached == set()

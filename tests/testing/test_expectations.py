@@ -17,9 +17,9 @@ from prima.sim.scenario import read_scenario
 from prima.testing.checking import check
 from prima.testing.facts import make_run
 from prima.testing.matching import triggers
-from prima.testing.running import Choice, Result, run_one
+from prima.testing.running import Result, TestOptions, run_one
 from prima.testing.summary import format_result
-from prima.testing.tracing import States, states_of
+from prima.testing.tracing import StateHistory, states_of
 from prima.transcript.run import run_of
 from tests import ROOT
 from tests.helpers.command import prima
@@ -197,7 +197,7 @@ def test_mistakes_in_expectations_are_found_before_the_run(
     problems = [one for one in api.validate([path]) if one.severity == "error"]
     assert [one.code for one in problems][:1] == [told[0]]
     assert told[1] in f"{problems[0].message} {problems[0].remedy}"
-    found = run_one(str(path), Choice())
+    found = run_one(str(path), TestOptions())
     assert found.status == "invalid" and found.failures
 
 
@@ -209,7 +209,7 @@ def test_a_run_takes_no_notice_of_expectations(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", DEMOS, ids=lambda path: path.stem)
 def test_triggers_are_those_of_when(path: Path) -> None:
     records = api.rehearse(path).records
-    run = make_run(run_of(records), [], States())
+    run = make_run(run_of(records), [], StateHistory())
     begun = [one for one in records if one["phase"] == "start"]
     words = {("doing", one["command"]) for one in begun} | {
         ("done", one["command"]) for one in begun
@@ -252,7 +252,7 @@ def test_what_a_run_has_said_is_what_it_is_expected_to_say(path: Path, tmp_path:
         last = scenario.node.all("in-order")[-1]
         own = set(map(id, last.nodes))
         scenario.expectations = [one for one in scenario.expectations if id(one.node) in own]
-        run = make_run(transcript.run(), transcript.rows(), States())
+        run = make_run(transcript.run(), transcript.rows(), StateHistory())
         return len(check(scenario, run))
 
     assert failures(said) == 0

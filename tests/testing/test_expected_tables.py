@@ -9,7 +9,7 @@ import pytest
 from prima import api
 from prima.errors import UsageError
 from prima.testing.golden import difference
-from prima.testing.running import Choice, run_one
+from prima.testing.running import TestOptions, run_one
 from prima.transcript.table import format_rows
 from tests.helpers.command import prima
 from tests.helpers.testing import DESK, write
@@ -71,12 +71,12 @@ def test_update_shows_asks_and_never_writes_a_failed_run(tmp_path: Path) -> None
 def test_a_table_is_that_of_the_scenarios_own_policy(tmp_path: Path) -> None:
     path = write(tmp_path, "")
     (tmp_path / "lift.txt").write_text("anything", encoding="utf-8")
-    assert run_one(str(path), Choice(policy="fifo")).golden == "skipped"
-    assert run_one(str(path), Choice(policy="prima")).golden == "differs"
+    assert run_one(str(path), TestOptions(policy="fifo")).golden == "skipped"
+    assert run_one(str(path), TestOptions(policy="prima")).golden == "differs"
 
 
 def test_a_table_that_is_no_text_is_told(tmp_path: Path) -> None:
     path = write(tmp_path, "")
     (tmp_path / "lift.txt").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(UsageError, match="not UTF-8"):
-        run_one(str(path), Choice())
+        run_one(str(path), TestOptions())

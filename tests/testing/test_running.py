@@ -20,7 +20,7 @@ from prima import api
 from prima.errors import DocumentError, RunError, UsageError
 from prima.testing.finding import find, is_scenario
 from prima.testing.junit import junit
-from prima.testing.running import Choice, run_all
+from prima.testing.running import TestOptions, run_all
 from prima.testing.summary import format_result
 from tests import ROOT
 from tests.helpers.command import prima
@@ -47,13 +47,13 @@ def test_scenarios_are_found_in_folders(tmp_path: Path) -> None:
 
 
 def test_all_demo_scenarios_are_as_they_expect() -> None:
-    for result in run_all([str(path) for path in DEMOS], Choice()):
+    for result in run_all([str(path) for path in DEMOS], TestOptions()):
         assert result.status == "passed", format_result(result)
 
 
 def test_processes_give_the_same_results_in_the_same_order() -> None:
     paths = [str(path) for path in DEMOS if path.stem.startswith("s0")][:4]
-    choice = Choice(coverage=True)
+    choice = TestOptions(coverage=True)
     one, several = list(run_all(paths, choice)), list(run_all(paths, choice, 2))
     for result in (*one, *several):
         result.seconds = 0.0
@@ -69,7 +69,7 @@ def test_a_process_that_is_ended_ends_the_tests(tmp_path: Path) -> None:
 
     threading.Timer(2, end_one).start()
     with pytest.raises(RunError, match="was killed"):
-        list(run_all([str(tmp_path / "a.xml"), str(tmp_path / "b.xml")], Choice(), 2))
+        list(run_all([str(tmp_path / "a.xml"), str(tmp_path / "b.xml")], TestOptions(), 2))
 
 
 def test_what_a_process_cannot_read_is_told(tmp_path: Path) -> None:
@@ -77,7 +77,7 @@ def test_what_a_process_cannot_read_is_told(tmp_path: Path) -> None:
     (tmp_path / "lift.txt").write_bytes(b"\xff")
     paths = [str(DEMOS[0]), str(tmp_path / "lift.xml")]
     with pytest.raises(UsageError, match="not UTF-8"):
-        list(run_all(paths, Choice(), 2))
+        list(run_all(paths, TestOptions(), 2))
 
 
 @pytest.mark.parametrize("jobs", ["1", "2"])

@@ -97,10 +97,10 @@ def test_an_event_is_kept_while_what_is_said_at_last_is_said() -> None:
 
 
 def test_an_application_that_is_unloaded_leaves_its_unit() -> None:
-    from prima.messages import Unloaded
+    from prima.messages import ApplicationUnloaded
 
     call = with_other(PHOTO)
-    call.step(Unloaded("app"))
+    call.step(ApplicationUnloaded("app"))
     call.event("touch")
     call.finish("One moment.")
     assert call.saying() == ["Ouch."]

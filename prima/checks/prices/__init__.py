@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from prima.checks.prices.model import Gap, Outline, Price, Reaction, State, worst
+from prima.checks.prices.model import Gap, Outline, Price, PricedReaction, PricedState, worst
 from prima.devices.profile import Profile
 from prima.errors import Problem
 from prima.errors.diagnoses.behaviour import UNIT_PRICE
@@ -17,7 +17,17 @@ from prima.interpreter.elements import Document
 if TYPE_CHECKING:
     from prima.voicexml.document import VoiceDocument
 
-__all__ = ["Gap", "Outline", "Price", "Reaction", "State", "notes", "outline", "prices", "worst"]
+__all__ = [
+    "Gap",
+    "Outline",
+    "Price",
+    "PricedReaction",
+    "PricedState",
+    "notes",
+    "outline",
+    "prices",
+    "worst",
+]
 
 
 def outline(document: Document | VoiceDocument, profile: Profile) -> Outline:

@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from prima.checks.prices.model import Gap, Loop, Outline, Price, Reaction, State, devices_of
+from prima.checks.prices.model import (
+    EndlessLoop,
+    Gap,
+    Outline,
+    Price,
+    PricedReaction,
+    PricedState,
+    devices_of,
+)
 from prima.errors import Place
 from prima.markup.tree import Node
 
@@ -26,7 +34,7 @@ class Busy:
     """Why its length is not known."""
 
 
-def closure(outline: Outline, starts: Iterable[str]) -> list[State]:
+def closure(outline: Outline, starts: Iterable[str]) -> list[PricedState]:
     """All states reachable without a wait, including the start states.
 
     A subdialog returns to all its possible callers.
@@ -64,7 +72,7 @@ def _backwards(outline: Outline) -> tuple[dict[str, list[str]], dict[str, list[s
     return before, callers
 
 
-def _after(outline: Outline, reaction: Reaction) -> list[State]:
+def _after(outline: Outline, reaction: PricedReaction) -> list[PricedState]:
     """What a reaction does, and the states that it leads to or that go on beside it."""
     starts = [*reaction.does.goes, *reaction.does.calls]
     if reaction.stays is not None:
@@ -72,12 +80,12 @@ def _after(outline: Outline, reaction: Reaction) -> list[State]:
     return [reaction.does, *closure(outline, starts)]
 
 
-def busy_after(outline: Outline, reaction: Reaction) -> Busy:
+def busy_after(outline: Outline, reaction: PricedReaction) -> Busy:
     """The longest activity caused by an event."""
     return _busy(outline, _after(outline, reaction))
 
 
-def busy_after_each(outline: Outline, reactions: Sequence[Reaction]) -> list[Busy]:
+def busy_after_each(outline: Outline, reactions: Sequence[PricedReaction]) -> list[Busy]:
     """How long an application is busy because of each of some events.
 
     Of very many, what it takes at most whatever begins it, for each.
@@ -99,7 +107,7 @@ def busy_at_all(outline: Outline) -> Busy:
     return _busy(outline, [*outline.states.values(), *does, *outline.wakes])
 
 
-def _busy(outline: Outline, states: list[State]) -> Busy:
+def _busy(outline: Outline, states: list[PricedState]) -> Busy:
     found = Busy(unknown=list(outline.gaps))
     names = {state.name for state in states}
     for loop in loops(outline):
@@ -118,19 +126,19 @@ def _busy(outline: Outline, states: list[State]) -> Busy:
     return found
 
 
-def loops(outline: Outline) -> list[Loop]:
+def loops(outline: Outline) -> list[EndlessLoop]:
     """Cycles of states without a wait, and questions repeated endlessly."""
     if outline.loops is None:
         outline.loops = _loops(outline)
     return outline.loops
 
 
-def _loops(outline: Outline) -> list[Loop]:
+def _loops(outline: Outline) -> list[EndlessLoop]:
     found = (_loop_of(outline, states) for states in _cycles(outline))
     return [loop for loop in found if loop.devices]
 
 
-def _loop_of(outline: Outline, states: list[State]) -> Loop:
+def _loop_of(outline: Outline, states: list[PricedState]) -> EndlessLoop:
     """The loop of states that lead to each other, or of one that asks again and again."""
     names = frozenset(state.name for state in states)
     parts = [part for state in _with_called(outline, states) for part in state.parts]
@@ -145,13 +153,13 @@ def _loop_of(outline: Outline, states: list[State]) -> Loop:
     return _loop(place, f"{listed} {follows} without a wait for an event", parts, names)
 
 
-def _way_back(states: list[State], names: frozenset[str], otherwise: Node) -> Node:
+def _way_back(states: list[PricedState], names: frozenset[str], otherwise: Node) -> Node:
     """The first element that leads from one of the states to another."""
     ways = [node for state in states for to, node in state.goes.items() if to in names]
     return min(ways, key=lambda node: node.index, default=otherwise)
 
 
-def _with_called(outline: Outline, states: list[State]) -> list[State]:
+def _with_called(outline: Outline, states: list[PricedState]) -> list[PricedState]:
     """Some states, and those that their subdialogs lead to, which run in every round."""
     called: set[str] = set()
     left = [callee for state in states for callee in state.calls]
@@ -164,13 +172,13 @@ def _with_called(outline: Outline, states: list[State]) -> list[State]:
     return [*states, *(outline.states[one] for one in outline.states if one in called - own)]
 
 
-def _loop(place: Place, what: str, parts: list[Price], names: frozenset[str]) -> Loop:
+def _loop(place: Place, what: str, parts: list[Price], names: frozenset[str]) -> EndlessLoop:
     engages = any(part.engages for part in parts)
     leaves = all(part.leaves for part in parts)
-    return Loop(place, what, devices_of(parts), engages, leaves, names)
+    return EndlessLoop(place, what, devices_of(parts), engages, leaves, names)
 
 
-def _cycles(outline: Outline) -> list[list[State]]:
+def _cycles(outline: Outline) -> list[list[PricedState]]:
     """The cycles of states."""
     order = {name: at for at, name in enumerate(outline.states)}
     rings = [sorted(ring, key=order.__getitem__) for ring in _rings(outline)]

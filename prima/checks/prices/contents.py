@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TypeGuard
 
-from prima.interpreter.acts import Act, Handler, Return, Run, SendOut, Throw, all_acts, run_commands
+from prima.interpreter.acts import (
+    Act,
+    CommandRun,
+    Handler,
+    Return,
+    SendOut,
+    Throw,
+    all_acts,
+    run_commands,
+)
 from prima.interpreter.elements import (
     Block,
     Document,
@@ -31,7 +40,7 @@ def hooks_of(document: Document) -> Iterator[tuple[Form | None, Handler]]:
     """The handlers in Commands, each with the form of its Command."""
     for form, content, _ in document.contents():
         for act in all_acts(content):
-            for command in run_commands(act.steps) if isinstance(act, Run) else ():
+            for command in run_commands(act.steps) if isinstance(act, CommandRun) else ():
                 yield from ((form, one) for one in command.handlers)
 
 
@@ -60,7 +69,7 @@ def inside(unit: Unit) -> list[Item | Handler]:
 def again(item: Item) -> bool:
     """Whether content may run more than once."""
     acts = [act for content in own_contents(item) for act in all_acts(content)]
-    return any(not isinstance(act, Run) for act in acts)
+    return any(not isinstance(act, CommandRun) for act in acts)
 
 
 def sent_by(document: Document) -> set[str]:

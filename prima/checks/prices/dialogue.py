@@ -12,7 +12,7 @@ from prima.checks.prices.contents import (
     sent_by,
 )
 from prima.checks.prices.firsts import Firsts, asks_at_most, is_left, responds
-from prima.checks.prices.model import SPEECH, Gap, Outline, Price, Reaction, State
+from prima.checks.prices.model import SPEECH, Gap, Outline, Price, PricedReaction, PricedState
 from prima.checks.prices.own import OwnEvents
 from prima.checks.prices.texts import words_of
 from prima.checks.prices.times import (
@@ -36,7 +36,7 @@ from prima.interpreter.acts import (
     all_acts,
 )
 from prima.interpreter.elements import Document, Field, Form, Item, Link, Subdialog, Unit, all_items
-from prima.interpreter.rounds import Leads, raised_in
+from prima.interpreter.rounds import EventLeads, raised_in
 from prima.interpreter.selection import takes
 
 MOST_INNER, MOST_SCOPES = 40_000, 16_000_000
@@ -46,15 +46,15 @@ and of any."""
 
 def outline(document: Document, profile: Profile) -> Outline:
     """The outline of an application in PRIMA's language."""
-    return _Reader(document, profile).outline()
+    return _DialoguePrices(document, profile).outline()
 
 
 def parts(document: Document, profile: Profile) -> list[Price]:
     """All indivisible parts of an application in PRIMA's language, in document order."""
-    return _Reader(document, profile).parts
+    return _DialoguePrices(document, profile).parts
 
 
-class _Reader(Times):
+class _DialoguePrices(Times):
     def __init__(self, document: Document, profile: Profile) -> None:
         super().__init__(document, profile)
         self.inside: set[int] = set()
@@ -71,7 +71,7 @@ class _Reader(Times):
         self.firsts = Firsts(document, self.of_items, self.step)
         self.responses = Firsts(document, self.of_items, self.step, response=True)
         self.own = OwnEvents(document, self.parts, self.steps)
-        self._leads = Leads(raised_in)
+        self._leads = EventLeads(raised_in)
         self._inner = {one.node.index for _, one in handlers_of(document) if self.takes_inner(one)}
         """The handlers of events that the application makes for itself."""
         self._everywhere = [one for one in document.handlers if one.node.index in self._inner]
@@ -96,7 +96,7 @@ class _Reader(Times):
         forms = self.document.forms.values()
         self._check_size(len(forms), sum(1 for _ in handlers_of(self.document)))
         states = {form.id: self._state(form) for form in forms}
-        reactions: list[Reaction] = []
+        reactions: list[PricedReaction] = []
         for form, handler in handlers_of(self.document):
             reactions += self._reactions(handler, form, self.own.leads_round(handler, form))
         for form, hook in hooks_of(self.document):
@@ -114,16 +114,16 @@ class _Reader(Times):
                 " too many to follow what leads where. Split the document."
             )
 
-    def _link(self, link: Link, form: Form | None) -> Reaction:
+    def _link(self, link: Link, form: Form | None) -> PricedReaction:
         """What a link does, in a form or in all."""
         content = () if link.form else self._hearing(link.event, form)
-        does = self._content(State(SPEECH, link.node), [content], form)
+        does = self._content(PricedState(SPEECH, link.node), [content], form)
         if link.form:
             does.goes[link.form] = link.node
         begins = self._begins(content, form, link.form)
         stays = None if link.form or is_left(content) else _name(form)
         words = words_of(link.node)
-        return Reaction((SPEECH,), link.node, *begins, does, stays, words, self._later())
+        return PricedReaction((SPEECH,), link.node, *begins, does, stays, words, self._later())
 
     def _begins(
         self, content: Sequence[Act], form: Form | None, name: str = ""
@@ -139,10 +139,10 @@ class _Reader(Times):
         """The delayed events after which a response may come that has been looked for."""
         return [_goes_on(act) for act in self.responses.later]
 
-    def _wakes(self) -> list[State]:
+    def _wakes(self) -> list[PricedState]:
         """What is done about its own delayed events."""
         return [
-            self._content(State(one.events[0], one.node), [one.content], form)
+            self._content(PricedState(one.events[0], one.node), [one.content], form)
             for form, one in handlers_of(self.document)
             if any(name in self.sent for name in one.events)
         ]
@@ -155,9 +155,9 @@ class _Reader(Times):
             for act in one.content
         )  # fmt: skip
 
-    def _state(self, form: Form) -> State:
+    def _state(self, form: Form) -> PricedState:
         """What a form does, and what its answers and its own events lead to."""
-        state = State(form.id, form.node)
+        state = PricedState(form.id, form.node)
         contents: list[Sequence[Act]] = [filled.content for filled in form.filled]
         handlers = [*form.handlers, *self._everywhere]
         for item in all_items(form.items):
@@ -174,7 +174,7 @@ class _Reader(Times):
         contents += [one.content for one in inner]
         return self._content(state, contents, form)
 
-    def _add_item(self, state: State, item: Item, form: Form) -> None:
+    def _add_item(self, state: PricedState, item: Item, form: Form) -> None:
         """What an item does itself: it asks, or calls another form, or is a unit."""
         price = self.of_items.get(item.node.index)
         if price is not None and item.node.index not in self.inside:
@@ -193,11 +193,11 @@ class _Reader(Times):
 
     def _content(
         self,
-        state: State,
+        state: PricedState,
         contents: Iterable[Sequence[Act]],
         form: Form | None,
         inside: bool = False,
-    ) -> State:
+    ) -> PricedState:
         """Add what pieces of content do, and where they lead."""
         for content in contents:
             state.raises |= self.own.raised(content)
@@ -207,7 +207,7 @@ class _Reader(Times):
                 self._lead(state, act, form)
         return state
 
-    def _lead(self, state: State, act: Act, form: Form | None) -> None:
+    def _lead(self, state: PricedState, act: Act, form: Form | None) -> None:
         place = act.node.place
         match act:
             case Goto(form=str(name)) if name:
@@ -227,23 +227,27 @@ class _Reader(Times):
 
     # Events -----------------------------------------------------------------------------
 
-    def _reactions(self, handler: Handler, form: Form | None, rounds: bool) -> Iterator[Reaction]:
+    def _reactions(
+        self, handler: Handler, form: Form | None, rounds: bool
+    ) -> Iterator[PricedReaction]:
         """What a handler does as a reaction: to events from outside, and where its author says so
         to the application's own (C5); ``rounds`` if it leads to itself again."""
         if handler.reactive is False:
             return
         foreign, own = self._divided(handler.events)
-        does = self._content(State(handler.events[0], handler.node), [handler.content], form)
+        does = self._content(PricedState(handler.events[0], handler.node), [handler.content], form)
         begins = self._begins(handler.content, form)
         later = self._later()
         stays = None if is_left(handler.content, back=False) else _name(form)
         if foreign:
             made = self._made(foreign[0], handler) if rounds and not own else None
-            yield Reaction(foreign, handler.node, *begins, does, stays, later=later, made=made)
+            yield PricedReaction(
+                foreign, handler.node, *begins, does, stays, later=later, made=made
+            )
         if own and handler.reactive:
             made = self._made(own[0], handler) if rounds else None
             often = Gap(handler.node.place, f"how often its own event {own[0]} comes")
-            yield Reaction(
+            yield PricedReaction(
                 own, handler.node, *begins, does, stays, later=later, made=made, often=often
             )
 

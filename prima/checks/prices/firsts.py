@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from prima.checks.prices.model import Price
 from prima.interpreter.acts import (
     Act,
+    CommandRun,
     Exit,
     Expression,
     Foreach,
@@ -14,7 +15,6 @@ from prima.interpreter.acts import (
     Handler,
     If,
     Return,
-    Run,
     SendOut,
     StepTemplate,
     Throw,
@@ -119,7 +119,7 @@ class Firsts:
     def _goes_on(self, act: Act, form: Form | None) -> bool:
         """Add what an act may do first; whether what is behind it may be first as well."""
         match act:
-            case Run():
+            case CommandRun():
                 return self._run(act, form)
             case If():
                 return self._branch(act, form)
@@ -129,7 +129,7 @@ class Firsts:
                 self._stay(None)
         return not isinstance(act, Goto | Return | Exit)
 
-    def _run(self, act: Run, form: Form | None) -> bool:
+    def _run(self, act: CommandRun, form: Form | None) -> bool:
         """Add what Commands are looked for among some; whether the content behind them is, too."""
         prices = [self._step(step) for step in act.steps]
         if not self._response:
@@ -148,7 +148,7 @@ class Firsts:
             self._ends(act, form)
         return not answering
 
-    def _ends(self, act: Run, form: Form | None) -> None:
+    def _ends(self, act: CommandRun, form: Form | None) -> None:
         """Add what is done about the ends of Commands."""
         for command in run_commands(act.steps):
             for hook in command.handlers:

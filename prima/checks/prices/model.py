@@ -63,7 +63,7 @@ class Gap:
 
 
 @dataclass(slots=True)
-class State:
+class PricedState:
     """What an application does without waiting for an event, in a form or after an event."""
 
     name: str
@@ -84,7 +84,7 @@ class State:
 
 
 @dataclass(slots=True)
-class Reaction:
+class PricedReaction:
     """What an application does about an event from the user or the surroundings (C5)."""
 
     events: tuple[str, ...]
@@ -94,7 +94,7 @@ class Reaction:
     responds: list[Price]
     """What may come up to its first word or movement towards the user, that included; empty
     where there is none."""
-    does: State
+    does: PricedState
     stays: str | None = None
     """The state that goes on beside it; None where it is left, ``""`` where it may be any."""
     words: frozenset[str] | None = None
@@ -108,7 +108,7 @@ class Reaction:
 
 
 @dataclass(slots=True)
-class Loop:
+class EndlessLoop:
     """A loop that may run endlessly without a wait for an event."""
 
     place: Place
@@ -125,13 +125,13 @@ class Outline:
     """All that is known of an application: its parts in document order, states and reactions."""
 
     parts: list[Price]
-    states: dict[str, State]
-    reactions: list[Reaction]
-    wakes: list[State]
+    states: dict[str, PricedState]
+    reactions: list[PricedReaction]
+    wakes: list[PricedState]
     """What is done about the application's own delayed events: no reactions."""
     holds: list[tuple[Place, int]]
     gaps: list[Gap]
-    loops: list[Loop] | None = None
+    loops: list[EndlessLoop] | None = None
     """What may go on without an end, once somebody has looked."""
     backwards: tuple[dict[str, list[str]], dict[str, list[str]]] | None = None
     """The predecessors and the callers of each state, once somebody has looked."""

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Sequence
 from itertools import takewhile
 
 from prima.checks.prices.model import Price
-from prima.interpreter.acts import Act, Assign, Handler, Run, Script, SendOut, all_acts
+from prima.interpreter.acts import Act, Assign, CommandRun, Handler, Script, SendOut, all_acts
 from prima.interpreter.elements import Document, Form
-from prima.interpreter.rounds import Leads, raised_in
+from prima.interpreter.rounds import EventLeads, raised_in
 from prima.interpreter.selection import prefixes
 from prima.interpreter.sensors import sensors_of
 
@@ -40,7 +40,7 @@ class OwnEvents:
         """The watches that may look at variables."""
         self._moved = {name for name, of in sensors if of is None or not of.isdisjoint(MOVED)}
         """The watches that may look at where the robot is."""
-        self._leads = Leads(self.raised)
+        self._leads = EventLeads(self.raised)
 
     def leads_round(self, handler: Handler, form: Form | None) -> bool:
         """Whether what a handler does makes its event come again before others have had a turn."""
@@ -55,7 +55,7 @@ class OwnEvents:
         One that is sent when a Command has ended comes after that: a reaction that waits goes first.
         """
         found = raised_in(content)
-        for act in all_acts(tuple(takewhile(lambda one: not isinstance(one, Run), content))):
+        for act in all_acts(tuple(takewhile(lambda one: not isinstance(one, CommandRun), content))):
             if isinstance(act, SendOut) and isinstance(act.delay, int) and act.delay < self._takes:
                 found.add(act.event)
         if any("locomotion" in part.devices for part in self._steps(content)):

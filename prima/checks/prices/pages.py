@@ -30,7 +30,7 @@ WITHIN = re.compile(r"""\s*(['"])#[^'"]*\1(\s*\+\s*[\w.$]+)*\s*""")
 
 
 @dataclass(frozen=True, slots=True)
-class Target:
+class PageTarget:
     """The target of an element: dialogs of a page, or unknown."""
 
     page: Page | None = None
@@ -38,7 +38,7 @@ class Target:
     gap: Gap | None = None
 
 
-class Pages:
+class PricedPages:
     """All documents of an application, as far as files that it names by themselves."""
 
     def __init__(self, document: VoiceDocument) -> None:
@@ -66,29 +66,29 @@ class Pages:
         """The application root document of a page, if it has one of its own."""
         return self._known.get(page.application) if page.application else None
 
-    def target(self, page: Page, node: Node) -> Target:
+    def target(self, page: Page, node: Node) -> PageTarget:
         """Where an element of a page leads."""
         plain, computed = TARGETS[node.tag]
         code = node.get(computed)
         if code:
             if WITHIN.fullmatch(code):
-                return Target(page, tuple(page.dialogs))
+                return PageTarget(page, tuple(page.dialogs))
             place = node.attribute_place(computed)
-            return Target(gap=Gap(place, "an expression says where it goes on"))
+            return PageTarget(gap=Gap(place, "an expression says where it goes on"))
         uri = node.get(plain).strip()
         if not uri:
-            return Target()
+            return PageTarget()
         base, dialog = urldefrag(page.resolve(uri, node) if uri[:1] != "#" else uri)
         if urlsplit(base).scheme == "service" and dialog in page.dialogs:
             base = ""
         if urlsplit(base).scheme or base.startswith("//"):
             place = node.attribute_place(plain)
-            return Target(gap=Gap(place, f"the document that {base} answers is not known"))
+            return PageTarget(gap=Gap(place, f"the document that {base} answers is not known"))
         found = self._open(base, node) if base else page
         if found is None:
-            return Target(gap=self._full(node))
+            return PageTarget(gap=self._full(node))
         first = next(iter(found.dialogs), "")
-        return Target(found, (dialog or first,))
+        return PageTarget(found, (dialog or first,))
 
     def _open(self, uri: str, node: Node) -> Page | None:
         """A document of the application's folder, read once; None if it cannot be read."""

@@ -57,7 +57,7 @@ def _closed(parts: list[str | Cue]) -> list[str | Cue]:
     return found
 
 
-class Reader:
+class SpeechReader:
     """Reads what elements say; ``recording`` gives how long (ms) one of a node's takes, if known."""
 
     def __init__(self, recording: Callable[[Node, str], int | None]) -> None:

@@ -17,11 +17,11 @@ from prima.devices.profile import Profile
 from prima.devices.voice import duration
 from prima.interpreter.acts import (
     Act,
+    CommandRun,
     CommandTemplate,
     Expression,
     Handler,
     Pause,
-    Run,
     StepTemplate,
     Text,
     all_acts,
@@ -59,7 +59,7 @@ class Times:
 
     def steps(self, content: Sequence[Act]) -> list[Price]:
         """The parts of executable content."""
-        runs = [act for act in all_acts(content) if isinstance(act, Run)]
+        runs = [act for act in all_acts(content) if isinstance(act, CommandRun)]
         return [self.step(step) for run in runs for step in run.steps]
 
     def step(self, step: StepTemplate) -> Price:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import chain
 
 from prima.checks.prices.firsts import responds
-from prima.checks.prices.model import Gap, Outline, Price, Reaction, State
+from prima.checks.prices.model import Gap, Outline, Price, PricedReaction, PricedState
 from prima.checks.prices.pages import TARGETS
 from prima.checks.prices.tags import (
     holders,
@@ -17,7 +17,7 @@ from prima.checks.prices.tags import (
     to_item,
 )
 from prima.checks.prices.times import ASKED_AGAIN, OFTEN, QUESTION
-from prima.checks.prices.voicetimes import ASKING, Times
+from prima.checks.prices.voicetimes import ASKING, VoiceTimes
 from prima.devices.profile import Profile
 from prima.interpreter.selection import takes
 from prima.markup.tree import Node
@@ -32,16 +32,16 @@ SILENT_ACTS = ("assign", "var", "log", "script", "clear", "desc")
 
 def outline(document: VoiceDocument, profile: Profile) -> Outline:
     """The outline of a VoiceXML application and its further documents."""
-    return _Reader(document, profile).outline()
+    return _VoicePrices(document, profile).outline()
 
 
-class _Reader(Times):
+class _VoicePrices(VoiceTimes):
     def __init__(self, document: VoiceDocument, profile: Profile) -> None:
         super().__init__(document, profile)
         self.thrown = {name for page in self.pages for name in thrown_by(page.root)}
         self.parts: list[Price] = []
-        self.states: dict[str, State] = {}
-        self.caught: list[tuple[Node, State]] = []
+        self.states: dict[str, PricedState] = {}
+        self.caught: list[tuple[Node, PricedState]] = []
         self.inside: set[int] = set()
         """The elements in units around form items, by their identities."""
         for page in self.pages:
@@ -64,7 +64,7 @@ class _Reader(Times):
         for name, dialog in page.dialogs.items():
             self.states[self._key(page, name)] = self._dialog(name, dialog)
         for node in page.root.all(*HANDLERS):
-            self._catch(node, State("", node))
+            self._catch(node, PricedState("", node))
         for node in page.root.all("property"):
             self.parts += self._waiting(node, node.get("value"), node.get("name"))
 
@@ -76,7 +76,7 @@ class _Reader(Times):
         """All that is known of the application."""
         parts = list({(one.node.place, one.what): one for one in self.parts}.values())
         reactions = [
-            Reaction(
+            PricedReaction(
                 tuple(name or "message" for name in names),
                 node,
                 *self._begins(node, parts),
@@ -114,9 +114,9 @@ class _Reader(Times):
 
     # Dialogs ----------------------------------------------------------------------------
 
-    def _dialog(self, name: str, dialog: Node) -> State:
+    def _dialog(self, name: str, dialog: Node) -> PricedState:
         """What a dialog does, and what answers and its own events lead to."""
-        state = State(self._key(self.page, name), dialog)
+        state = PricedState(self._key(self.page, name), dialog)
         items = [dialog] if dialog.tag == "menu" else dialog.nodes
         root = self.pages.root(self.page)
         wider = [self._held(one).wide for one in (self.page.root, *([root.root] if root else ()))]
@@ -144,7 +144,7 @@ class _Reader(Times):
         own = any(takes(name, one) for one in self.thrown) or "" in self.thrown
         return bool(name) and is_foreign(name) and not own
 
-    def _item(self, state: State, item: Node, dialog: Node) -> None:
+    def _item(self, state: PricedState, item: Node, dialog: Node) -> None:
         """What a form item asks."""
         if item.key == UNIT:
             state.parts.append(self._unit(item, dialog))
@@ -156,7 +156,7 @@ class _Reader(Times):
             if not self._bounded(item, dialog):
                 state.repeats.append(Gap(item.place, ASKED_AGAIN))
 
-    def _lead(self, state: State, node: Node) -> None:
+    def _lead(self, state: PricedState, node: Node) -> None:
         """Where an element leads without a wait for an event."""
         if node.tag in TARGETS:
             target = self.pages.target(self.page, node)
@@ -168,9 +168,9 @@ class _Reader(Times):
         if node.tag == "clear" or (node.tag == "goto" and to_item(node)):
             state.repeats.append(Gap(node.place, "items of the dialog are visited again"))
 
-    def _catch(self, node: Node, around: State) -> None:
+    def _catch(self, node: Node, around: PricedState) -> None:
         """A handler: what it does belongs to a reaction where its event comes from outside."""
-        does = State(node.get("event") or node.tag, node)
+        does = PricedState(node.get("event") or node.tag, node)
         for holder in holders(node):
             does.parts += self.said[id(holder)]
         self.parts += does.parts if id(node) not in self.inside else ()

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from prima.checks.prices.commands import command_price, group_price, unit_price
 from prima.checks.prices.model import Price, devices_of
-from prima.checks.prices.pages import Pages
-from prima.checks.prices.speech import Reader, Said, utterances
+from prima.checks.prices.pages import PricedPages
+from prima.checks.prices.speech import Said, SpeechReader, utterances
 from prima.checks.prices.tags import (
     commands_in,
     holders,
@@ -49,11 +49,11 @@ class _Held:
         }
 
 
-class Times:
+class VoiceTimes:
     """How long speech, Commands, questions, units and calls may last."""
 
     def __init__(self, document: VoiceDocument, profile: Profile) -> None:
-        self.pages = Pages(document)
+        self.pages = PricedPages(document)
         self.profile = profile
         self.page = document.page
         self.said: dict[int, list[Price]] = {}
@@ -126,7 +126,7 @@ class Times:
         self, node: Node, pieces: list[Node | str], menu: Node | None
     ) -> tuple[int, str]:
         page = self.page
-        reader = Reader(lambda one, name: self.pages.recording(page, one, name))
+        reader = SpeechReader(lambda one, name: self.pages.recording(page, one, name))
         said: Said = reader.read(pieces, node.get("xml:lang") or page.lang, menu)
         return max(said.lasts(self.profile.voices), 1), said.unknown
 

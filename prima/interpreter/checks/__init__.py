@@ -19,7 +19,7 @@ from prima.interpreter.checks.robot import check_commands
 from prima.interpreter.checks.rounds import check_endless, check_rounds
 from prima.interpreter.checks.targets import check_items, check_targets
 from prima.interpreter.elements import Document
-from prima.interpreter.events import Events
+from prima.interpreter.events import KnownEvents
 from prima.interpreter.repeats import source_of, told_twice
 from prima.interpreter.rounds import endless_reactions
 
@@ -47,5 +47,5 @@ def check_document(document: Document) -> list[Problem]:
     facts = Facts(document)
     problems = [problem for check in CHECKS for problem in check(facts)]
     problems += endless_reactions(document)
-    problems += Events(document, facts.acts).problems()
+    problems += KnownEvents(document, facts.acts).problems()
     return [*problems, *told_twice([source_of(document)])]

@@ -12,6 +12,7 @@ from prima.errors.diagnoses.names import BAD_EXPRESSION
 from prima.interpreter.acts import (
     Act,
     Assign,
+    CommandRun,
     Declare,
     Expression,
     Foreach,
@@ -19,7 +20,6 @@ from prima.interpreter.acts import (
     Handler,
     If,
     Log,
-    Run,
     Script,
     SendOut,
     Throw,
@@ -60,7 +60,7 @@ ASSIGNING_CONDITION = Diagnosis(
 )
 
 
-def _of_run(run: Run) -> Iterator[object]:
+def _of_run(run: CommandRun) -> Iterator[object]:
     for command in run_commands(run.steps):
         yield from command.args.values()
         yield from command.text or ()
@@ -77,7 +77,7 @@ HELD: Mapping[type[Act], Callable[[Any], Iterable[object]]] = {
     Throw: lambda act: (act.event, act.message),
     Goto: lambda act: (act.form, act.item),
     SendOut: lambda act: (act.service, act.delay, *(value for _, value in act.params)),
-    Run: _of_run,
+    CommandRun: _of_run,
 }
 """What acts hold that may be expressions, by kinds; scripts are looked at by themselves."""
 

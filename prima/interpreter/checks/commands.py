@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from prima.errors import Diagnosis, Problem
 from prima.errors.diagnoses.behaviour import SHARED_DEVICE
-from prima.interpreter.acts import GroupTemplate, Run, StepTemplate, Text, run_commands
+from prima.interpreter.acts import CommandRun, GroupTemplate, StepTemplate, Text, run_commands
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Field, Form, Unit
 from prima.interpreter.units import long_unit, speak, unit_speaks
@@ -35,7 +35,7 @@ ONE_AFTER_THE_OTHER = SHARED_DEVICE.says(
 
 def check_texts(facts: Facts) -> Iterator[Problem]:
     """Text with a variable in braces, as other languages write a value."""
-    for form, run in facts.acts.of(Run):
+    for form, run in facts.acts.of(CommandRun):
         for command in run_commands(run.steps):
             yield from _literal(facts, command.node, command.text, form)
     for form, items in facts.forms:
@@ -58,7 +58,7 @@ def check_units(facts: Facts) -> Iterator[Problem]:
         for item in items:
             if isinstance(item, Unit):
                 yield from long_unit(item.node, unit_speaks(item, lang))
-    for _, run in facts.acts.of(Run):
+    for _, run in facts.acts.of(CommandRun):
         for step in run.steps:
             if isinstance(step.what, GroupTemplate):
                 commands = run_commands(step.what.steps)
@@ -67,7 +67,7 @@ def check_units(facts: Facts) -> Iterator[Problem]:
 
 def check_branches(facts: Facts) -> Iterator[Problem]:
     """U3: branches of a par that share a device run one after the other."""
-    for _, run in facts.acts.of(Run):
+    for _, run in facts.acts.of(CommandRun):
         steps = run.steps
         chained = all(step.after == ((n - 1,) if n else ()) for n, step in enumerate(steps))
         if not chained and len(steps) <= MANY_STEPS:

@@ -18,13 +18,13 @@ from prima.interpreter.elements import (
     all_items,
     runs_of,
 )
-from prima.script.known import Known, Scope
+from prima.script.known import Known, NameScope
 from prima.script.names import script_names
 
 NONE: frozenset[str] = frozenset()
 
 
-class Leads:
+class FormLeads:
     """Where forms lead, by their names, and the document's own content (None)."""
 
     __slots__ = ("anywhere", "calls", "exits", "targets")
@@ -50,14 +50,14 @@ class Facts:
     def __init__(self, document: Document) -> None:
         self.document = document
         self.acts = Acts(document)
-        self.shared = Scope(setup_names(document.setup))
+        self.shared = NameScope(setup_names(document.setup))
         """Names that all forms see."""
-        self._declared: dict[str | None, Scope] = {}
+        self._declared: dict[str | None, NameScope] = {}
         """Names by the form whose content declares them; None for the document."""
-        self._given: dict[str, Scope] = {}
+        self._given: dict[str, NameScope] = {}
         """Names that subdialogs give as params, by the form they call."""
         self._gather()
-        self._common = Scope(self.shared | self._declared.get(None, NONE))
+        self._common = NameScope(self.shared | self._declared.get(None, NONE))
 
     @cached_property
     def forms(self) -> list[tuple[Form, Sequence[Item]]]:
@@ -84,16 +84,16 @@ class Facts:
         if item.node.get("name"):
             self._own(form).update((item.name, f"{item.name}$"))
         if isinstance(item, Subdialog):
-            given = self._given.setdefault(item.form, Scope())
+            given = self._given.setdefault(item.form, NameScope())
             given |= {name for name, _ in item.params}
 
-    def _own(self, form: Form | None) -> Scope:
-        return self._declared.setdefault(name_of(form), Scope())
+    def _own(self, form: Form | None) -> NameScope:
+        return self._declared.setdefault(name_of(form), NameScope())
 
     @cached_property
     def _every(self) -> Known:
         """All variables that there are."""
-        return Known(Scope(self.shared.union(*self._declared.values(), *self._given.values())))
+        return Known(NameScope(self.shared.union(*self._declared.values(), *self._given.values())))
 
     def known_in(self, form: Form | None) -> Known:
         """All variables that content of a form may see, or the document's own content (None)."""
@@ -105,9 +105,9 @@ class Facts:
     # Ways
 
     @cached_property
-    def leads(self) -> Leads:
+    def leads(self) -> FormLeads:
         """Where each form leads, and the document's own content."""
-        found = Leads()
+        found = FormLeads()
         for form, goto in self.acts.of(Goto):
             if isinstance(goto.form, str):
                 found.targets[name_of(form)].append(goto.form)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from prima.errors import Diagnosis, Problem
-from prima.interpreter.acts import Run, run_commands
+from prima.interpreter.acts import CommandRun, run_commands
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Field, Form, Item, Subdialog
 from prima.language.commands import TABLE_4_2
@@ -94,7 +94,7 @@ def _speaking(facts: Facts) -> set[str]:
     """The forms whose content certainly makes the robot say something."""
     return {
         form.id
-        for form, run in facts.acts.of(Run)
+        for form, run in facts.acts.of(CommandRun)
         if form and any(one.text or one.type not in TABLE_4_2 for one in run_commands(run.steps))
     }
 

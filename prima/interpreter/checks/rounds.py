@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from prima.errors import Problem
 from prima.errors.diagnoses.behaviour import ENDLESS
-from prima.interpreter.acts import Exit, Foreach, Goto, If, Return, Run, Throw, run_commands
+from prima.interpreter.acts import CommandRun, Exit, Foreach, Goto, If, Return, Throw, run_commands
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Block, Form
 
@@ -29,7 +29,7 @@ GOES_TO_ITSELF = ENDLESS.says(
 
 def check_endless(facts: Facts) -> Iterator[Problem]:
     """A feedback Command without an end of its own, in a state without handlers."""
-    for form, run in facts.acts.of(Run):
+    for form, run in facts.acts.of(CommandRun):
         for command in run_commands(run.steps):
             if command.type != "tracking-human" or form is None:
                 continue

@@ -12,7 +12,7 @@ from prima.interpreter.checks.facts import Facts, name_of
 from prima.interpreter.elements import Field, Filled, Form, Item, Subdialog
 from prima.markup.spans import instead, value_span
 from prima.markup.tree import Node
-from prima.script.known import Scope
+from prima.script.known import NameScope
 
 UNKNOWN_FORM = NO_SUCH_FORM.says('There is no form "{name}" to go to.')
 UNKNOWN_ITEM = NO_SUCH_ITEM.says('There is no form item "{name}" to go to.')
@@ -70,7 +70,7 @@ def check_items(facts: Facts) -> Iterator[Problem]:
         if items or form.filled:
             yield from _two_items(form, items)
             asking = [item for item in items if isinstance(item, Field | Subdialog)]
-            inputs = Scope(item.name for item in asking)
+            inputs = NameScope(item.name for item in asking)
             for filled in (*form.filled, *(one for item in asking for one in item.filled)):
                 yield from _namelist(filled, filled.names, inputs)
 
@@ -83,7 +83,7 @@ def _two_items(form: Form, items: Sequence[Item]) -> Iterator[Problem]:
         seen.add(item.name)
 
 
-def _namelist(holder: Filled | Clear, names: Sequence[str], known: Scope) -> Iterator[Problem]:
+def _namelist(holder: Filled | Clear, names: Sequence[str], known: NameScope) -> Iterator[Problem]:
     for name in names:
         if name not in known:
             spans = value_span(holder.node, "namelist", name)

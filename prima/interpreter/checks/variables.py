@@ -16,13 +16,13 @@ from prima.interpreter.events import handlers_of
 from prima.markup.spans import Declarations, value_span
 from prima.markup.tree import Node
 from prima.script.globals import HANDLED
-from prima.script.known import Known, Scope
+from prima.script.known import Known, NameScope
 from prima.script.names import expression_names, script_names
 
 CALL = re.compile(r"\s*\(")
 SCOPED = ("document", "dialog", "application")
 """Scopes that the name of a variable may begin with."""
-VARIABLES = Scope(HANDLED | {"session", "sensor"})
+VARIABLES = NameScope(HANDLED | {"session", "sensor"})
 """What the language itself declares."""
 ABSENT = {
     "console": 'Write <log expr="..."/>.',

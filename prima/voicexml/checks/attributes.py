@@ -30,7 +30,7 @@ HAS_BOTH = EXCLUSIVE.says('<{tag}> has both "{name}" and {other}.', "Keep one of
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class ElementEntry:
     """What the tables say of an element, ready for use."""
 
     known: frozenset[str]
@@ -40,11 +40,11 @@ class Entry:
     text: bool
 
 
-def _entry(element: Element) -> Entry:
+def _entry(element: Element) -> ElementEntry:
     names = [item.name for item in element.attributes]
     kinds = {name: VALUES.get(f"{element.key} {name}") or VALUES.get(name, "") for name in names}
     kinds["xml:lang"] = "" if element.key == "grammar" else "language"  # a grammar checks its own
-    return Entry(
+    return ElementEntry(
         frozenset(names),
         tuple(item.name for item in element.attributes if item.required),
         {name: kind for name, kind in kinds.items() if kind},
@@ -56,7 +56,7 @@ def _entry(element: Element) -> Entry:
 ENTRIES = {key: _entry(element) for key, element in VOICEXML.elements.items()}
 
 
-def check_attributes(node: Node, entry: Entry) -> Iterator[Problem]:
+def check_attributes(node: Node, entry: ElementEntry) -> Iterator[Problem]:
     """Attributes that are unknown, wrong or missing."""
     for name, text in node.attributes.items():
         if name == "method" and text != text.lower():

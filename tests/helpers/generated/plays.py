@@ -17,12 +17,12 @@ from prima.interpreter.application import Interpreter
 from prima.interpreter.reader import read_document
 from prima.language.commands import PATIENCE_MS
 from prima.messages import (
+    ApplicationLoaded,
+    ApplicationUnloaded,
     Emergency,
     Inbound,
-    Loaded,
     Occurred,
     Record,
-    Unloaded,
 )
 from prima.scheduler.policy import policy_named
 from prima.session import Session
@@ -53,7 +53,7 @@ def perform(
     session = Session(documents, chosen, play.world.table, bound, patience=patience)
     devices = Devices(play.world)
     for document, start in zip(documents, play.loads, strict=True):
-        devices.plan(start, Loaded(document.id))
+        devices.plan(start, ApplicationLoaded(document.id))
     for time, value in play.events:
         devices.plan(time, value)
     records: list[Record] = []
@@ -361,7 +361,9 @@ def plays(draw: Any, lively: bool = False) -> Play:
         events.append((time, Emergency(True)))
         events.append((time + draw(st.integers(1, 3000)), Emergency(False, draw(st.booleans()))))
     if not lively and draw(st.integers(1, 4)) == 4:
-        events.append((draw(st.integers(1, 8000)), Unloaded(draw(st.sampled_from(names)))))
+        events.append(
+            (draw(st.integers(1, 8000)), ApplicationUnloaded(draw(st.sampled_from(names))))
+        )
     events.sort(key=_when)
     if len(names) == 3 and draw(st.booleans()):
         # All three may react to one event.

@@ -16,7 +16,7 @@ from prima.errors import UsageError
 from prima.errors.visible import visible
 from prima.live.driver import Driver, speaks
 from prima.live.drivers.console.commands import HERE, Typed, help_text, read_typed, waits
-from prima.live.drivers.console.lines import Lines
+from prima.live.drivers.console.lines import LineSource
 from prima.messages import Heard
 from prima.sim.map import Map
 
@@ -26,10 +26,10 @@ TICK_S = 0.02
 FASTEST = 1000.0
 
 
-class Saying(NamedTuple):
+class ConsoleSaying(NamedTuple):
     """A text that is being said. Times are ms of the run."""
 
-    timeline: voice.Timeline
+    timeline: voice.SpeechTimeline
     began: int
     ends: int
 
@@ -52,12 +52,12 @@ class ConsoleDriver(Driver):
 
     def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:
         super().__init__(settings, profile, site)
-        self._saying: dict[str, Saying] = {}
+        self._saying: dict[str, ConsoleSaying] = {}
         """What goals are saying."""
         self._listening: set[str] = set()
         self._heard: tuple[int, str] | None = None
         """What the user is saying, and when they have said it (ms of the run)."""
-        self._lines: Lines | None = None
+        self._lines: LineSource | None = None
         self._task: asyncio.Task[None] | None = None
         self._speed = 1.0
 
@@ -74,7 +74,7 @@ class ConsoleDriver(Driver):
         self._speed = self._number("speed", 1.0)
         seen, source = self._flag("user", True), _standard_input()
         if self._flag("stdin", True) and source is not None and self._lines is None:
-            self._lines = Lines(source)
+            self._lines = LineSource(source)
             self._task = asyncio.ensure_future(self._read(self._lines))
         if self._sees:
             self.tell(HERE if seen else Sees(False))
@@ -94,7 +94,7 @@ class ConsoleDriver(Driver):
         rates = self.profile.voices
         timeline = voice.timeline(command.text or "", command.lang, rates, command.cues)
         now, lasts = self.now(), max(round(timeline.total / self._speed), 1)
-        self._saying[goal.key] = Saying(timeline, now, now + lasts)
+        self._saying[goal.key] = ConsoleSaying(timeline, now, now + lasts)
         if text:
             self._print(f"robot: {' '.join(visible(text).split())}")
 
@@ -136,7 +136,7 @@ class ConsoleDriver(Driver):
 
     # What is typed ----------------------------------------------------------------------
 
-    async def _read(self, lines: Lines) -> None:
+    async def _read(self, lines: LineSource) -> None:
         """Carry out one line after the other."""
         while (line := await lines.next()) is not None:
             if not line.strip():

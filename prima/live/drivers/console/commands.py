@@ -18,7 +18,7 @@ HERE = Sees(True, NEAR_M, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Command:
+class ConsoleCommand:
     """A command: how it is written, what it does, and what it tells the run."""
 
     usage: str
@@ -74,19 +74,21 @@ def _alone(news: News) -> Callable[[str], News]:
 
 
 COMMANDS = {
-    "touch": Command("/touch SENSOR", "touches the robot", _touch),
-    "event": Command("/event NAME KEY=VALUE ...", "an event of the surroundings", _event),
-    "sensor": Command("/sensor NAME=VALUE", "a sensor's value changes", _sensor),
-    "message": Command("/message from NAME: TEXT", "a message arrives", _message),
-    "leave": Command("/leave", "the user goes away and is seen no more", _alone(Sees(False))),
-    "come": Command("/come", "the user is seen again", _alone(HERE)),
-    "stop": Command("/stop", "the emergency stop is pressed", _alone(Emergency(True))),
-    "go": Command(
+    "touch": ConsoleCommand("/touch SENSOR", "touches the robot", _touch),
+    "event": ConsoleCommand("/event NAME KEY=VALUE ...", "an event of the surroundings", _event),
+    "sensor": ConsoleCommand("/sensor NAME=VALUE", "a sensor's value changes", _sensor),
+    "message": ConsoleCommand("/message from NAME: TEXT", "a message arrives", _message),
+    "leave": ConsoleCommand(
+        "/leave", "the user goes away and is seen no more", _alone(Sees(False))
+    ),
+    "come": ConsoleCommand("/come", "the user is seen again", _alone(HERE)),
+    "stop": ConsoleCommand("/stop", "the emergency stop is pressed", _alone(Emergency(True))),
+    "go": ConsoleCommand(
         "/go", "it is released, and what it stopped goes on", _alone(Emergency(False, True))
     ),
-    "wait": Command("/wait TIME, /wait", "the next line waits so long, or for a question"),
-    "help": Command("/help", "says this"),
-    "quit": Command("/quit", "ends the run, as Ctrl-C does"),
+    "wait": ConsoleCommand("/wait TIME, /wait", "the next line waits so long, or for a question"),
+    "help": ConsoleCommand("/help", "says this"),
+    "quit": ConsoleCommand("/quit", "ends the run, as Ctrl-C does"),
 }
 
 

@@ -14,7 +14,7 @@ AHEAD = 100
 """Lines that are read before they are asked for."""
 
 
-class Lines:
+class LineSource:
     """Gives the lines of a terminal, a pipe or a file until its end.
 
     A thread reads, for no other way serves all three. It waits for input for ever, so it keeps

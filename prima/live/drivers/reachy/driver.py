@@ -14,8 +14,8 @@ from prima.devices.settings import Does, DriverSettings
 from prima.devices.settings import Pose as Place
 from prima.errors import UsageError
 from prima.live.driver import Refused, TaskDriver, Unreachable, Unusable
-from prima.live.drivers.reachy.link import Link, read_address
-from prima.live.drivers.reachy.pose import LIMITS, NEAR, Pose, read_pose, read_step, wrapped
+from prima.live.drivers.reachy.link import ReachyLink, read_address
+from prima.live.drivers.reachy.pose import LIMITS, NEAR, HeadPose, read_pose, read_step, wrapped
 from prima.live.told import Teller
 from prima.messages import Data
 from prima.sim.map import Map
@@ -55,8 +55,8 @@ class ReachyDriver(TaskDriver):
 
     def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:
         super().__init__(settings, profile, site)
-        self._link: Link | None = None
-        self._sent: Pose | None = None
+        self._link: ReachyLink | None = None
+        self._sent: HeadPose | None = None
         """Where all parts were sent last; None where that was not reached."""
         self._sensing: asyncio.Task[None] | None = None
         self._address = address_of(settings)
@@ -74,7 +74,7 @@ class ReachyDriver(TaskDriver):
             raise Unusable(f"The library {missing[0]} is missing: {INSTALL}")
         await self._leave()
         self._sent = None
-        self._link = Link(self._address, self.lose)
+        self._link = ReachyLink(self._address, self.lose)
         try:
             await self._wake(self._link)
             if self.settings.senses:
@@ -85,7 +85,7 @@ class ReachyDriver(TaskDriver):
             await self._leave()
             raise
 
-    async def _sense(self, link: Link, teller: Teller) -> None:
+    async def _sense(self, link: ReachyLink, teller: Teller) -> None:
         """Ask the daemon for what its sensors say now, and tell what has changed.
 
         Raises:
@@ -103,7 +103,7 @@ class ReachyDriver(TaskDriver):
         for news in teller.drain():
             self.tell(news)
 
-    async def _sense_on(self, link: Link, teller: Teller) -> None:
+    async def _sense_on(self, link: ReachyLink, teller: Teller) -> None:
         """Ask again and again, for as long as the daemon answers."""
         while True:
             await asyncio.sleep(SENSE_S)
@@ -113,7 +113,7 @@ class ReachyDriver(TaskDriver):
                 self.lose(str(error))
                 return
 
-    async def _wake(self, link: Link) -> None:
+    async def _wake(self, link: ReachyLink) -> None:
         await link.connect()
         try:
             motors = await link.ask("GET", "/api/motors/status")
@@ -146,7 +146,9 @@ class ReachyDriver(TaskDriver):
                 self._sent = await self._make(link, goal, does, sent)
         return {}
 
-    async def _make(self, link: Link, goal: Begin, does: Does | None, sent: Pose | None) -> Pose:
+    async def _make(
+        self, link: ReachyLink, goal: Begin, does: Does | None, sent: HeadPose | None
+    ) -> HeadPose:
         """Make movements, from where the parts were sent if they are there: motors sag a little."""
         now = await self._look(link)
         at = sent if sent is not None and now.near(sent) else now
@@ -161,7 +163,7 @@ class ReachyDriver(TaskDriver):
         self._tell_direction(at)
         return at
 
-    def _steps(self, goal: Begin, does: Does | None, at: Pose) -> list[Step]:
+    def _steps(self, goal: Begin, does: Does | None, at: HeadPose) -> list[Step]:
         """The movements that a Command is made of."""
         direction = self._direction(goal)
         if does is None:
@@ -189,16 +191,16 @@ class ReachyDriver(TaskDriver):
         angle = math.degrees(math.atan2(place.y - here.y, place.x - here.x))
         return wrapped(angle - here.heading)
 
-    async def _look(self, link: Link) -> Pose:
+    async def _look(self, link: ReachyLink) -> HeadPose:
         return read_pose(await link.ask("GET", "/api/state/full"))
 
-    def _tell_direction(self, at: Pose) -> None:
+    def _tell_direction(self, at: HeadPose) -> None:
         """Tell where the robot looks, if its document says where it stands."""
         here = self._stands
         if "at" in self.settings.options:
             self.tell(At(here.x, here.y, wrapped(here.heading + at.body)))
 
-    async def _settle(self, link: Link, to: Pose, changed: set[str]) -> None:
+    async def _settle(self, link: ReachyLink, to: HeadPose, changed: set[str]) -> None:
         """Wait for parts to be where they were sent: the daemon calls any move completed."""
         end = asyncio.get_running_loop().time() + SETTLE_S
         while True:
@@ -217,7 +219,7 @@ class ReachyDriver(TaskDriver):
                 )
             await asyncio.sleep(0.05)
 
-    def _lasts(self, at: Pose, to: Pose) -> float:
+    def _lasts(self, at: HeadPose, to: HeadPose) -> float:
         """How long (s) a movement takes at the speeds of the robot's document."""
         far = at.off(to)
         turning, moving = far.pop("body"), max(far.values())
@@ -320,7 +322,7 @@ def check_ways(settings: DriverSettings) -> None:
 def _check_way(does: Does) -> None:
     if does.by == GOTO:
         for name, step in does.filled({}).items():
-            Pose().moved(read_step(name, step))
+            HeadPose().moved(read_step(name, step))
     elif "/" not in does.by.strip("/"):
         raise Refused(f'by="{does.by}" is neither "{GOTO}" nor a recorded move, DATASET/MOVE.')
 
@@ -330,30 +332,30 @@ def _number(goal: Begin, name: str) -> float:
     return float(value) if isinstance(value, int | float) else 0.0
 
 
-def _head(goal: Begin, at: Pose, direction: float | None) -> list[Step]:
+def _head(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
     return [{"pan": _number(goal, "pan"), "tilt": _number(goal, "tilt")}]
 
 
-def _turn(goal: Begin, at: Pose, direction: float | None) -> list[Step]:
+def _turn(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
     return [{"turn": _number(goal, "angle")}]
 
 
-def _drive(goal: Begin, at: Pose, direction: float | None) -> list[Step]:
+def _drive(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
     if _number(goal, "speed"):
         raise Refused("Reachy Mini has no wheels; it only turns.")
     seconds = _number(goal, "time") / 1000
     return [{"turn": _number(goal, "turn-speed") * seconds, "time": seconds}]
 
 
-def _point(goal: Begin, at: Pose, direction: float | None) -> list[Step]:
+def _point(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
     """Lay the antenna of the side out for a while: it points no more exactly than that."""
     angle = _number(goal, "angle") if direction is None else wrapped(direction - at.body)
     side = "left" if angle >= 0 else "right"
-    out, back = {side: OUT, "time": 0.5}, {side: getattr(Pose(), side), "time": 0.5}
+    out, back = {side: OUT, "time": 0.5}, {side: getattr(HeadPose(), side), "time": 0.5}
     return [out, {"time": POINTING_MS / 1000}, back]
 
 
-WAYS: dict[str, Callable[[Begin, Pose, float | None], list[Step]]] = {
+WAYS: dict[str, Callable[[Begin, HeadPose, float | None], list[Step]]] = {
     "move-head": _head,
     "turn": _turn,
     "set-speed-and-time": _drive,

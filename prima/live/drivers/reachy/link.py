@@ -25,7 +25,7 @@ CLOSE_S = 0.5
 UPDATES = "/api/move/ws/updates"
 
 
-class Link:
+class ReachyLink:
     """One connection with a daemon, which plays one move at a time.
 
     The daemon would play two moves at once, and each would pull the parts of the other back.

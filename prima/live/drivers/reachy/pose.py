@@ -27,7 +27,7 @@ NEAR = 10.0
 
 
 @dataclass(frozen=True, slots=True)
-class Pose:
+class HeadPose:
     """Degrees, but for ``lift``.
 
     Body and ``pan`` are positive to the left, ``tilt`` upward, ``roll`` to the robot's right;
@@ -44,7 +44,7 @@ class Pose:
     left: float = 10.0
     right: float = 10.0
 
-    def moved(self, step: Mapping[str, float]) -> Pose:
+    def moved(self, step: Mapping[str, float]) -> HeadPose:
         """This pose with some parts elsewhere: where a step sends them, or ``turn`` further.
 
         Raises:
@@ -72,12 +72,12 @@ class Pose:
             raise Refused(message, "locomotion" if "body" in parts else "neck")
         return pose
 
-    def off(self, other: Pose) -> dict[str, float]:
+    def off(self, other: HeadPose) -> dict[str, float]:
         """How far each part is from where another pose has it."""
         mine, others = asdict(self), asdict(other)
         return {name: abs(wrapped(mine[name] - others[name])) for name in mine}
 
-    def near(self, other: Pose) -> bool:
+    def near(self, other: HeadPose) -> bool:
         """Whether all parts are about where another pose has them."""
         return max(self.off(other).values()) <= NEAR
 
@@ -93,7 +93,7 @@ class Pose:
         }
 
 
-def read_pose(state: Mapping[str, Any]) -> Pose:
+def read_pose(state: Mapping[str, Any]) -> HeadPose:
     """The pose in a full state of the daemon.
 
     Raises:
@@ -102,7 +102,7 @@ def read_pose(state: Mapping[str, Any]) -> Pose:
     try:
         head, (right, left) = state["head_pose"], state["antennas_position"]
         body = math.degrees(state["body_yaw"])
-        return Pose(
+        return HeadPose(
             body,
             pan=wrapped(math.degrees(head["yaw"]) - body),
             tilt=-math.degrees(head["pitch"]),

@@ -6,7 +6,7 @@ import os
 
 from prima.errors import UsageError
 from prima.live.drivers.ros2.link import RclpyLink
-from prima.live.ros import Link, RosDriver
+from prima.live.ros import RosDriver, RosLink
 
 DOMAINS = 233
 """How many domains ROS has."""
@@ -20,7 +20,7 @@ class Ros2Driver(RosDriver):
 
     kind = "ros2"
 
-    def make_link(self) -> Link:
+    def make_link(self) -> RosLink:
         """A node in the robot's domain."""
         settings = self.settings
         address = settings.address or os.environ.get("ROS_DOMAIN_ID") or "0"

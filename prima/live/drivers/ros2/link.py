@@ -16,7 +16,7 @@ from prima.errors import UsageError
 from prima.live.driver import Refused, Unreachable, Unusable
 from prima.live.drivers.ros2.messages import fill, interface, paths, plain
 from prima.live.mapped import OFTEN
-from prima.live.ros import Outcome, RosDriver, Sent, Use
+from prima.live.ros import Outcome, RosDriver, RosUse, Sent
 from prima.messages import Json
 
 SETUP = (
@@ -38,11 +38,11 @@ DEPTH = 10
 class Clients:
     """What a node has for the interfaces it uses."""
 
-    actions: dict[Use, Any] = field(default_factory=dict)
-    cancels: dict[Use, Any] = field(default_factory=dict)
+    actions: dict[RosUse, Any] = field(default_factory=dict)
+    cancels: dict[RosUse, Any] = field(default_factory=dict)
     """For each action, the service that cancels goals."""
-    services: dict[Use, Any] = field(default_factory=dict)
-    topics: dict[Use, Any] = field(default_factory=dict)
+    services: dict[RosUse, Any] = field(default_factory=dict)
+    topics: dict[RosUse, Any] = field(default_factory=dict)
 
 
 class RclpyLink:
@@ -59,7 +59,7 @@ class RclpyLink:
         self._longest = longest
         self._heartbeat = heartbeat
         self._clients = Clients()
-        self._untyped: list[Use] = []
+        self._untyped: list[RosUse] = []
         """Services whose types the robot has still to tell."""
         self._pending: set[asyncio.Future[Any]] = set()
         self._loop = asyncio.get_running_loop()
@@ -70,7 +70,7 @@ class RclpyLink:
 
     # Connecting -----------------------------------------------------------------------------
 
-    async def connect(self, uses: list[Use], driver: RosDriver) -> None:
+    async def connect(self, uses: list[RosUse], driver: RosDriver) -> None:
         """Make the node and its clients, and wait until all servers are there."""
         until = self._loop.time() + self._longest * SHARE
         await asyncio.to_thread(self._make_node)
@@ -107,13 +107,13 @@ class RclpyLink:
                 if self._context.ok():
                     self._node.get_logger().error(f"prima: {type(error).__name__}: {error}")
 
-    def _not_there(self, missing: list[Use]) -> str:
+    def _not_there(self, missing: list[RosUse]) -> str:
         names = ", ".join(str(use) for use in missing)
         verb = "are" if len(missing) > 1 else "is"
         remedy = "See `ros2 action list -t`, `ros2 service list -t` and `ros2 topic list -t`"
         return f"in the domain {self._domain}, {names} {verb} not there. {remedy}"
 
-    def _missing(self) -> list[Use]:
+    def _missing(self) -> list[RosUse]:
         """What is not there yet."""
         clients = self._clients
         self._add_untyped()
@@ -132,7 +132,7 @@ class RclpyLink:
                 client = self._node.create_client(interface(known[use.name][0]), use.name)
                 self._clients.services[use] = client
 
-    def _add(self, use: Use) -> None:
+    def _add(self, use: RosUse) -> None:
         from action_msgs.srv import CancelGoal
         from rclpy.action import ActionClient
 
@@ -162,7 +162,7 @@ class RclpyLink:
 
     # Using it -------------------------------------------------------------------------------
 
-    async def send_goal(self, use: Use, values: dict[str, Json], on: Callable[[], None]) -> Sent:
+    async def send_goal(self, use: RosUse, values: dict[str, Json], on: Callable[[], None]) -> Sent:
         """Send a goal to an action; gives it when it has been accepted."""
         client = self._clients.actions[use]
         goal = fill(interface(use.type).Goal(), values)
@@ -180,7 +180,7 @@ class RclpyLink:
         told = await self._answer(handle.get_result_async)
         return Outcome(told.status, plain(told.result))
 
-    async def call(self, use: Use, values: dict[str, Json]) -> dict[str, Json]:
+    async def call(self, use: RosUse, values: dict[str, Json]) -> dict[str, Json]:
         """Call a service; gives its answer."""
         names = {one.name: client for one, client in self._clients.services.items()}
         client = names[use.name]
@@ -188,7 +188,7 @@ class RclpyLink:
         answer = plain(await self._answer(lambda: client.call_async(request)))
         return answer if isinstance(answer, dict) else {}
 
-    def publish(self, use: Use, values: dict[str, Json]) -> None:
+    def publish(self, use: RosUse, values: dict[str, Json]) -> None:
         """Publish a message."""
         message = fill(interface(use.type)(), values)
         self._do(partial(self._clients.topics[use].publish, message))
@@ -197,7 +197,7 @@ class RclpyLink:
         """Ask all actions to cancel a goal that does not exist: what lives answers."""
         from action_msgs.srv import CancelGoal
 
-        async def ask(use: Use, client: Any) -> None:
+        async def ask(use: RosUse, client: Any) -> None:
             request = CancelGoal.Request()
             request.goal_info.goal_id.uuid = list(uuid.uuid4().bytes)
             try:

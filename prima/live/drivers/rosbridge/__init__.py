@@ -6,7 +6,7 @@ from urllib.parse import urlsplit
 
 from prima.errors import UsageError
 from prima.live.drivers.rosbridge.link import RosbridgeLink
-from prima.live.ros import Link, RosDriver
+from prima.live.ros import RosDriver, RosLink
 
 PORT = 9090
 
@@ -16,7 +16,7 @@ class RosbridgeDriver(RosDriver):
 
     kind = "rosbridge"
 
-    def make_link(self) -> Link:
+    def make_link(self) -> RosLink:
         """A connection with the bridge."""
         settings = self.settings
         address = settings.address or "127.0.0.1"

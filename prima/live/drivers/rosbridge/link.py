@@ -12,7 +12,7 @@ from urllib.parse import urlsplit
 from prima.devices.settings import Senses
 from prima.live.driver import Refused, Unreachable, Unusable
 from prima.live.mapped import OFTEN
-from prima.live.ros import Outcome, RosDriver, Sent, Use
+from prima.live.ros import Outcome, RosDriver, RosUse, Sent
 from prima.messages import Json
 
 INSTALL: Final = "the library roslibpy is not there ({}). Write: pip install 'prima[rosbridge]'."
@@ -54,13 +54,13 @@ class RosbridgeLink:
         self._pending: set[asyncio.Future[Any]] = set()
         self._goals: dict[str, Any] = {}
         """The clients of actions whose goals go on, by the goals' names."""
-        self._uses: list[Use] = []
-        self._topics: dict[Use, Any] = {}
+        self._uses: list[RosUse] = []
+        self._topics: dict[RosUse, Any] = {}
         self._ros: Any = None
 
     # Connecting -----------------------------------------------------------------------------
 
-    async def connect(self, uses: list[Use], driver: RosDriver) -> None:
+    async def connect(self, uses: list[RosUse], driver: RosDriver) -> None:
         """Connect, subscribe, and wait until all servers are there."""
         until = self._loop.time() + self._longest * SHARE
         try:
@@ -123,7 +123,7 @@ class RosbridgeLink:
         topic.subscribe(lambda message: driver.sense_from_thread(senses, dict(message)))
 
     async def _await_all(self, until: float) -> None:
-        missing: list[Use] = []
+        missing: list[RosUse] = []
         try:
             async with asyncio.timeout_at(until):
                 while missing := await self._missing():
@@ -134,17 +134,17 @@ class RosbridgeLink:
             reason = "does not tell what is there: the node rosapi is needed beside it"
             raise Unreachable(f"{self._url} {reason}. {LAUNCH}") from None
 
-    async def _missing(self) -> list[Use]:
+    async def _missing(self) -> list[RosUse]:
         """The actions and services that are not there."""
         there: dict[str, set[str]] = {}
         for kind, (name, part) in LISTS.items():
-            answer = await self.call(Use("service", name, ""), {})
+            answer = await self.call(RosUse("service", name, ""), {})
             there[kind] = set(answer.get(part, []))
         return [use for use in self._uses if use.kind in there and use.name not in there[use.kind]]
 
     # Using it -------------------------------------------------------------------------------
 
-    async def send_goal(self, use: Use, values: dict[str, Json], on: Callable[[], None]) -> Sent:
+    async def send_goal(self, use: RosUse, values: dict[str, Json], on: Callable[[], None]) -> Sent:
         """Send a goal to an action. The protocol does not tell whether it was accepted."""
         from roslibpy import ActionClient, Goal
 
@@ -163,7 +163,7 @@ class RosbridgeLink:
         result = dict(values) if isinstance(values, dict) else {"message": str(values)}
         self._post(partial(_settle, end, Outcome(status, result)))
 
-    async def call(self, use: Use, values: dict[str, Json]) -> dict[str, Json]:
+    async def call(self, use: RosUse, values: dict[str, Json]) -> dict[str, Json]:
         """Call a service; gives its answer."""
         from roslibpy import Service, ServiceRequest
 
@@ -178,7 +178,7 @@ class RosbridgeLink:
         Service(self._ros, use.name, use.type).call(ServiceRequest(values), answer, refuse)
         return dict(await future)
 
-    def publish(self, use: Use, values: dict[str, Json]) -> None:
+    def publish(self, use: RosUse, values: dict[str, Json]) -> None:
         """Publish a message."""
         from roslibpy import Message
 
@@ -239,6 +239,6 @@ def _settle(future: asyncio.Future[Any], told: object) -> None:
         future.set_result(told)
 
 
-def _not_there(missing: list[Use]) -> str:
+def _not_there(missing: list[RosUse]) -> str:
     names = ", ".join(str(use) for use in missing)
     return f"{names} {'are' if len(missing) > 1 else 'is'} not there"

@@ -10,7 +10,7 @@ from time import monotonic
 from typing import Any, NamedTuple
 
 from prima.devices import voice
-from prima.devices.goals import LISTEN, RECORD, SAY, Begin, Bounds, Speaks
+from prima.devices.goals import LISTEN, RECORD, SAY, Begin, RecordingBounds, Speaks
 from prima.devices.profile import Profile
 from prima.devices.settings import DriverSettings
 from prima.errors import UsageError, one_of
@@ -121,7 +121,7 @@ class SpeechDriver(TaskDriver):
             await self._say(goal, piece)
         return {}
 
-    async def _record(self, bounds: Bounds) -> None:
+    async def _record(self, bounds: RecordingBounds) -> None:
         """Keep what the user says next, without the silence behind it.
 
         Raises:
@@ -145,7 +145,7 @@ class SpeechDriver(TaskDriver):
             segments.bound()
         self.tell(heard)
 
-    async def _say(self, goal: Begin, piece: Piece) -> None:
+    async def _say(self, goal: Begin, piece: SpokenPiece) -> None:
         sound, lang = b"", goal.command.lang
         if piece.text:
             sound = await asyncio.to_thread(self._sound_of, piece, lang)
@@ -157,7 +157,7 @@ class SpeechDriver(TaskDriver):
             self.has_said(goal, piece.since + len(voice.beginning(piece.text, lang, share)))
             raise
 
-    def _sound_of(self, piece: Piece, lang: str) -> bytes:
+    def _sound_of(self, piece: SpokenPiece, lang: str) -> bytes:
         """A piece of a text as sound; a recording of another run is read by its name."""
         if piece.sound == BEEP:
             return beep()
@@ -274,7 +274,7 @@ def heard(found: Sequence[Hypothesis]) -> Heard:
     return Heard(first.text, data)
 
 
-class Piece(NamedTuple):
+class SpokenPiece(NamedTuple):
     """A piece of a text between its pauses."""
 
     text: str
@@ -286,7 +286,7 @@ class Piece(NamedTuple):
     """The sound that it is, as :class:`prima.messages.Cue` has it."""
 
 
-def pieces(command: Command) -> Iterator[Piece]:
+def pieces(command: Command) -> Iterator[SpokenPiece]:
     """The pieces of a text."""
     text, since, sound = command.text or "", 0, ""
     for cue in (*command.cues, Cue(len(text), "pause", 0)):
@@ -295,7 +295,7 @@ def pieces(command: Command) -> Iterator[Piece]:
         piece = text[since : cue.at]
         said, silence = piece.strip(), int(cue.value or 0) if cue.kind == "pause" else 0
         if said or silence:
-            yield Piece(said, silence, since + len(piece) - len(piece.lstrip()), sound)
+            yield SpokenPiece(said, silence, since + len(piece) - len(piece.lstrip()), sound)
         since, sound = cue.at, str(cue.value) if cue.kind == "sound" else ""
 
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 
 from prima.grammar.answers import Answers
-from prima.grammar.model import BuiltIn, Choice, Part, Reference, Repeat, Rule, Special, Words
+from prima.grammar.model import Alternatives, BuiltIn, Part, Reference, Repeat, Rule, Special, Words
 from prima.grammar.model import Sequence as Row
 from prima.grammar.text import wide
 
@@ -132,7 +132,7 @@ class Writer:
             case Row(parts):
                 made = [self.part(one, inside) for one in parts]
                 return None if None in made else " ".join(filter(None, made))
-            case Choice(parts):
+            case Alternatives(parts):
                 return self._choice(parts, inside)
             case Repeat():
                 return self._repeat(part, inside)
