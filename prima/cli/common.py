@@ -200,6 +200,8 @@ def tell_cut(*transcripts: Transcript) -> None:
     for transcript in transcripts:
         if message := transcript.cut or transcript.early:
             tell(f"prima: {message}")
+            if transcript.records and "live" in transcript.records[0].get("data", {}):
+                tell(f"The run can go on: prima live --resume {transcript.name}")
     if any(transcript.cut for transcript in transcripts):
         raise click.exceptions.Exit(2)
 

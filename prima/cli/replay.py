@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import sys
+from itertools import zip_longest
 
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import check_output, tell, write_for_programs
+from prima.cli.common import check_output, tell, tell_cut, write_for_programs
 
 
 @click.command()
@@ -28,14 +29,24 @@ def replay(transcript: str, scenario: str | None, output: str | None) -> None:
 
     if output not in (None, "-"):
         check_output(output, "replay", transcript, *([scenario] if scenario else []))
-    original = api.read(transcript)
+    original = api.read(transcript, partial=True)
+    tell_cut(original)
     again = api.replay(original, scenario)
     if output == "-":
         write_for_programs()
         sys.stdout.write(again.dumps())
     elif output is not None:
         write_whole(output, again.dumps())
-    same = again.dumps() == original.dumps()
-    tell("the same, byte for byte" if same else "the replay differs")
-    if not same:
+    given, made = original.dumps(), again.dumps()
+    if given == made:
+        tell("the same, byte for byte")
+    elif original.early and made.startswith(given):
+        tell("the same, byte for byte, as far as the transcript goes")
+    else:
+        tell(f"the replay differs from line {_first_difference(given, made)}")
         raise Exit(1)
+
+
+def _first_difference(given: str, made: str) -> int:
+    pairs = zip_longest(given.splitlines(), made.splitlines())
+    return next(number for number, (one, other) in enumerate(pairs, 1) if one != other)

@@ -134,6 +134,14 @@ def test_what_is_wrong_is_raised_as_the_command_line_tells_it(hello: Path, tmp_p
             drivers=[tmp_path / "drivers.py"],
         )
     assert isinstance(error.value, RunError)
+    (tmp_path / "beside.py").write_text(BROKEN_DRIVER)
+    (tmp_path / "mine.py").write_text("from beside import *\n")
+    with pytest.raises(Unreachable, match="start the daemon"):
+        prima.run_live(
+            robot=robot_with(tmp_path, '<driver kind="away"/>'),
+            eas=[hello],
+            drivers=[tmp_path / "mine.py"],
+        )
     (tmp_path / "there.jsonl").write_text("kept\n")
     with pytest.raises(UsageError, match="there is a journal already"):
         prima.run_live(robot=ROBOT_PATH, eas=[hello], output=tmp_path / "there.jsonl")

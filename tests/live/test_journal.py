@@ -183,6 +183,33 @@ def journal(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.parametrize("verb", ["show", "replay"])
+def test_who_reads_a_journal_that_was_cut_off_is_told_how_it_goes_on(
+    verb: str, journal: Path
+) -> None:
+    whole, half = journal.with_name("whole.jsonl"), journal.with_name("half.jsonl")
+    whole.write_bytes(journal.read_bytes())
+    half.write_bytes(journal.read_bytes()[:-10])
+    for path, code in ((whole, 0), (half, 2)):
+        ran = prima(verb, str(path))
+        assert ran.returncode == code, ran.stderr
+        assert f"The run can go on: prima live --resume {path}\n" in ran.stderr
+
+
+def test_a_journal_is_replayed_as_far_as_it_goes(journal: Path) -> None:
+    lines = journal.read_text().splitlines(keepends=True)
+    at = next(number for number, line in enumerate(lines) if '"phase":"start"' in line)
+    part = journal.with_name("part.jsonl")
+    part.write_text("".join(lines[:at]))
+    assert "as far as the transcript goes" in prima("replay", str(part)).stderr
+    lines[at] = lines[at].replace('"phase":"start"', '"phase":"resume"')
+    changed = journal.with_name("differs.jsonl")
+    changed.write_text("".join(lines))
+    ran = prima("replay", str(changed))
+    assert ran.returncode == 1
+    assert f"the replay differs from line {at + 1}\n" in ran.stderr
+
+
 @pytest.mark.parametrize("verb", ["live --resume", "replay"])
 @pytest.mark.parametrize(
     ("change", "why"),

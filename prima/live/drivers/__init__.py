@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import inspect
+import sys
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -49,8 +50,10 @@ def driver_class(kind: str, files: tuple[str, ...] = ()) -> type[Driver]:
 
 
 def _defined(file: str) -> list[type[Driver]]:
-    """The drivers that a Python file defines; it is run."""
+    """The drivers that a Python file defines; it is run, and may import what is beside it."""
     path = Path(file)
+    if (folder := str(path.resolve().parent)) not in sys.path:
+        sys.path.append(folder)
     spec = importlib.util.spec_from_file_location(f"prima_driver_{path.stem}", path)
     if spec is None or spec.loader is None or not path.is_file():
         raise UsageError(f"{file}: this is not a Python file.")
