@@ -88,31 +88,56 @@ def fold(parts: Iterable[str | Cue]) -> tuple[str, tuple[Cue, ...]]:
 
 def _tidy(text: str, cues: list[Cue]) -> tuple[Cue, ...]:
     """Leave out cues that change nothing, and set times that are not closed or hold no text."""
-    kept: list[Cue] = []
-    opened: list[int] = []
-    rate = 1.0
+    kept = _Kept(text)
     for cue in cues:
-        full = len(kept) >= MAX_CUES
-        match cue.kind:
-            case "lasts":
-                opened.append(-1 if full else len(kept))
-            case "end":
-                begun = opened.pop()
-                full = begun < 0
-                if not full and kept[begun].at == cue.at:
-                    marks = [one for one in kept[begun:] if one.kind == "mark"]
-                    kept[begun:] = [Cue(cue.at, "pause", kept[begun].value), *marks]
-                    continue
-            case "sentence":
-                full = full or not _wants_pause(text, cue.at, kept)
-            case "rate":
-                full = full or cue.value == rate
-                rate = rate if full else float(cue.value or 1.0)
-        if not full:
-            kept.append(cue)
-    for index in reversed([one for one in opened if one >= 0]):
-        del kept[index]
-    return tuple(kept)
+        kept.take(cue)
+    return kept.closed()
+
+
+class _Kept:
+    """The cues kept of a text, of which the times begun and not yet closed are known."""
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+        self._cues: list[Cue] = []
+        self._opened: list[int] = []
+        """Where each open time begins among the cues; -1 for one that was left out."""
+        self._rate = 1.0
+
+    def take(self, cue: Cue) -> None:
+        """Keep a cue if it changes something, as long as there are not too many."""
+        if cue.kind == "end":
+            self._end(cue)
+            return
+        full = len(self._cues) >= MAX_CUES
+        if cue.kind == "lasts":
+            self._opened.append(-1 if full else len(self._cues))
+        if not full and self._changes(cue):
+            self._cues.append(cue)
+
+    def _changes(self, cue: Cue) -> bool:
+        if cue.kind == "sentence":
+            return _wants_pause(self._text, cue.at, self._cues)
+        if cue.kind == "rate":
+            before, self._rate = self._rate, float(cue.value or 1.0)
+            return cue.value != before
+        return True
+
+    def _end(self, cue: Cue) -> None:
+        begun = self._opened.pop()
+        if begun < 0:
+            return
+        if self._cues[begun].at < cue.at:
+            self._cues.append(cue)
+            return
+        marks = [one for one in self._cues[begun:] if one.kind == "mark"]
+        self._cues[begun:] = [Cue(cue.at, "pause", self._cues[begun].value), *marks]
+
+    def closed(self) -> tuple[Cue, ...]:
+        """All of them, without the times that are still open."""
+        for index in reversed([one for one in self._opened if one >= 0]):
+            del self._cues[index]
+        return tuple(self._cues)
 
 
 def _wants_pause(text: str, at: int, before: list[Cue]) -> bool:

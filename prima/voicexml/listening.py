@@ -27,12 +27,16 @@ def check_listening(page: Page, root: Page | None) -> Iterator[Problem]:
     for form in page.root.all("form"):
         if _listens(form):
             continue
-        for item in parts_of(form):
-            surely = {"expr", "cond"}.isdisjoint(item.attributes) and item.get("name") not in given
+        for item in filter(_surely_asked, parts_of(form)):
             heard = _listens(item) or (shared and item.get("modal") != "true")
-            if item.tag in ASKING and surely and not heard:
+            if not heard and item.get("name") not in given:
                 name = f" {item.get('name')}".rstrip()
                 yield NO_GRAMMAR.at(item.place, tag=item.tag, name=name)
+
+
+def _surely_asked(item: Node) -> bool:
+    """Whether it is a question that nothing in its own element keeps from being asked."""
+    return item.tag in ASKING and {"expr", "cond"}.isdisjoint(item.attributes)
 
 
 def _listens(node: Node) -> bool:

@@ -119,13 +119,7 @@ def _loaded(node: Node, page: Page, uri: str, fetch: Fetch, refusal: Refusal) ->
     lang = node.get("xml:lang") or page.lang
     kind, place = node.get("type") if grammar else "", source(node)
     try:
-        what: Node | str | bytes = node
-        rule = ""
-        if uri and (not grammar or uri.startswith("builtin:")):
-            what = uri
-        elif uri:
-            name, rule = urldefrag(uri)
-            what = fetch(name)
+        what, rule = _given(node, uri, fetch)
         base = urldefrag(uri)[0] or page.base()
         if page.site is not None:
             base = page.site.whole(base)
@@ -149,6 +143,16 @@ def _loaded(node: Node, page: Page, uri: str, fetch: Fetch, refusal: Refusal) ->
         message = f"{place}: {error}" if uri else str(error)  # an own place, in the same file
         raise Thrown(_event(error), message, place) from None
     return made
+
+
+def _given(node: Node, uri: str, fetch: Fetch) -> tuple[Node | str | bytes, str]:
+    """A grammar's element, the name of a built-in one, or its file; and its rule's name, if any."""
+    if not uri:
+        return node, ""
+    if node.tag != "grammar" or uri.startswith("builtin:"):
+        return uri, ""
+    name, rule = urldefrag(uri)
+    return fetch(name), rule
 
 
 def _event(error: GrammarError) -> str:

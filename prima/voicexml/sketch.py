@@ -7,8 +7,9 @@ and nothing else: of a prompt its words, of a question that it asks.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
+from itertools import chain
 from urllib.parse import urldefrag, urlsplit
 
 from prima.interpreter.acts import (
@@ -55,7 +56,6 @@ ASKING = ("field", "initial", "record", "menu")
 FETCHING = ("goto", "submit", "data", "script")
 """Elements of content while whose fetch something may be played."""
 LEADING = ("goto", "submit", "subdialog")
-LEAVING = ("exit", "return", "disconnect")
 FAILURES = ("error.badfetch", "error.unsupported.format", "error.unsupported.builtin")
 """What a question's grammars, and what is fetched, may throw beside what PRIMA's language has."""
 UNIVERSAL = ("help", "cancel", "exit")
@@ -92,9 +92,9 @@ class Sketch:
         made = [self._item(one) for one in items if _is_item(one)]
         filled = [self._filled(one) for one in node.all("filled")]
         if node.all("grammar"):  # an answer may fill any item of the form
-            inner = [
-                item for one in made for item in (one.items if isinstance(one, Unit) else [one])
-            ]
+            inner = chain.from_iterable(
+                one.items if isinstance(one, Unit) else [one] for one in made
+            )
             filled += [one for item in inner if isinstance(item, Field) for one in item.filled]
         handlers = () if node.tag == "menu" else self._handlers(node)
         form = Form(name, tuple(made), handlers, (), (), (), tuple(filled), {}, node)
@@ -178,31 +178,14 @@ class Sketch:
             return
         if node.tag in FETCHING and self._plays(node):
             yield _run([_speak((Expression("", node, "fetchaudio"),), node)])
-        match node.tag:
-            case "if":
-                branches = [(cond, self._acts(node, part)) for cond, part in _divided(node)]
-                yield If(tuple(branches), node)
-            case "foreach":
-                yield Foreach(
-                    node.get("item"),
-                    Expression(node.get("array"), node, "array"),
-                    self._acts(node, node.content),
-                    node,
-                )
-            case "assign":
-                yield Assign(node.get("name"), Expression(node.get("expr"), node), node)
-            case "throw":
-                event = node.get("event") or Expression(node.get("eventexpr"), node, "eventexpr")
-                yield Throw(event, "", node)
-            case "goto" | "submit":
-                yield Goto(None, node.get("nextitem") or _code(node, "expritem"), node)
-            case "clear":
-                names = (one.removeprefix("dialog.") for one in node.get("namelist").split())
-                yield Clear(tuple(names), node)
-            case "return" if not node.get("eventexpr"):
-                yield Return(tuple(node.get("namelist").split()), node.get("event"), node)
-            case tag if tag in LEAVING:
-                yield Exit(node)
+        if node.tag == "if":
+            branches = [(cond, self._acts(node, part)) for cond, part in _divided(node)]
+            yield If(tuple(branches), node)
+        elif node.tag == "foreach":
+            array = Expression(node.get("array"), node, "array")
+            yield Foreach(node.get("item"), array, self._acts(node, node.content), node)
+        elif node.tag in ACTS:
+            yield ACTS[node.tag](node)
 
     def _plays(self, node: Node) -> bool:
         """Whether something is played while an element's resource is fetched."""
@@ -352,3 +335,42 @@ def _divided(node: Node) -> Iterator[tuple[Expression | None, list[Node | str]]]
         else:
             part.append(child)
     yield cond, part
+
+
+# Acts of elements without content
+
+
+def _assign(node: Node) -> Act:
+    return Assign(node.get("name"), Expression(node.get("expr"), node), node)
+
+
+def _throw(node: Node) -> Act:
+    event = node.get("event") or Expression(node.get("eventexpr"), node, "eventexpr")
+    return Throw(event, "", node)
+
+
+def _goto(node: Node) -> Act:
+    return Goto(None, node.get("nextitem") or _code(node, "expritem"), node)
+
+
+def _clear(node: Node) -> Act:
+    names = (one.removeprefix("dialog.") for one in node.get("namelist").split())
+    return Clear(tuple(names), node)
+
+
+def _return(node: Node) -> Act:
+    if node.get("eventexpr"):
+        return Exit(node)
+    return Return(tuple(node.get("namelist").split()), node.get("event"), node)
+
+
+ACTS: Mapping[str, Callable[[Node], Act]] = {
+    "assign": _assign,
+    "throw": _throw,
+    "goto": _goto,
+    "submit": _goto,
+    "clear": _clear,
+    "return": _return,
+    "exit": Exit,
+    "disconnect": Exit,
+}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from prima.errors import Hint, Problem, one_of, replaced, suggestion
@@ -106,25 +106,7 @@ REMEDIES = {
 
 def fits(kind: str, text: str) -> bool:
     """Whether a text is a value of a kind, or one of the words that the kind lists."""
-    match kind:
-        case "integer":
-            return text.isascii() and text.isdigit() and int(text) > 0
-        case "time":
-            return _reads("duration", text.strip())
-        case "language":
-            return not text.strip() or _reads("language", text)
-        case "event":
-            return _reads("event", text)
-        case "events":  # a dot alone, as no name at all, is for all events
-            return all(name == "." or _reads("event", name) for name in text.split())
-        case "keys":
-            return KEYS.fullmatch(text) is not None
-        case "share":
-            return NUMBER.fullmatch(text.strip()) is not None and 0 <= float(text) <= 1
-        case "rate":
-            return is_rate(text)
-        case _:
-            return text in kind.split()
+    return FITS[kind](text) if kind in FITS else text in kind.split()
 
 
 def _reads(kind: str, text: str) -> bool:
@@ -133,6 +115,31 @@ def _reads(kind: str, text: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+def _is_whole(text: str) -> bool:
+    return text.isascii() and text.isdigit() and text.strip("0") != ""
+
+
+def _are_events(text: str) -> bool:
+    """A dot alone, as no name at all, is for all events."""
+    return all(name == "." or _reads("event", name) for name in text.split())
+
+
+def _is_share(text: str) -> bool:
+    return NUMBER.fullmatch(text.strip()) is not None and 0 <= float(text) <= 1
+
+
+FITS: Mapping[str, Callable[[str], bool]] = {
+    "integer": _is_whole,
+    "time": lambda text: _reads("duration", text.strip()),
+    "language": lambda text: not text.strip() or _reads("language", text),
+    "event": lambda text: _reads("event", text),
+    "events": _are_events,
+    "keys": lambda text: KEYS.fullmatch(text) is not None,
+    "share": _is_share,
+    "rate": is_rate,
+}
 
 
 def bad_value(node: Node, name: str, text: str, kind: str) -> Problem:
@@ -157,13 +164,11 @@ def _check_alternatives(node: Node, names: tuple[str, ...]) -> Iterator[Problem]
     if "content" in names and (node.nodes or node.text):
         given.append("content")
     if len(given) > 1:
-        inside = given[1] == "content"
-        other = "content of its own" if inside else f'"{given[1]}"'
-        place = node.place if inside else node.attribute_place(given[1])
-        yield HAS_BOTH.at(place, tag=node.tag, name=given[0], other=other)
+        place = node.place if given[1] == "content" else node.attribute_place(given[1])
+        yield HAS_BOTH.at(place, tag=node.tag, name=given[0], other=_called(given[1]))
     elif needed and not given:
-        words = [f'"{name}"' for name in names if name != "content"]
-        words += ["content of its own"] if "content" in names else []
-        yield NEEDS_ONE.at(
-            node.place, tag=node.tag, names=f"{', '.join(words[:-1])} or {words[-1]}"
-        )
+        yield NEEDS_ONE.at(node.place, tag=node.tag, names=one_of(map(_called, names)))
+
+
+def _called(name: str) -> str:
+    return "content of its own" if name == "content" else f'"{name}"'
