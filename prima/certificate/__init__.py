@@ -11,7 +11,7 @@ from prima.certificate.summary import certificate_data, format_certificate
 from prima.checks.prices import Outline, outline
 from prima.checks.prices.bounds import busy_at_all
 from prima.devices.profile import Profile, read_robot
-from prima.errors import DocumentError, UsageError
+from prima.errors import DocumentError, UsageError, has_errors
 from prima.interpreter.checks import check_commands, document_commands
 from prima.interpreter.elements import Document
 from prima.loading import documents_folder, read_application
@@ -100,6 +100,6 @@ def certificates(fas: Iterable[str], eas: Iterable[str], robot: str = "") -> lis
 
 def _read(path: str) -> AnyDocument:
     document, problems = read_application(path, read_file(path))
-    if any(problem.severity == "error" for problem in problems):
+    if has_errors(problems):
         raise DocumentError(problems)
     return document

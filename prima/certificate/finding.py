@@ -110,7 +110,7 @@ def delays(own: Outline, theirs: Outline) -> list[Delay]:
 def _delay(event: str, mine: list[PricedReaction], theirs: _Other) -> Delay | None:
     """How long the first Commands about an event may wait, and its response; None for not at all."""
     first = _first_delay(event, mine, theirs)
-    firsts = [price for one in mine for price in one.firsts]
+    firsts = _firsts(mine)
     until = [price for one in mine for price in one.responds]
     found = first or Delay(event, (), 0, "", None)
     if all(_same(one) for one in mine):
@@ -127,14 +127,26 @@ def _same(reaction: PricedReaction) -> bool:
     return all(id(one.node) in firsts for one in reaction.responds)
 
 
-def _first_delay(event: str, mine: list[PricedReaction], theirs: _Other) -> Delay | None:
-    firsts = [price for one in mine for price in one.firsts]
-    needed = devices_of(firsts)
-    same = [
+def _firsts(mine: list[PricedReaction]) -> list[Price]:
+    """The Commands that may come first."""
+    return [price for one in mine for price in one.firsts]
+
+
+def _about_the_same(
+    event: str, mine: list[PricedReaction], theirs: _Other
+) -> list[tuple[PricedReaction, Busy]]:
+    """The other's reactions to the same event, each with what follows from it."""
+    return [
         (one, busy)
         for one, busy in zip(theirs.foreign, theirs.after, strict=True)
         if event == ANY_EVENT or any(related(each, one) for each in mine)
     ]
+
+
+def _first_delay(event: str, mine: list[PricedReaction], theirs: _Other) -> Delay | None:
+    firsts = _firsts(mine)
+    needed = devices_of(firsts)
+    same = _about_the_same(event, mine, theirs)
     whole = _whole(firsts, theirs, [busy for _, busy in same])
     if not theirs.gaps and whole is None and worst(theirs.parts, needed) is None:
         return None
@@ -266,18 +278,21 @@ def starving(own: Outline, theirs: Outline) -> list[Starving]:
     """The parts of ``theirs`` that may starve Commands of ``own`` other than reactions."""
     drives = any(part.leaves for part in own.parts)
     everything = tuple(sorted(own.devices))
-    held = {
-        leaves: devices_of([one for one in own.parts if one.leaves or not leaves])
-        for leaves in (False, True)
-    }
+    leaving = [one for one in own.parts if one.leaves]
+    held = {False: devices_of(own.parts), True: devices_of(leaving)}
     """The devices of Commands that are equal to one that leaves the user or does not (K2)."""
     floors = _floors(theirs) if not drives else set(theirs.states)
-    floor = {part for name in _floors(theirs) for part in theirs.states[name].parts}
-    floor |= {part for one in theirs.reactions for part in one.does.parts}
+    floor = _parts_with_floor(theirs)
     found = [_by_loops(part, held, part in floor, drives) for part in theirs.parts]
     found += [_by_cycle(loop, held, floors, drives) for loop in loops(theirs)]
     found += [Starving(gap.place, gap.reason, "", everything, drives, True) for gap in theirs.gaps]
     return [one for one in found if one is not None]
+
+
+def _parts_with_floor(theirs: Outline) -> set[Price]:
+    """What may hold the floor: parts of the states that may, and of reactions."""
+    floor = {part for name in _floors(theirs) for part in theirs.states[name].parts}
+    return floor | {part for one in theirs.reactions for part in one.does.parts}
 
 
 def _floors(theirs: Outline) -> set[str]:

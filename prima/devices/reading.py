@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING, Any
 
-from prima.errors import DocumentError, Hint, Problem, Severity
+from prima.errors import DocumentError, Hint, Problem, Severity, has_errors
 from prima.interpreter.surroundings import nearest as nearest_name
 from prima.language.values import DRAWABLE, nearest, outside, read_value, within
 from prima.markup.reader import read_tree
@@ -96,5 +96,5 @@ class Reader:
         Raises:
             DocumentError: if there is any error.
         """
-        if any(problem.severity == "error" for problem in self.problems):
+        if has_errors(self.problems):
             raise DocumentError(self.problems)

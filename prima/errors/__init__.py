@@ -35,6 +35,7 @@ from prima.errors.problems import (
     Severity,
     Span,
     few,
+    has_errors,
     in_order,
     listed,
 )
@@ -63,6 +64,7 @@ __all__ = [
     "few",
     "few_guesses",
     "guessable",
+    "has_errors",
     "in_order",
     "listed",
     "meant",

@@ -132,6 +132,11 @@ def _brief(text: str) -> str:
     return text[: 2 * LONGEST_TEXT // 3] + CUT + text[-LONGEST_TEXT // 3 :]
 
 
+def has_errors(problems: Iterable[Problem]) -> bool:
+    """Whether some problem is an error, and not only a warning or note."""
+    return any(problem.severity == "error" for problem in problems)
+
+
 def in_order(problems: Iterable[Problem]) -> list[Problem]:
     """Problems without duplicates, in document order."""
     return sorted(dict.fromkeys(problems))  # a set would mix up what is nearly in order

@@ -14,7 +14,7 @@ from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
 from prima import api
-from prima.errors import TOO_MUCH, DocumentError, PrimaError, Problem, UsageError
+from prima.errors import TOO_MUCH, DocumentError, PrimaError, Problem, UsageError, has_errors
 from prima.errors.visible import visible
 from prima.interpreter.elements import Document
 from prima.loading import Loaded, load_text, with_scenario
@@ -91,7 +91,7 @@ class ScenarioText:
         """
         self.path = path
         scenario, problems = look_at_scenario(path, data)
-        if any(one.severity == "error" for one in problems):
+        if has_errors(problems):
             raise DocumentError(problems)
         self.root = scenario.node
         self.policy = scenario.policy

@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from prima.errors import DocumentError, UsageError, did_you_mean, one_of
+from prima.errors import DocumentError, UsageError, did_you_mean, has_errors, one_of
 from prima.graph.model import Graph
 from prima.graph.run import NEVER, History
 
@@ -128,7 +128,7 @@ def states(path: str | Path) -> Graph:
     data = read_file(path)
     _refuse_others(path, data)
     document, problems = read_application(str(path), data)
-    if any(problem.severity == "error" for problem in problems):
+    if has_errors(problems):
         raise DocumentError(problem for problem in problems if problem.severity == "error")
     if isinstance(document, Document):
         from prima.graph import dialogue

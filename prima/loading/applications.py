@@ -12,6 +12,7 @@ from prima.errors import (
     Hint,
     Problem,
     Span,
+    has_errors,
     meant,
 )
 from prima.interpreter.elements import Document
@@ -91,7 +92,7 @@ def load(path: str | Path) -> Document:
         UsageError: the file cannot be read.
     """
     document, problems = read_native(str(path), read_file(path))
-    if any(problem.severity == "error" for problem in problems):
+    if has_errors(problems):
         raise DocumentError(problems)
     return document
 

@@ -86,6 +86,12 @@ class Reading:
             self.problems += [_named_wrongly(name, place, one, content) for one in error.problems]
         return None
 
+    def applications(self, scenario: Scenario) -> None:
+        """The applications that a scenario names."""
+        self.answered = tuple(one.uri for one in scenario.services if one.uri)
+        for src, _, node in scenario.applications:
+            self.application(src, node.attribute_place("src"), node)
+
     def application(self, src: str, place: Place, node: Node | None = None) -> AnyDocument | None:
         """An application, with its problems."""
         said = node.get("kind") if node is not None else "ea"  # what a place offers is an EA

@@ -11,6 +11,7 @@ from prima.errors import (
     DocumentError,
     Problem,
     few_guesses,
+    has_errors,
     in_order,
 )
 from prima.loading.applications import digest
@@ -110,9 +111,7 @@ def load_whole(path: Path, data: bytes, whole: bool = False, robot: str = "") ->
     if robot:
         scenario.robot = os.path.relpath(robot, path.parent)
     reading = Reading(path, {path.name: digest(data)}, [*told], whole=whole)
-    reading.answered = tuple(one.uri for one in scenario.services if one.uri)
-    for src, _, node in scenario.applications:
-        reading.application(src, node.attribute_place("src"), node)
+    reading.applications(scenario)
     reading.users(scenario)
     world, profile = reading.surroundings(scenario)
     offers = reading.offers(scenario, world) if world is not None and scenario.entrances else []
@@ -128,8 +127,8 @@ def load_whole(path: Path, data: bytes, whole: bool = False, robot: str = "") ->
         raise DocumentError(in_order([*reading.problems, *names]))
     cast = Cast(scenario, reading.documents, world, profile, offers)
     problems = in_order([*reading.problems, *check_cast(cast)])
-    if not any(problem.severity == "error" for problem in told):
+    if not has_errors(told):
         problems = in_order([*problems, *check_hearing(cast)])
-    if any(problem.severity == "error" for problem in problems):
+    if has_errors(problems):
         raise DocumentError(problems)
     return Loaded(cast, reading.files, problems)

@@ -40,22 +40,15 @@ def stage(
         DocumentError: with the problems of all files, if any is an error.
         UsageError: a file cannot be read, or two of the applications have one id.
     """
-    from html import escape
-
-    given = [(kind, path) for kind, paths in (("fa", fas), ("ea", eas)) for path in paths]
+    given = [("fa", path) for path in fas] + [("ea", path) for path in eas]
     for path in (*(path for _, path in given), *filter(None, (robot, world))):
         read_file(path)  # a missing file is a wrong option, not a wrong document
     demo = documents_folder()
     world = world or str(demo / "worlds" / "room.xml")
     robot = robot or str(demo / "robots" / "papero.xml")
-    taken_up = ' entrances="open"' if entrances else ""
-    text = (
-        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="stage"'
-        f' world="{escape(world)}" robot="{escape(robot)}"{taken_up}>'
-        f"{_standing(world)}{_applications(given, maps)}{_answers(says)}</scenario>"
-    )
+    inside = f"{_standing(world)}{_applications(given, maps)}{_answers(says)}"
     try:
-        loaded = load_whole(path_of("stage.xml"), text.encode())
+        loaded = load_whole(path_of("stage.xml"), _scenario(world, robot, entrances, inside))
     except DocumentError as error:
         stage_own = [one for one in error.problems if one.place.file == "stage.xml"]
         if any(one.code == "duplicate-id" for one in stage_own):
@@ -68,6 +61,17 @@ def stage(
         problems += other_kind(document, "The document", f"--{kind} names it", place, remedy)
     loaded.problems = sorted(problems)
     return without_ignored(loaded)
+
+
+def _scenario(world: str, robot: str, entrances: bool, inside: str) -> bytes:
+    """A scenario's text."""
+    from html import escape
+
+    taken_up = ' entrances="open"' if entrances else ""
+    return (
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="stage"'
+        f' world="{escape(world)}" robot="{escape(robot)}"{taken_up}>{inside}</scenario>'
+    ).encode()
 
 
 def _applications(given: list[tuple[str, str]], maps: Iterable[str]) -> str:

@@ -80,14 +80,6 @@ class Recorder:
 
     def request(self, ab: Behavior, before: str | None = None) -> None:
         """Record a request with all that the rules ask of an AB; ``before`` what it was put in."""
-        command, of = ab.command, ab.command or ab.group
-        fields: Record = {}
-        if command is not None:
-            fields["args"], fields["extra"] = command.args or None, command.extra or None
-            fields["cues"] = shown_cues(command.cues) if command.cues else None
-            fields["order"] = "now" if command.now else None
-        fields["source"] = line_of(of.source if of is not None else "")
-        fields |= self._asked_by_extensions(ab)
         self.behavior(
             "request",
             ab,
@@ -103,7 +95,8 @@ class Recorder:
             state=ab.document_state,
             inserted=ab.inserted or None,
             before=before,
-            **fields,
+            **_asked_by_author(ab),
+            **self._asked_by_extensions(ab),
         )
 
     def _asked_by_extensions(self, ab: Behavior) -> Record:
@@ -164,3 +157,15 @@ def describe(ab: Behavior) -> Record:
 def shown_cues(cues: tuple[Cue, ...]) -> list[dict[str, Json]]:
     """Cues as a record has them: the place in the text, and the value under the kind's name."""
     return [{"at": cue.at, cue.kind: True if cue.value is None else cue.value} for cue in cues]
+
+
+def _asked_by_author(ab: Behavior) -> Record:
+    """What an AB's element asks: the arguments of its Command, and its line."""
+    of = ab.command or ab.group
+    fields: Record = {}
+    if (command := ab.command) is not None:
+        fields["args"], fields["extra"] = command.args or None, command.extra or None
+        fields["cues"] = shown_cues(command.cues) if command.cues else None
+        fields["order"] = "now" if command.now else None
+    fields["source"] = line_of(of.source if of is not None else "")
+    return fields

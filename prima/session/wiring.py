@@ -156,32 +156,34 @@ class Wiring:
                 app.count_action()
             except GoOut as error:
                 app.fail(error)
-            match action := left.popleft():
-                case Request():
-                    if action.cause == PROMOTED:
-                        action.cause = self._promoted
-                    self.mediator.request(app.name, action)
-                case OpenUnit():
-                    if action.cause == PROMOTED:
-                        action.cause = self._promoted
-                    self.mediator.open_unit(app.name, action)
-                case CloseUnit():
-                    self.mediator.close_unit(app.name, action)
-                case LeaveState():
-                    self.mediator.leave_state(app.name, action)
-                case Send():
-                    self._send(app, action)
-                case Say():
-                    self._log(app, action)
-                case Raise():
-                    self.handle_own(app, action.event, {}, reactive=True)
-                case Promote():
-                    self._promoted = self.record_own(app, action.event, {}, "robot")
-                case GoOn():
-                    with self.apps.contained(app):
-                        app.go_on_entering(action.state)
-                case Quit():
-                    self._quit(app, action)
+            self._do(app, left.popleft())
+
+    def _do(self, app: AnyApp, action: Action) -> None:
+        """Do one thing that an application wants."""
+        if isinstance(action, (Request, OpenUnit)) and action.cause == PROMOTED:
+            action.cause = self._promoted
+        match action:
+            case Request():
+                self.mediator.request(app.name, action)
+            case OpenUnit():
+                self.mediator.open_unit(app.name, action)
+            case CloseUnit():
+                self.mediator.close_unit(app.name, action)
+            case LeaveState():
+                self.mediator.leave_state(app.name, action)
+            case Send():
+                self._send(app, action)
+            case Say():
+                self._log(app, action)
+            case Raise():
+                self.handle_own(app, action.event, {}, reactive=True)
+            case Promote():
+                self._promoted = self.record_own(app, action.event, {}, "robot")
+            case GoOn():
+                with self.apps.contained(app):
+                    app.go_on_entering(action.state)
+            case Quit():
+                self._quit(app, action)
 
     def _send(self, app: AnyApp, action: Send) -> None:
         data = {"to": action.service, **action.data}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from prima.devices.reading import RENAME, Reader
-from prima.errors import DocumentError, Problem
+from prima.errors import DocumentError, Problem, has_errors
 from prima.language.commands import PATIENCE_MS
 from prima.markup.tree import Node
 from prima.messages import Json
@@ -111,7 +111,7 @@ def read_scenario(file: str, data: bytes) -> Scenario:
         DocumentError: with all its problems.
     """
     scenario, problems = look_at_scenario(file, data)
-    if any(problem.severity == "error" for problem in problems):
+    if has_errors(problems):
         raise DocumentError(problems)
     return scenario
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from prima.devices.reading import Reader
-from prima.errors import DocumentError
+from prima.errors import DocumentError, has_errors
 from prima.markup.tree import Node
 from prima.sim.chance import Amount, Chance, Draws
 from prima.sim.happenings import When, read_answer, read_when
@@ -62,6 +62,6 @@ def read_user(file: str, data: bytes, person: str = "") -> User:
     )
     for when in user.whens:
         when.person = person
-    if any(problem.severity == "error" for problem in reader.problems):
+    if has_errors(reader.problems):
         raise DocumentError(reader.problems)
     return user

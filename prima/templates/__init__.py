@@ -8,7 +8,7 @@ from html import escape
 from pathlib import Path
 
 from prima.devices.vocabulary import ROBOT
-from prima.errors import DocumentError, UsageError
+from prima.errors import DocumentError, UsageError, has_errors
 from prima.interpreter.vocabulary import DIALOGUE
 from prima.loading import is_voicexml, validate
 from prima.loading.files import read_file
@@ -144,7 +144,7 @@ def _kind(path: Path) -> tuple[str, str]:
     try:
         data = read_file(path)
         root = parse(str(path), data)
-        if any(problem.severity == "error" for problem in validate([path])):
+        if has_errors(validate([path])):
             return "", ""
     except (DocumentError, UsageError):
         return "", ""

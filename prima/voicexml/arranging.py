@@ -184,15 +184,15 @@ def check_arranged(node: Node, problems: list[Problem], depth: int = 0) -> list[
         elif _fits(child, node, problems):
             inner = child.tag in ARRANGING
             found.append(check_arranged(child, problems, depth + 1) if inner else [child])
-    commands = [command for branch in found for command in branch]
     if not node.nodes:
         problems.append(NO_COMMAND.at(node.place, tag=node.tag))
     if not depth or node.tag == "iu":
         _check_now(node, problems)
+    if node.tag == "par":
+        _check_branches(found, problems)
+    commands = [command for branch in found for command in branch]
     if node.tag == "iu":
         _check_unit(commands, problems)
-    elif node.tag == "par":
-        _check_branches(found, problems)
     return commands
 
 

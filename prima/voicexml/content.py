@@ -146,22 +146,25 @@ class Content(Speaker):
         for item in items if not names else ():
             context.visited.discard(item.index)
             self.forget(item, context)
-        for name in names:
-            prefix, _, rest = name.partition(".")
-            scopes = dict(zip(SCOPES, context.scopes(local), strict=True))
-            if rest and prefix in scopes:
-                scopes, name = {prefix: scopes[prefix]}, rest
-            scope = next(
-                (one for one in reversed(scopes.values()) if self.engine.has(one, name)), None
-            )
-            if scope is None:
-                raise undeclared(node, name)
+        for whole in names:
+            scope, name = self._declared(node, whole, context, local)
             try:
                 self.engine.unset(scope, name)
             except ScriptError as error:  # the session's
                 raise self.failure(error, node, "namelist") from None
-            for item in named[name] if scope is scopes.get("dialog") else ():
+            for item in named[name] if scope is context.dialog else ():
                 self.forget(item, context)
+
+    def _declared(self, node: Node, name: str, context: Context, local: Scope) -> tuple[Scope, str]:
+        """The scope of a variable and its name there; ``name`` may begin with that of the scope."""
+        prefix, _, rest = name.partition(".")
+        scopes = dict(zip(SCOPES, context.scopes(local), strict=True))
+        if rest and prefix in scopes:
+            scopes, name = {prefix: scopes[prefix]}, rest
+        for scope in reversed(scopes.values()):
+            if self.engine.has(scope, name):
+                return scope, name
+        raise undeclared(node, name)
 
     def forget(self, item: Node, context: Context) -> None:
         """Reset a form item: its variable, prompt counter and event counters."""

@@ -264,16 +264,20 @@ class Speaker:
             case "enumerate":
                 self.owner.enumeration(node, context, local, speech)
             case "foreach":
-                for element in self.elements(node, context, local):
-                    self.engine.put(local, node.get("item"), element)
-                    speech.parts.append(" ")
-                    self.read_all(node, context, local, speech)
+                self.read_each(node, context, local, speech)
             case tag if tag in APART:
                 speech.parts += [" ", SENTENCE]
                 self.read_all(node, context, local, speech)
                 speech.parts += [SENTENCE, " "]
             case _:
                 self.read_all(node, context, local, speech)
+
+    def read_each(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
+        """Read a ``foreach`` once for each element of its array."""
+        for element in self.elements(node, context, local):
+            self.engine.put(local, node.get("item"), element)
+            speech.parts.append(" ")
+            self.read_all(node, context, local, speech)
 
     def text(self, node: Node, context: Context, local: Scope) -> str:
         """What a value says (4.1.4)."""

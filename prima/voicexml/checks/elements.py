@@ -41,14 +41,21 @@ def _check_item(item: Node) -> Iterator[Problem]:
 
 def _check_form(form: Node) -> Iterator[Problem]:
     items = [one for one in parts_of(form) if one.tag in FORM_ITEMS or is_unit(one)]
-    items = [node for node in items if node.get("name")]
+    named = [node for node in items if node.get("name")]
+    yield from _check_names(named)
+    yield from _check_filled(form, {node.get("name") for node in named if node.tag in INPUT_ITEMS})
+
+
+def _check_names(items: list[Node]) -> Iterator[Problem]:
     counts = Counter(node.get("name") for node in items)
     for node in items:
         name = node.get("name")
         if counts[name] > 1:
             counts[name] = 0
             yield TWO_ITEMS.at(node.attribute_place("name"), name=name)
-    inputs = {node.get("name") for node in items if node.tag in INPUT_ITEMS}
+
+
+def _check_filled(form: Node, inputs: set[str]) -> Iterator[Problem]:
     for filled in form.all("filled"):
         for name in filled.get("namelist").split():
             if name not in inputs:

@@ -83,12 +83,7 @@ def check_commands(root: Node, commands: Mapping[str, CommandType]) -> list[Prob
 
 def command_problems(node: Node, row: CommandType) -> list[Problem]:
     """Arguments and texts for which a Command is an event when it is asked for."""
-    given: dict[str, str | None] = {}
-    for name, text in node.attributes.items():
-        bare = name.removesuffix("-expr")
-        if bare in row.arguments and node.tag != "command":
-            given[bare] = text if bare == name else None
-    given |= {one.get("name"): one.attributes.get("value") for one in node.all("param")}
+    given = _arguments(node, row)
     says = bool(node.own_text.strip() or node.all("value"))
     found = [
         one._replace(severity="warning") for one in given_to(node, row, given, says, prefix="p:")
@@ -101,3 +96,13 @@ def command_problems(node: Node, row: CommandType) -> list[Problem]:
     if row.text == "required" and not says and not node.nodes:
         found.append(SAYS_NOTHING.at(node.place, tag=node.tag))
     return found
+
+
+def _arguments(node: Node, row: CommandType) -> dict[str, str | None]:
+    """The arguments that a Command has, with the values written; None for an expression's."""
+    given: dict[str, str | None] = {}
+    for name, text in node.attributes.items() if node.tag != "command" else ():
+        bare = name.removesuffix("-expr")
+        if bare in row.arguments:
+            given[bare] = text if bare == name else None
+    return given | {one.get("name"): one.attributes.get("value") for one in node.all("param")}

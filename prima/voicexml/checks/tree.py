@@ -59,26 +59,31 @@ def check_tree(root: Node) -> list[Problem]:
     stack = [root]
     while stack:
         node = stack.pop()
-        entry = ENTRIES[node.key]
-        if node.attributes or entry.required or entry.alternatives:
-            problems += check_attributes(node, entry)
-        check = RULES.get(node.key)
-        if check is not None:
-            problems += check(node)
-        if not entry.text and node.content and node.text:
-            text = node.text[:LONGEST_SHOWN]
-            problems.append(HOLDS_TEXT.at(node.place, tag=node.tag, text=text))
+        problems += _check_element(node)
         if node.content and node.key not in ("grammar", "metadata"):
             _check_children(node, stack, problems)
     return few(problems, MOST_ALIKE)
 
 
+def _check_element(node: Node) -> list[Problem]:
+    """What is wrong with an element itself."""
+    entry = ENTRIES[node.key]
+    problems: list[Problem] = []
+    if node.attributes or entry.required or entry.alternatives:
+        problems += check_attributes(node, entry)
+    check = RULES.get(node.key)
+    if check is not None:
+        problems += check(node)
+    if not entry.text and node.content and node.text:
+        text = node.text[:LONGEST_SHOWN]
+        problems.append(HOLDS_TEXT.at(node.place, tag=node.tag, text=text))
+    return problems
+
+
 def _check_children(node: Node, stack: list[Node], problems: list[Problem]) -> None:
     """Find the children's keys; those that are to be looked at go onto the stack."""
     foreign = False
-    for child in node.content:
-        if isinstance(child, str):
-            continue
+    for child in node.nodes:
         if is_unit(child) and node.key == "form":
             stack.extend(check_items(child, problems))
         elif child.namespace == PRIMA_NAMESPACE:
