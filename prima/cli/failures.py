@@ -13,6 +13,8 @@ from prima.cli.common import tell
 from prima.errors import DocumentError, RunError, UsageError, listed
 
 FINE, PROBLEMS, USAGE, RUN, INTERRUPTED = 0, 1, 2, 3, 130
+PART = 2_000
+"""Letters of a long message that are printed, of its beginning and of its end."""
 
 
 def exit_code(error: BaseException) -> int:
@@ -37,10 +39,15 @@ def _message(code: int, text: str = "") -> Callable[[Any], int]:
     """A handler that prints a text, by default that of the exception."""
 
     def handle(error: BaseException) -> int:
-        tell(f"prima: {text or error}")
+        tell(f"prima: {_short(text or str(error))}")
         return code
 
     return handle
+
+
+def _short(text: str) -> str:
+    """A message that names something very long, with its beginning and its end."""
+    return text if len(text) <= 2 * PART else f"{text[:PART]} ... {text[-PART:]}"
 
 
 def _problems(error: DocumentError) -> int:

@@ -156,7 +156,7 @@ def _check(chosen: Chosen, settings: LiveSettings) -> None:
     """Try the robot; exit code 2 if it is not set up, 3 if something of it does not work."""
     from prima.live.preflight import check_robot
 
-    if code := check_robot(chosen, settings, click.echo):
+    if code := check_robot(chosen, settings, lambda text: click.echo(clean(text))):
         raise Exit(code)
 
 

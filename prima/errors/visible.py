@@ -18,6 +18,8 @@ HARMFUL = re.compile(
 """Characters not shown; joiners, spaces and soft hyphens are, since scripts need them."""
 MARK = "\ufffd"
 """Replaces such a character."""
+FORMULA = tuple("=+-@\uff1d\uff0b\uff0d\uff20")
+"""Characters with which a spreadsheet's formula begins, also in full width."""
 
 
 def visible(text: str, keep: str = "") -> str:
@@ -45,3 +47,13 @@ def _escape(found: re.Match[str]) -> str:
         return letter
     units = letter.encode("utf-16-be").hex()
     return "".join(f"\\u{units[start : start + 4]}" for start in range(0, len(units), 4))
+
+
+def harmless(text: str) -> str:
+    """Text that a spreadsheet does not take for a formula: an apostrophe is put before one."""
+    return f"'{text}" if text.lstrip(" '").startswith(FORMULA) else text
+
+
+def unharmed(text: str) -> str:
+    """The text of which :func:`harmless` made this one."""
+    return text[1:] if text[:1] == "'" and harmless(text[1:]) == text else text

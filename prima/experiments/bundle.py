@@ -86,6 +86,8 @@ def check_bundle(path: str, out: Output) -> None:
         if Path(name).is_absolute() or ".." in Path(name).parts:
             message = f"{name}: a bundle has files of this folder and below it alone."
             raise UsageError(f"{message} Call prima from a folder that holds all of them.")
+        if "\\" in name:
+            raise UsageError(f'{name}: other systems take "\\" for a folder; rename the file.')
 
 
 def study_text(question: SweepQuestion) -> str:
@@ -146,7 +148,7 @@ def _files(out: Output) -> dict[str, bytes]:
     """What an archive holds beside its study and its metadata."""
     found = _read(out)
     for path in (out.path, *sorted(out.folder.rglob("*"))):
-        if path.is_file():
+        if path.is_file() and not path.is_symlink():  # a sweep makes no links
             found[path.relative_to(out.path.parent).as_posix()] = path.read_bytes()
     return found
 

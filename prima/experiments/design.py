@@ -12,6 +12,8 @@ from prima.language.distributions import share
 DESIGNS = ("full", "random", "lhs")
 MOST_RUNS = 100_000_000
 """Runs of one sweep."""
+MOST_POINTS = 10_000_000
+"""Values of a Latin hypercube, which is made at once."""
 
 
 class Design:
@@ -51,9 +53,10 @@ class Design:
             if not factors:
                 raise UsageError(f"--design {kind} needs something to vary: --vary PATH=LEVELS.")
             self.count = runs
-        if self.count > MOST_RUNS:
-            message = f"These are {self.count:,} runs; a sweep has at most {MOST_RUNS:,}."
-            raise UsageError(f"{message} Take fewer levels or seeds, or --design lhs --runs 10000.")
+        _check_count(self.count)
+        if kind == "lhs" and self.count * len(factors) > MOST_POINTS:
+            message = f"A Latin hypercube has at most {MOST_POINTS:,} values."
+            raise UsageError(f"{message} Take fewer runs or factors, or --design random.")
 
     def __len__(self) -> int:
         return self.count
@@ -81,6 +84,14 @@ class Design:
             shares = rows[number - 1] if rows else [share(seed, one.path) for one in self.factors]
             pairs = zip(self.factors, shares, strict=True)
             yield number, tuple(one.drawn(share) for one, share in pairs)
+
+
+def _check_count(runs: int) -> None:
+    """Refuse more runs than a sweep may have."""
+    if runs > MOST_RUNS:
+        these = f"{runs:,}" if runs < 10**20 else "far too many"  # a text has no more digits
+        message = f"These are {these} runs; a sweep has at most {MOST_RUNS:,}."
+        raise UsageError(f"{message} Take fewer levels or seeds, or --design lhs --runs 10000.")
 
 
 def _hypercube(factors: int, runs: int, seed: int) -> Sequence[Sequence[float]]:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -21,6 +22,7 @@ from prima.language.values import read_value
 from prima.sim.paths import ScenarioValue
 
 MOST_LEVELS = 100_000
+"""Levels of a factor."""
 SPLIT = re.compile(r"(?<!\\)\|")
 
 
@@ -84,6 +86,7 @@ class _Levels:
     def read(self, text: str) -> Factor:
         path, kind = self.target.path, self.kind
         pieces = [one.replace("\\|", "|") for one in SPLIT.split(text)]
+        self.count(len(pieces))
         if kind not in MEASURED:
             return Factor(path, kind, self.checked(pieces))
         if len(pieces) == 1 and (drawn := self.distribution(pieces[0].strip())):
@@ -91,7 +94,13 @@ class _Levels:
         levels: list[str] = []
         for piece in pieces:
             levels += self.several(piece.strip())
+            self.count(len(levels))
         return Factor(path, kind, self.checked(levels))
+
+    def count(self, levels: int) -> None:
+        """Refuse more levels than a factor may have."""
+        if levels > MOST_LEVELS:
+            raise self.wrong(f"It has {levels:,} levels; at most {MOST_LEVELS:,} can be run.")
 
     def checked(self, levels: Sequence[str]) -> tuple[str, ...]:
         """Levels of which none is twice, none is of another kind, and none is left out in vain."""
@@ -101,8 +110,7 @@ class _Levels:
                 self.value(level)
             elif attribute.required:
                 raise self.wrong(f"<{self.target.node.tag}> needs {attribute.name}.")
-        if len(set(levels)) < len(levels):
-            twice = next(one for one in levels if levels.count(one) > 1)
+        if twice := next((one for one, times in Counter(levels).items() if times > 1), None):
             raise self.wrong(f'The level "{twice}" is there twice.')
         return tuple(levels)
 
@@ -149,6 +157,5 @@ class _Levels:
             why = "its step is not above 0" if low <= high else "it ends before it begins"
             raise self.wrong(f'The range "{piece}" is empty: {why}.')
         count = math.floor((high - low) / step + 1e-9) + 1
-        if count > MOST_LEVELS:
-            raise self.wrong(f"The range has {count:,} levels; at most {MOST_LEVELS:,} can be run.")
+        self.count(count)
         return [written(self.kind, low + step * index) for index in range(count)]

@@ -18,17 +18,39 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from prima.errors import UsageError, did_you_mean
 from prima.experiments.sweep import SweepQuestion
 from prima.language.values import read_value
 from prima.markup.toml import parse_toml
 
-MOST_BYTES = 10_000_000
-"""Size of a study file."""
+MOST_BYTES = 1_000_000
+"""Size of a study file; more values are read from a file of their own (``empirical``)."""
+MOST = 10**12
+"""Greatest number in a study file: runs, bounds and numbers among levels."""
 Level = str | int | float | bool
-_NUMBER = "write a whole number from 1"
+
+
+def _levels(given: Any) -> Any:
+    """See that there are levels; of many wrong ones the first is enough."""
+    several = given if isinstance(given, list) else [given]
+    if not several or not all(isinstance(one, Level) for one in several):
+        raise ValueError("no levels")
+    if any(isinstance(one, int) and abs(one) > MOST for one in several):
+        raise ValueError("too large a number")
+    return given
+
+
+def _texts(given: list[Any]) -> list[Any]:
+    if not all(isinstance(one, str) for one in given):
+        raise ValueError("no texts")
+    return given
+
+
+Texts = Annotated[list[Any], AfterValidator(_texts)]
+Count = Annotated[int, Field(ge=1, le=MOST)]
+_NUMBER = f"write a whole number from 1 to {MOST:,}"
 HOW = {
     "scenarios": 'write a list of files, as ["visit.xml"]',
     "policies": 'write a list of policies, as ["prima", "fifo"]',
@@ -49,15 +71,15 @@ class Study(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
-    scenarios: Annotated[list[str], Field(min_length=1)]
-    policies: list[str] = []
-    seeds: Annotated[int, Field(ge=1)] = 1
+    scenarios: Annotated[Texts, Field(min_length=1)]
+    policies: Texts = []
+    seeds: Count = 1
     design: Literal["full", "random", "lhs"] = "full"
-    runs: Annotated[int, Field(ge=1)] | None = None
-    bound: Annotated[int, Field(ge=1)] | None = None
+    runs: Count | None = None
+    bound: Count | None = None
     patience: str | None = None
     isolate: Literal["ea", "all", "none"] = "ea"
-    vary: dict[str, Level | Annotated[list[Level], Field(min_length=1)]] = {}
+    vary: dict[str, Annotated[Any, AfterValidator(_levels)]] = {}
 
 
 def question_of(scenarios: Sequence[str], vary: Mapping[str, str], **options: Any) -> SweepQuestion:
@@ -101,7 +123,7 @@ def read_study(path: str) -> SweepQuestion:
         ) from None
     folder = os.path.dirname(path)
     scenarios = tuple(os.path.normpath(os.path.join(folder, one)) for one in study.scenarios)
-    places = {one: _place(path, text, one) for one in study.vary}
+    places = {one: f"{path}:{line}" for one, line in _lines(text).items() if one in study.vary}
     places |= dict.fromkeys(study.policies, _place(path, text, "policies"))
     places |= dict.fromkeys(scenarios, _place(path, text, "scenarios"))
     return SweepQuestion(
@@ -170,5 +192,15 @@ def _wrong(path: str, text: str, error: ValidationError) -> UsageError:
 
 def _place(path: str, text: str, key: str) -> str:
     """Where a key is written."""
-    match = re.search(rf"^[ \t]*\"?{re.escape(key)}\"?[ \t]*=", text, re.MULTILINE)
-    return f"{path}:{text.count(chr(10), 0, match.start()) + 1}" if match else path
+    line = _lines(text).get(key)
+    return f"{path}:{line}" if line else path
+
+
+def _lines(text: str) -> dict[str, int]:
+    """The lines of keys, where these are first written."""
+    found: dict[str, int] = {}
+    for number, line in enumerate(text.split("\n"), 1):
+        key, is_key, _ = line.partition("=")
+        if is_key:
+            found.setdefault(key.strip(" \t").strip('"'), number)
+    return found

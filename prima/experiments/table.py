@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from prima.errors import UsageError
+from prima.errors.visible import harmless, unharmed
 from prima.experiments.levels import Factor
 from prima.experiments.variants import CRITERIA
 from prima.messages import Json
@@ -19,9 +20,12 @@ from prima.version import __version__
 
 if TYPE_CHECKING:
     import pyarrow
+    from pyarrow.parquet import ParquetFile
 
 BATCH = 10_000
 """Rows that are converted at once."""
+BATCH_READ = 100_000
+"""Rows that are read at once."""
 TYPES = {"duration": "number", "number": "number", "integer": "integer"}
 """Types of columns by kinds of values; others are strings."""
 
@@ -117,9 +121,10 @@ def dictionary(path: str, made: Iterable[Column]) -> str:
 
 
 def line(cells: Iterable[Json]) -> str:
-    """A row of CSV (RFC 4180); None is an empty cell."""
+    """A row of CSV (RFC 4180); None is an empty cell, and no text a spreadsheet's formula."""
     made = io.StringIO()
-    csv.writer(made, lineterminator="\r\n").writerow(["" if one is None else one for one in cells])
+    row = [harmless(one) if isinstance(one, str) else one for one in cells]
+    csv.writer(made, lineterminator="\r\n").writerow(["" if one is None else one for one in row])
     return made.getvalue()
 
 
@@ -140,7 +145,7 @@ def read_rows(stream: IO[str], made: Sequence[Column]) -> Iterator[dict[str, Jso
 
 def _value(kind: str, text: str) -> Json:
     if kind == "string":
-        return text
+        return unharmed(text)
     if not text:
         return None
     return int(text) if kind == "integer" else float(text)
@@ -211,22 +216,65 @@ def _batches(
         yield RecordBatch.from_pylist(batch, schema=schema)
 
 
-def parquet_columns(path: Path, most: int) -> dict[str, list[Any]]:
+def parquet_columns(path: Path, rows: int, columns: int, size: int) -> dict[str, list[Any]]:
     """The columns of a Parquet file, as values of Python.
+
+    Args:
+        path: the file's.
+        rows: how many it may have.
+        columns: how many it may have.
+        size: how many bytes it may have when nothing in it is compressed, but that equal texts
+            count once.
 
     Raises:
         UsageError: pyarrow is not installed.
-        ValueError: it is no such file, or has more rows than ``most``.
+        ValueError: it is no such file, or has more than it may.
     """
     arrow = pyarrow_module()
     from pyarrow.parquet import ParquetFile
 
     try:
         with ParquetFile(path) as file:
-            count: int = file.metadata.num_rows
-            if count > most:
-                raise ValueError(f"it has {count} rows, and {most} are read at most")
-            read = file.read()
-            return {name: read.column(name).to_pylist() for name in read.column_names}
+            schema, count = file.schema_arrow, file.metadata.num_rows
+        for number, most, what in ((count, rows, "rows"), (len(schema), columns, "columns")):
+            if number > most:
+                raise ValueError(f"it has {number} {what}, and {most} are read at most")
+        for one in schema:
+            if arrow.types.is_nested(one.type):
+                raise ValueError(f'its column "{one.name[:100]}" holds lists or records')
+        texts = [one.name for one in schema if arrow.types.is_string(one.type)]
+        with ParquetFile(path, read_dictionary=texts) as file:
+            return _cells(file, schema.names, size)
     except (arrow.ArrowException, KeyError) as error:
         raise ValueError(f"it is no Parquet file that can be read: {error}") from None
+
+
+def _cells(file: ParquetFile, names: Sequence[str], size: int) -> dict[str, list[Any]]:
+    """The cells of an open file, piece by piece: a small file may hold very much.
+
+    Raises:
+        ValueError: it holds more than ``size`` bytes, or two columns of one name.
+    """
+    twice = next((one for one in names if names.count(one) > 1), None)
+    if twice is not None:
+        raise ValueError(f'it has two columns "{twice[:100]}"')
+    cells: dict[str, list[Any]] = {name: [] for name in names}
+    held = 0
+    for batch in file.iter_batches(BATCH_READ):
+        held += batch.nbytes
+        if held > size:
+            raise ValueError(f"it holds more than {size:,} bytes")
+        for name in names:
+            cells[name] += _values(batch.column(name))
+    return cells
+
+
+def _values(column: Any) -> list[Any]:
+    """Values of Python; of a dictionary's each is made once."""
+    from pyarrow import DictionaryArray
+
+    if not isinstance(column, DictionaryArray):
+        made: list[Any] = column.to_pylist()
+        return made
+    words = [*column.dictionary.to_pylist(), None]
+    return [words[-1 if one is None else one] for one in column.indices.to_pylist()]

@@ -184,12 +184,15 @@ class Kept:
     def keep(self, folder: str) -> None:
         """Keep all files of a folder; of sounds only their heads.
 
+        A link that leads out of the folder is none of its files: an application may not read it.
+
         Raises:
             UsageError: they are too many or too large.
         """
-        held = sum(map(len, self.texts.values()))
-        for path in sorted(Path(self.folder, folder).rglob("*")):
-            if path.is_file() and (head := self.head(path)):
+        held, root = sum(map(len, self.texts.values())), Path(self.folder, folder)
+        for path in sorted(root.rglob("*")):
+            inside = path.is_file() and path.resolve().is_relative_to(root.resolve())
+            if inside and (head := self.head(path)):
                 if length_ms(*head) is None:
                     held += len(self.text(path) or b"")
                 if held > MOST_SENT or len(self.heads) > MOST_FILES:

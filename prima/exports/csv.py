@@ -6,12 +6,11 @@ import csv
 import io
 from collections.abc import Iterator
 
+from prima.errors.visible import harmless
 from prima.exports.timeline import COLUMNS, Timeline
 
 HEAD = ("tier", "kind", "start", "end", "text", *COLUMNS)
 NUMBERS = frozenset({"serial", "seconds"})
-FORMULA = tuple("=+-@\uff1d\uff0b\uff0d\uff20")
-"""Characters with which a spreadsheet's formula begins, also in full width."""
 
 
 def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
@@ -32,8 +31,3 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
             buffer.seek(0)
             buffer.truncate()
     yield buffer.getvalue()
-
-
-def harmless(text: str) -> str:
-    """Text that a spreadsheet does not take for a formula: an apostrophe is put before one."""
-    return f"'{text}" if text.lstrip(" '").startswith(FORMULA) else text

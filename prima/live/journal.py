@@ -168,6 +168,8 @@ def read_broken(path: str) -> CutJournal:
         UsageError: it is none, cannot be read, or its run has ended.
     """
     try:
+        if Path(path).exists() and not Path(path).is_file():
+            raise UsageError(f"{path}: cannot be read: it is not a file.")
         data = Path(path).read_bytes()
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None

@@ -82,8 +82,9 @@ def _opened(real: str) -> Iterator[IO[bytes]]:
 def _beside(real: str) -> tuple[str, IO[bytes]]:
     """A new file in the same folder, locked, with the rights that a new file has."""
     folder, name = os.path.split(real)
+    short = os.fsdecode(os.fsencode(name)[:100])
     while True:
-        part = os.path.join(folder, f"{PARTS}{os.getpid()}-{name[:100]}")
+        part = os.path.join(folder, f"{PARTS}{os.getpid()}-{short}")
         with suppress(FileNotFoundError):
             os.unlink(part)  # of a process that had the same number
         stream = open(part, "xb")  # noqa: SIM115

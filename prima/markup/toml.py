@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
+
+MOST_PARTS = 100
+"""Parts of a dotted key: reading one takes the square of their number."""
+_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+"""
+_LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:\.[ \t]*+{_PART}){{{MOST_PARTS}}}")
 
 
 def parse_toml(text: str) -> dict[str, Any]:
@@ -11,9 +17,15 @@ def parse_toml(text: str) -> dict[str, Any]:
     Raises:
         ValueError: it is malformed, or too deep.
     """
+    if _LONG_KEY.search(text):
+        raise ValueError(f"it has a key of more than {MOST_PARTS} parts")
     import tomllib  # most projects have no such files
 
     try:
         return tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except ValueError:  # Python's own bound on the digits of a number
+        raise ValueError("a number in it has too many digits") from None
     except RecursionError:
         raise ValueError("it holds values inside values without end") from None

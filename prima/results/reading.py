@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from prima.errors import UsageError, did_you_mean, one_of
+from prima.errors.visible import unharmed
 from prima.experiments.sweep import PLAN, ROWS
 from prima.experiments.table import HEAD, MEANINGS, MEASURES, OUTCOMES, Column, parquet_columns
 
@@ -22,6 +23,10 @@ REQUIRED = ("run", "exit", "order")
 ROLES = ("id", "factor", "outcome", "measure")
 MOST_ROWS = 1_000_000
 MOST_COLUMNS = 1_000
+MOST_BYTES = 1_000_000_000
+"""Size of a Parquet file's content, in which equal texts count once."""
+MOST_LINE = 10_000_000
+"""Length of a line of a CSV file (characters)."""
 MOST_BESIDE = 10_000_000
 """Maximum length of a dictionary or plan (characters)."""
 
@@ -54,7 +59,7 @@ def read(path: str | Path) -> Sheet:
     try:
         cut = ""
         if table.suffix == ".parquet":
-            cells = parquet_columns(table, MOST_ROWS)
+            cells = parquet_columns(table, MOST_ROWS, MOST_COLUMNS, MOST_BYTES)
         else:
             cells, cut = _read_csv(table)
     except OSError as error:
@@ -158,18 +163,32 @@ def _append(columns: list[list[str]], line: int, row: list[str]) -> None:
     if len(row) != len(columns):
         raise ValueError(f"line {line} has {len(row)} cells, and its head has {len(columns)}")
     for column, text in zip(columns, row, strict=True):
-        column.append(text)
+        column.append(unharmed(text))
 
 
 def _rows(stream: IO[str]) -> Iterator[tuple[int, list[str]]]:
     """The rows that are not empty, with their lines."""
-    reader = csv.reader(stream)
+    reader = csv.reader(_lines(stream))
     try:
         for row in reader:
             if row:
                 yield reader.line_num, row
     except csv.Error as error:
         raise ValueError(f"line {reader.line_num}: {error}") from None
+
+
+def _lines(stream: IO[str]) -> Iterator[str]:
+    """The lines of a file.
+
+    Raises:
+        ValueError: one is longer than a row can be.
+    """
+    number = 0
+    while text := stream.readline(MOST_LINE):
+        number += 1
+        if len(text) == MOST_LINE:
+            raise ValueError(f"line {number} has more than {MOST_LINE:,} characters")
+        yield text
 
 
 def _is_ended(path: Path) -> bool:
@@ -217,7 +236,7 @@ def _columns(sheet: Sheet) -> list[Column]:
     known = {one.name: one for one in (*HEAD, *OUTCOMES, *MEASURES)}
     known |= {name: _measure(name, meaning) for name, meaning in MEANINGS.items()}
     data = _beside(sheet.path, DICTIONARY)
-    told = list(_told(data)) if data else []
+    told = list({one.name: one for one in _told(data)}.values()) if data else []
     if not told:
         sheet.notes.append(
             "There is no data dictionary beside the table: columns are known by their names, and"
@@ -226,15 +245,17 @@ def _columns(sheet: Sheet) -> list[Column]:
         return [known.get(name) or _guessed(name, sheet.cells[name]) for name in sheet.cells]
     lost = [one.name for one in told if one.name not in sheet.cells]
     if lost:
-        sheet.notes.append(f"The table lacks columns of its dictionary: {', '.join(lost[:20])}.")
+        sheet.notes.append(f"The table lacks columns of its dictionary: {_names(lost)}.")
     listed = {one.name for one in told} | set(known)
     new = [name for name in sheet.cells if name not in listed]
     if new:
-        sheet.notes.append(
-            f"Columns that no dictionary describes are left out: {', '.join(new[:20])}."
-        )
+        sheet.notes.append(f"Columns that no dictionary describes are left out: {_names(new)}.")
     more = [one for name, one in known.items() if name not in {column.name for column in told}]
     return [one for one in (*told, *more) if one.name in sheet.cells]
+
+
+def _names(columns: list[str]) -> str:
+    return ", ".join(one[:100] for one in columns[:20])
 
 
 def _told(data: dict[str, Any]) -> Iterator[Column]:

@@ -188,8 +188,9 @@ class People:
                 self._playing.append(heappop(self._scripts))
             for script in self._playing:
                 made += self._go_on(script, now)
-            self._scripts += [one for one in self._playing if one.left or one.speaking]
-            heapify(self._scripts)  # whoever hangs up changes when others go on
+            for script in self._playing:
+                if script.left or script.speaking:
+                    heappush(self._scripts, script)
             self._playing.clear()
         for who, keep in self._following.items():
             self._follow(who, keep)
@@ -284,14 +285,16 @@ class People:
     def _hang_up(self, now: int) -> Inbound:
         """Hang up, and say nothing more; what is being recorded is told as far as it goes."""
         data: dict[str, Json] = {}
-        for script in sorted([*self._playing, *self._scripts], key=lambda one: one.serial):
+        speaking = [one for one in (*self._playing, *self._scripts) if one.speaking]
+        for script in sorted(speaking, key=lambda one: one.serial):
             spoken = min(now - script.began, script.lasts)
-            if script.speaking and "duration" in script.told and spoken:
+            if "duration" in script.told and spoken:
                 said = _part(self._timeline(script.speaking), spoken)
                 data = {"recorded": said, "duration": spoken}
-            if script.speaking:
-                script.speaking, script.time = "", now
-                self.robot.ear.speech_ends()
+            script.speaking, script.time = "", now
+            self.robot.ear.speech_ends()
+        if speaking:
+            heapify(self._scripts)
         return Occurred("connection.disconnect.hangup", "user", data)
 
     def _happen(self, doing: Doing, now: int) -> list[Inbound]:

@@ -105,3 +105,33 @@ def test_files_above_the_folder_cannot_be_bundled(
     assert done.returncode == 2
     assert "Call prima from a folder that holds all of them." in done.stderr
     assert not Path("t.csv").exists()
+
+
+VOICE = """<vxml xmlns="http://www.w3.org/2001/vxml" version="2.1"><form><block>Hello.</block></form></vxml>"""
+
+
+def test_a_link_brings_no_strange_file_into_a_bundle(folder: Path, tmp_path: Path) -> None:
+    """An archive is published, and whoever wrote the application may have left links in it."""
+    (tmp_path / "secret").write_text("never published")
+    (folder / "app").mkdir()
+    (folder / "app" / "hello.vxml").write_text(VOICE)
+    (folder / "app" / "beside.txt").write_text("published")
+    (folder / "app" / "words.txt").symlink_to(tmp_path / "secret")
+    (folder / "app" / "more").symlink_to(tmp_path, target_is_directory=True)
+    text = (folder / "visit.xml").read_text()
+    application = '<application src="app/hello.vxml"/>'
+    (folder / "visit.xml").write_text(text.replace("<person", f"{application}<person", 1))
+    (folder / "out" / "table").mkdir(parents=True)
+    (folder / "out" / "table" / "old.txt").symlink_to(tmp_path / "secret")
+    done = prima(*SWEEP, "-o", "out/table.csv", "--bundle", "table.zip")
+    assert done.returncode == 0, done.stderr
+    files = unpacked(folder / "table.zip", tmp_path / "two")
+    assert files["app/beside.txt"] == b"published" and "app/hello.vxml" in files
+    assert not [name for name, data in files.items() if b"never" in data or "secret" in name]
+
+
+def test_a_name_that_leads_elsewhere_on_other_systems_is_told(folder: Path) -> None:
+    (folder / "up\\b.csv").write_text("1\n")
+    words = [one.replace("delays.csv", "up\\b.csv") for one in SWEEP]
+    done = prima(*words, "-o", "table.csv", "--bundle", "table.zip")
+    assert done.returncode == 2 and "rename the file" in done.stderr

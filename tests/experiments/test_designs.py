@@ -57,6 +57,8 @@ def test_a_latin_hypercube_meets_each_slice_once() -> None:
         ("fill", None, ALL, 'no design "fill"'),
         ("full", 10, ALL, "--runs is for --design random or lhs"),
         ("lhs", None, ALL, "needs the number of runs"),
+        ("lhs", 5_000_000, ALL, "at most 10,000,000 values"),
+        ("random", 10**4000, ALL, "far too many runs"),
         ("random", 10, (), "needs something to vary"),
         ("random", 10**9, ALL, "1,000,000,000 runs; a sweep has at most 100,000,000"),
     ],

@@ -83,6 +83,8 @@ def test_options_come_before_the_file(folder: Path) -> None:
         ("[0.5, 1]", "[[1]]", ":10", "person.speed: write its levels, as"),
         ("[0.5, 1]", "[]", ":10", "person.speed: write its levels, as"),
         ("[0.5, 1]", "[0.5, 9]", ":10", 'person.speed: "9" is out of range'),
+        ("seeds = 2", "seeds = 0x" + "f" * 9000, ":4", "seeds: write a whole number from 1 to"),
+        ("[0.5, 1]", "[0x" + "f" * 9000 + "]", ":10", "person.speed: write its levels, as"),
         ("[0.5, 1]", "9", ":10", 'person.speed: "9" is out of range'),
         ("touch =", "toch =", ":8", '"toch" is no value of the scenario. Did you mean "touch"'),
         ("site/visit.xml", "site/none.xml", ":2", "none.xml: cannot be read"),
@@ -104,8 +106,11 @@ def test_mistakes_have_their_line(old: str, new: str, where: str, why: str) -> N
     [
         (b"\xff\xfe", "it is not UTF-8"),
         (b"a = " + b"[" * 100_000, "not TOML"),
-        (b"x" * 10_000_001, "larger than 10,000,000 bytes"),
+        (b"x" * 1_000_001, "larger than 1,000,000 bytes"),
         (b"", "a study needs scenarios"),
+        (b".".join([b"a"] * 100_000) + b" = 1", "it has a key of more than 100 parts"),
+        (b"[" + b" . ".join([b"'a'"] * 100_000) + b"]", "it has a key of more than 100 parts"),
+        (b"seeds = " + b"9" * 5000, "a number in it has too many digits"),
     ],
 )
 def test_files_that_are_no_studies(data: bytes, why: str) -> None:
@@ -124,3 +129,19 @@ def test_a_study_file_is_named_alone() -> None:
     done = prima("sweep", "study.toml", "site/visit.xml")
     assert done.returncode == 2 and "name it alone" in done.stderr
     assert prima("sweep", "none.toml").stderr.startswith("prima: none.toml: cannot be read")
+
+
+def test_large_studies_are_refused_soon_and_with_their_line() -> None:
+    """What once took the square of the number of levels, or gigabytes for as many mistakes."""
+    levels = ",".join(f'"a{number}"' for number in range(80_000))
+    for written, why in (
+        (f'reply = [{levels}, "z", "z"]', 'reply: The level "z" is there twice'),
+        (f"reply = [{'{},' * 300_000}]", "reply: write its levels, as"),
+        (f'touch = "{"0ms..99999ms/1ms|" * 1000}"', "levels; at most 100,000"),
+        ("\n".join(f"a{number} = 1" for number in range(60_000)), '"a0" is no value'),
+        (f'touch = "{"s" * 900_000}"', "is not a time. Write a number with its unit"),
+    ):
+        Path("study.toml").write_text(f"{STUDY.partition('touch')[0]}{written}", encoding="utf-8")
+        done = prima("sweep", "study.toml", "--plan", timeout=60)
+        assert done.returncode == 2 and why in done.stderr and "study.toml:8" in done.stderr
+        assert len(done.stderr) < 5_000

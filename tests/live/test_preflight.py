@@ -174,3 +174,13 @@ def test_the_drivers_that_need_nothing_pass(name: str) -> None:
     ran = prima("live", "--robot", f"documents/robots/{name}.xml", "--check")
     assert ran.returncode == 0, ran.stdout
     assert re.search(r"^ok +say .* \d+ ms +\d+ ms$", ran.stdout, re.M), ran.stdout
+
+
+def test_what_the_robots_document_says_does_nothing_to_the_terminal(tmp_path: Path) -> None:
+    robot = (ROOT / "documents" / "robots" / "simulated.xml").read_text()
+    wrong = '<driver kind="sim"><option name="at" value="&#x202e;&#x9b;31m"/></driver>'
+    begin, _, rest = robot.partition("<driver")
+    (tmp_path / "r.xml").write_text(begin + wrong + rest[rest.index("/>") + 2 :])
+    done = prima("live", "--robot", str(tmp_path / "r.xml"), "--check")
+    assert done.returncode == 2 and "no place" in done.stdout + done.stderr
+    assert not {"\u202e", "\x9b"} & {*done.stdout, *done.stderr}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -143,3 +144,10 @@ def test_a_scenario_that_a_host_has_answered_does_not_go_on(whole: Path) -> None
     assert on.returncode == 2
     assert "answered.jsonl:2: a host has answered this scenario's run" in on.stderr
     assert journal.read_text() == first + json.dumps(fetched) + "\n"
+
+
+def test_what_is_no_file_is_no_journal(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.jsonl")
+    for path in (tmp_path / "pipe.jsonl", "/dev/zero", tmp_path):
+        done = prima("live", "--resume", str(path))
+        assert done.returncode == 2 and "cannot be read: it is not a file" in done.stderr

@@ -168,3 +168,9 @@ def test_a_killed_batch_is_cleaned_up_by_the_next(tmp_path: Path) -> None:
     one = str(ROOT / "documents" / "scenarios" / "follow-alone.xml")
     subprocess.run([*batch[:4], one, *batch[5:]], cwd=tmp_path, check=True, capture_output=True)
     assert left(tmp_path / "runs") == []
+
+
+def test_a_long_name_of_other_letters_can_be_written(tmp_path: Path) -> None:
+    name = "\u3042" * 80 + ".jsonl"  # 246 bytes, of the 255 that a name may have
+    write_whole(tmp_path / name, "new")
+    assert os.listdir(tmp_path) == [name]
