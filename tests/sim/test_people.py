@@ -11,7 +11,7 @@ from prima.errors import DocumentError
 from prima.loading import load_scenario
 from prima.scheduler.policy import policy_named
 from prima.sim.map import Map
-from prima.sim.people import Script
+from prima.sim.people import TriggeredScript
 from prima.sim.rehearsal import Rehearsal
 from prima.sim.world import World
 from tests.helpers.rehearsing import PROFILE, rehearse, told
@@ -128,14 +128,14 @@ def test_a_scenario_of_many_events_compares_few_of_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A user of 10,000 took minutes: at each instant all that were to come were put in order."""
-    count, less = 0, Script.__lt__
+    count, less = 0, TriggeredScript.__lt__
 
-    def compared(one: Script, other: Script) -> bool:
+    def compared(one: TriggeredScript, other: TriggeredScript) -> bool:
         nonlocal count
         count += 1
         return less(one, other)
 
-    monkeypatch.setattr(Script, "__lt__", compared)
+    monkeypatch.setattr(TriggeredScript, "__lt__", compared)
     whens = "".join(f'<when at="{ms}ms"><touch sensor="head"/></when>' for ms in range(1000))
     rehearse(tmp_path, '<form id="a"/>', f'<person x="1" y="0"/>{whens}')
     assert count < 30_000
