@@ -228,6 +228,11 @@ def limits() -> str:
             "`error.semantic`",
         ),
         (
+            "the tags of one utterance",
+            f"{budget.TIME_LIMIT:g} s of processor time",
+            "it is no match",
+        ),
+        (
             "memory of an application's ECMAScript",
             f"{sandbox.MEMORY_LIMIT // mib} MiB",
             "`error.semantic`",
@@ -285,7 +290,7 @@ def limits() -> str:
             "the application ends",
         ),
         (
-            "an application's scripts in a run, all together",
+            "an application's scripts and tags in a run, all together",
             f"{evaluation.MAX_RUN_SECONDS:g} s of processor time, and {evaluation.MAX_SHARE:.0%} of"
             " the run's own",
             "the application ends",

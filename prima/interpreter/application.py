@@ -38,7 +38,6 @@ from prima.messages import (
     Step,
     Understood,
 )
-from prima.script.budget import Budget
 from prima.script.evaluation import ScriptError
 from prima.script.isolated import Engines
 
@@ -142,7 +141,7 @@ class Interpreter(States):
         if frame is None:
             return None
         least = confidence_level(self.document, frame.form)
-        budget = self._budget()
+        budget = self.utterance()
         for text, confidence in said:
             for link in (*frame.form.links, *self.document.links):
                 tell = partial(self._no_match, link.node)
@@ -175,7 +174,7 @@ class Interpreter(States):
             return None
         form, field = asking
         least = confidence_level(self.document, form, field)
-        budget, tell = self._budget(), partial(self._no_match, field.node)
+        budget, tell = self.utterance(), partial(self._no_match, field.node)
         for text, confidence in said:
             value = field.answers.match(text, budget, tell) if confidence >= least else None
             if budget.steps <= 0:
@@ -183,11 +182,6 @@ class Interpreter(States):
             if value is not None:
                 return Understood(value, text, confidence)
         return None
-
-    def _budget(self) -> Budget:
-        """What one utterance may take of this application's engine, in which tags run."""
-        engine = self.engine
-        return Budget(engine.now, host=getattr(engine, "host", None))
 
     def _no_match(self, node: Node, message: str) -> None:
         """A tag failed, so that its grammar does not take what was said."""

@@ -9,6 +9,7 @@ from prima.interpreter.transfers import GoOut
 from prima.language.values import moment
 from prima.markup.tree import Node
 from prima.messages import Action, Json, Quit, Say
+from prima.script.budget import Budget
 from prima.script.evaluation import MAX_RUN_SECONDS, MAX_SCRIPT_SECONDS, MAX_SHARE, EngineLost
 from prima.script.sandbox import START
 
@@ -83,7 +84,9 @@ class Bounds(Generic[Evaluator]):
         """What was gone through last."""
         self._output = 0
         self._spent = 0.0
-        """Seconds of scripts in the instants before."""
+        """Seconds of scripts in the instants before, and of tags."""
+        self._heard = Budget()
+        """What matching the latest utterance took."""
         self._gone = 0
         """Pieces of content gone through in the instants before."""
         self.asked = 0
@@ -106,11 +109,17 @@ class Bounds(Generic[Evaluator]):
         self._output = 0
         engine = self.engine
         engine.now = self.began + now
-        if engine.spent:
-            self._spent += engine.spent
-            engine.spent = 0.0
-            if self._spent > MAX_RUN_SECONDS + now * MAX_SHARE / 1000:
-                self.exhausted = f"its scripts took {self._spent:.1f} s of this run"
+        self._spent += engine.spent + self._heard.spent
+        engine.spent = self._heard.spent = 0.0
+        if self._spent > MAX_RUN_SECONDS + now * MAX_SHARE / 1000:
+            self.exhausted = f"its scripts took {self._spent:.1f} s of this run"
+
+    def utterance(self) -> Budget:
+        """What matching one more utterance may take; what tags take counts for the run."""
+        self._spent += self._heard.spent
+        engine = self.engine
+        self._heard = Budget(engine.now, host=getattr(engine, "host", None))
+        return self._heard
 
     def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound what an application does in one instant; a document may loop for ever."""

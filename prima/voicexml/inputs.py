@@ -82,8 +82,7 @@ class Inputs:
         are of the others (5.1.5).
         """
         most = self.most_results(context)
-        engine = self.owner.engine
-        self._budget = Budget(engine.now, host=getattr(engine, "host", None))
+        self._budget = self.owner.utterance()
         first: Active | None = None
         results: list[GrammarMatch] = []
         for text, sure in said:

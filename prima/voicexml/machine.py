@@ -10,6 +10,7 @@ from prima.interpreter.selection import Counters, select_item, select_prompts
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, thrown_of
 from prima.markup.tree import Node
 from prima.messages import Action, Command, Json
+from prima.script.budget import Budget
 from prima.script.evaluation import Scope, ScriptError
 from prima.voicexml.arranging import Queued, holds, is_unit, parts_of
 from prima.voicexml.content import Content
@@ -83,6 +84,10 @@ class Machine:
     def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound what is done in one instant."""
         self.app.count_step(node, steps)
+
+    def utterance(self) -> Budget:
+        """See :meth:`Bounds.utterance`."""
+        return self.app.utterance()
 
     def count_output(self, characters: int, node: Node) -> None:
         """Bound what comes out in one instant."""

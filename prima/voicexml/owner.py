@@ -16,6 +16,7 @@ from prima.interpreter.transfers import Thrown
 from prima.interpreter.units import Reach
 from prima.markup.tree import Node
 from prima.messages import Action, Command, Cue, Data, Event, Fetched, Json
+from prima.script.budget import Budget
 from prima.script.evaluation import Scope
 from prima.script.isolated import AnyEngine
 from prima.voicexml.arranging import Queued
@@ -61,6 +62,9 @@ class VoiceApplication(Protocol):
 
     def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound what is done in one instant."""
+
+    def utterance(self) -> Budget:
+        """What matching one more utterance may take."""
 
     def count_output(self, characters: int, node: Node) -> None:
         """Bound what comes out in one instant."""
@@ -294,6 +298,9 @@ class MachineOwner(Protocol):
 
     def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound what is done in one instant."""
+
+    def utterance(self) -> Budget:
+        """What matching one more utterance may take."""
 
     def count_output(self, characters: int, node: Node) -> None:
         """Bound what comes out in one instant."""

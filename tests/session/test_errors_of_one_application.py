@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from prima import api
+from prima.interpreter import bounds
 from prima.interpreter.application import Interpreter
 from prima.interpreter.transfers import Thrown, Transfer
 from prima.messages import Ended, Event, Sensed
@@ -177,3 +178,31 @@ def test_what_begins_again_and_again_asks_the_engine_a_bounded_number_of_times(
 
 def test_memory_that_leaves_none_for_an_error_is_told_as_such() -> None:
     assert reason("[uninitialized]", 0.5) == "it used too much memory"
+
+
+LOOPS = """<grammar xmlns="http://www.w3.org/2001/06/grammar" version="1.0" xml:lang="en" root="r"
+ tag-format="semantics/1.0"><rule id="r">yes<tag>for(;;){}</tag></rule></grammar>"""
+ASKS = HEAD + (
+    '<form id="f"><field name="a"><prompt>Well?</prompt><grammar src="g.grxml"/>'
+    '<nomatch><reprompt/></nomatch><noinput count="2"><exit/></noinput></field></form></prima>'
+)
+ASKS_BY_VOICEXML = (
+    '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en"><form>'
+    '<field name="a"><prompt>Well?</prompt><grammar src="g.grxml"/><nomatch><reprompt/></nomatch>'
+    "</field></form></vxml>"
+)
+
+
+@pytest.mark.parametrize(("name", "text"), [("a.xml", ASKS), ("a.vxml", ASKS_BY_VOICEXML)])
+def test_tags_that_take_long_at_each_answer_end_their_application(
+    name: str, text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each utterance alone is within its bound, and the question is asked again."""
+    monkeypatch.setattr(bounds, "MAX_RUN_SECONDS", 0.8)
+    (tmp_path / "g.grxml").write_text(LOOPS)
+    path = tmp_path / name
+    path.write_text(text)
+    made = api.rehearse(api.stage([], [str(path)], ["yes"] * 6))
+    assert "its scripts took 1." in made.failures[0]
+    asked = [one for one in made.records if one["phase"] == "start" and one.get("text") == "Well?"]
+    assert len(asked) == 2
