@@ -1,4 +1,4 @@
-# Verbs: demo test test-live check mutants bench schemas build lock. Each sets up what it needs in .venv, from the
+# Verbs: demo test test-live check explore mutants bench schemas build lock. Each sets up what it needs in .venv, from the
 # versions and hashes of release/*.txt.
 PYTHON ?= python3
 VENV := .venv
@@ -11,7 +11,7 @@ WORKERS ?= $(shell expr 2 \* $$(getconf _NPROCESSORS_ONLN))
 # Without those for robots (naoqi, rosbridge), which tests/parties installs.
 EXTRAS := dev experiments cluster export editor bench reachy
 
-.PHONY: demo test test-live check mutants bench attack schemas build lock clean
+.PHONY: demo test test-live check explore mutants bench attack schemas build lock clean
 
 demo: $(VENV)/.runtime
 	@mkdir -p build
@@ -35,6 +35,14 @@ check: $(VENV)/.dev
 	$(BIN)/python -m tools.reference --check
 	$(BIN)/python -m tools.pictures --check
 	$(BIN)/python -m release.licences --check
+
+# Every timing of every scenario that comes with PRIMA; tests do it for the quick ones.
+explore: $(VENV)/.dev
+	@mkdir -p build
+	@for one in $$(find documents/scenarios -name '*.xml' | sort); do \
+	  echo "$$one"; $(BIN)/prima explore "$$one" >build/explored.txt || { cat build/explored.txt; exit 1; }; \
+	  tail -n 1 build/explored.txt; \
+	done
 
 # Each small change to the scheduler, or to FILE=rules.py of it, must make a test fail.
 mutants: $(VENV)/.dev

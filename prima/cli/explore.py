@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from typing import TYPE_CHECKING
 
 import click
 from click.exceptions import Exit
@@ -21,8 +22,11 @@ from prima.cli.common import (
     write_for_programs,
 )
 from prima.cli.progress import ProgressBar
-from prima.errors import UsageError, counted
+from prima.errors import RunError, UsageError, counted
 from prima.scheduler.policy import POLICIES
+
+if TYPE_CHECKING:
+    from prima.experiments.explore import Exploration
 
 
 @click.command()
@@ -70,7 +74,8 @@ def explore(
 
     Each time is moved to just before and at every instant of the run: ends, windows,
     timeouts. In every run the scenario's expectations and the rules of mediation are
-    checked, and that it ends. Exit code 1 if something is broken.
+    checked, and that it ends. Exit code 1 if something is broken. Ctrl-C prints what was
+    found so far.
 
     \b
     prima explore visit.xml
@@ -78,7 +83,7 @@ def explore(
     """
     from prima.experiments.cluster import pool_of
     from prima.experiments.explore import Exploration, ExplorationPlan
-    from prima.experiments.explored import Explored, carried_out
+    from prima.experiments.explored import carried_out
 
     raise_limits(limits)
     if resume and output is None:
@@ -102,19 +107,32 @@ def explore(
             tell(f"{counted(kept, 'run')} had been made before")
         for number in numbers:
             progress.show(number, 0)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, RunError) as ended:
         progress.clear()
+        exploration.settle()
+        _put(exploration, form)
         if output is not None:
             tell(f"{output}: the runs made so far are kept; --resume goes on.")
+        if isinstance(ended, RunError):
+            raise
         raise click.Abort from None
     finally:
         progress.clear()
+    _put(exploration, form)
+    if exploration.problems:
+        raise Exit(1)
+
+
+def _put(exploration: Exploration, form: str) -> None:
+    """Print what was found, if anything was."""
+    from prima.experiments.explored import Explored
+
+    if not exploration.orders:
+        return
     explored = Explored(exploration)
     if form == "json":
         write_for_programs()
         put(json.dumps(explored.data(), indent=1, ensure_ascii=False))
-    else:
-        for line in explored.text():
-            put(line)
-    if exploration.problems:
-        raise Exit(1)
+        return
+    for line in explored.text():
+        put(line)

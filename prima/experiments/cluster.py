@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import logging
+import os
 import re
 import sys
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from itertools import islice
-from time import sleep
+from time import monotonic, sleep
 from typing import TYPE_CHECKING, Any
 
 from prima.errors import RunError, UsageError
@@ -31,6 +32,13 @@ TRIES = 5
 AHEAD = 8
 """Tasks for each worker that are sent ahead."""
 ADDRESS = re.compile(r"(tcp|tls|ws|wss)://[^\s/:]+(:\d{1,5})?")
+PATIENCE = 300.0
+"""Seconds that a scheduler may be without any worker, before it is given up."""
+PATIENCE_SETTING = "PRIMA_CLUSTER_PATIENCE"
+"""The environment variable that gives another number."""
+MOST_PATIENCE = 86_400.0
+FIRST_TOLD, TOLD_EVERY = 5.0, 60.0
+"""After how many seconds without a worker it is told, and how often again."""
 DIED = 1
 """The code of a run of which the worker died each time; Dask tells no signal."""
 
@@ -90,10 +98,11 @@ def _staff(address: str, stage: Making[Result]) -> Iterator[Runs[Result]]:
     """Connect, send the content of all runs to all workers, and make runs there.
 
     Raises:
-        RunError: the scheduler goes meanwhile.
+        RunError: the scheduler, or all of its workers, go meanwhile.
         UsageError: nobody answers, the workers are of another version, or there is too much
             to send.
     """
+    _patience()
     stage.pack()
     client = _connected(address)
     try:
@@ -191,7 +200,7 @@ def _lots(
             return
         lot, task = tasks.popleft()
         try:
-            yield from zip(lot, task.result(), strict=True)
+            yield from zip(lot, _result(client, task), strict=True)
         except KilledWorker:
             yield from _one_by_one(client, sent, lot)
 
@@ -203,10 +212,57 @@ def _one_by_one(
 
     for variant in lot:
         try:
-            (made,) = client.submit(_work, sent, [variant], pure=False).result()
+            (made,) = _result(client, client.submit(_work, sent, [variant], pure=False))
         except KilledWorker:
             made = Died(DIED)
         yield variant, made
+
+
+def _result(client: Client, task: Future) -> Any:
+    """The result of a task, for which there has to be a worker.
+
+    Raises:
+        RunError: there has been none for too long.
+    """
+    alone: float | None = None
+    told = 0.0
+    while not task.done():
+        with suppress(TimeoutError):
+            return task.result(timeout=1)
+        if client.scheduler_info()["workers"]:
+            alone = None
+            continue
+        now = monotonic()
+        alone = alone or now
+        limit = _patience()
+        if now - alone > limit:
+            raise RunError(
+                f"the scheduler of Dask has had no worker for {limit:g} s. Start some, and go on"
+                " with --resume."
+            )
+        if now - alone > FIRST_TOLD and now - max(told, alone) > (TOLD_EVERY if told else 0):
+            told = now
+            message = (
+                f"prima: the scheduler of Dask has no worker; waiting for one, {limit:g} s at most."
+            )
+            print(message, file=sys.stderr, flush=True)
+    return task.result()
+
+
+def _patience() -> float:
+    """How long there may be no worker (s).
+
+    Raises:
+        UsageError: the setting is no number above 0.
+    """
+    text = os.environ.get(PATIENCE_SETTING, "")
+    try:
+        seconds = float(text) if text else PATIENCE
+    except ValueError:
+        seconds = -1.0
+    if not 0 < seconds <= MOST_PATIENCE:
+        raise UsageError(f'{PATIENCE_SETTING}="{escaped(text)}": write seconds, as 300.')
+    return seconds
 
 
 def _given(stage: Making[Result]) -> Making[Result]:

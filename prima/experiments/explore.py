@@ -226,11 +226,15 @@ class Exploration:
 
     # Results -------------------------------------------------------------------
 
+    def settle(self) -> None:
+        """Take orders and problems from the runs made so far; shifts are as small as were tried."""
+        self.orders = self._orders()
+        self.problems = self._problems()
+
     def _shrink(self) -> Iterator[int]:
         """Find the smallest shifts."""
         self.most = None
-        self.orders = self._orders()
-        self.problems = self._problems()
+        self.settle()
         searches: dict[Any, Search[Point]] = {}
         for order in self.orders:
             searches["order", order.signature] = shrunk(

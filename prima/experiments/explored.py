@@ -143,6 +143,8 @@ class Explored:
         one = self.exploration
         found = f"{counted(len(one.orders), 'order')}, {counted(len(one.problems), 'problem')}"
         runs = counted(len(one.seen), "run")
+        if not one.complete and len(one.seen) < one.plan.most:
+            return f"{runs}: {found}; not complete: it was interrupted"
         if not one.complete:
             return f"{runs}: {found}; not complete: raise --runs ({one.plan.most}), or move less"
         depth = min(one.plan.depth, len(one.targets))

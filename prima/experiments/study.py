@@ -106,6 +106,7 @@ COLUMNS = (
     ("left", "left"),
     ("stolen", "third_turns"),
     ("astray", "misanswered"),
+    ("wordless", "wordless"),
     ("reactions", "reactions"),
     ("mean s", "reaction_mean"),
     ("max s", "reaction_max"),

@@ -32,7 +32,7 @@ from prima.pool import Died
 from prima.version import __version__
 
 MOST_CHECKED = 2_000
-"""Levels that are tried before the first run; of more factors only the first ones' are."""
+"""Levels that are tried before the first run: of each factor and scenario as many."""
 PLAN, ORDERS, ROWS = "plan.json", "orders", "rows.csv"
 """Names in the folder beside a table."""
 
@@ -148,10 +148,12 @@ class Sweep:
         Raises:
             UsageError: the scenario does not allow one.
         """
-        for scenario in range(len(self.question.scenarios)):
+        scenarios = len(self.question.scenarios)
+        most = max(MOST_CHECKED // max(len(self.factors) * scenarios, 1), 1)
+        for scenario in range(scenarios):
             written = tuple(one.written for one in self.stage.targets(scenario))
             for index, factor in enumerate(self.factors):
-                for level in factor.levels[: MOST_CHECKED // len(self.factors)]:
+                for level in factor.levels[:most]:
                     values = (*written[:index], level, *written[index + 1 :])
                     found = self.stage.problems(Variant(0, scenario, "", 0, values))
                     if found:

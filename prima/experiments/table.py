@@ -71,6 +71,7 @@ MEANINGS = {
     "left": "conversations that the robot left",
     "third_turns": "answers before whose acknowledgement another application spoke",
     "misanswered": "questions that took a late answer to another application's",
+    "wordless": "topics taken up after another application has spoken, without words for it",
     "reactions": "events that an application answered with a Command",
     "reaction_mean": "mean time from an event to the first Command",
     "reaction_max": "longest time from an event to the first Command",

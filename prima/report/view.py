@@ -134,6 +134,7 @@ def _measures(run: Run) -> list[tuple[str, str, str]]:
     waiting = "behaviours that another application has kept waiting for too long (E4, E6)"
     stolen = "answers after which another application spoke before the asker"
     astray = "late answers that another application took"
+    wordless = "topics taken up after another application has spoken, without words for it"
     late = "reactions more than 3 s after their event"
     reaction = f"{found.reaction_mean:.2f} / {found.reaction_max:.2f} s"
     response = f"{found.response_mean:.2f} / {found.response_max:.2f} s"
@@ -146,6 +147,7 @@ def _measures(run: Run) -> list[tuple[str, str, str]]:
         ("Left", str(found.left), "conversations that the robot left"),
         *([("Stolen", str(found.third_turns), stolen)] if found.third_turns else []),
         *([("Astray", str(found.misanswered), astray)] if found.misanswered else []),
+        *([("Wordless", str(found.wordless), wordless)] if found.wordless else []),
         *([("Starved", str(starved), waiting)] if starved else []),
         ("Reactions", str(found.reactions), "events that were answered with a Command"),
         *([("Late", str(found.late_reactions), late)] if found.late_reactions else []),

@@ -41,6 +41,8 @@ class Criteria:
     """Answers before whose acknowledgement another application spoke (X7)."""
     misanswered: int = 0
     """Questions that took what the user said just after another application's timeout (X10)."""
+    wordless: int = 0
+    """Topics taken up after another application has spoken, without words that say so (X9)."""
     reactions: int = 0
     """Events that some application reacted to."""
     reaction_mean: float = 0.0

@@ -14,6 +14,8 @@ LATE_REACTION = 3.0
 """Seconds after its event from which on a reaction is late."""
 LATE_ANSWER = 3.0
 """Seconds after a question's timeout in which the end of the user's words is meant for it still."""
+RESUMES = "X9"
+"""The mark of words with which a topic is taken up."""
 PARTS = 1 << 80
 """Parts of a second in which floats from a microsecond on are whole numbers."""
 MOST_EVENTS = 1000
@@ -165,6 +167,16 @@ class Observer:
         for name in self._stolen:
             other = self._trees[name]
             self._stolen[name] = self._stolen[name] or other.app != tree.app
+        self._take_up(tree, record)
+
+    def _take_up(self, tree: PerceivedStream, record: Entry) -> None:
+        """Somebody speaks: do they take up their topic after others, and say so?"""
+        request = tree.pending.get(record.behavior.partition(".")[0], record)
+        if tree.talked_over and request.inserted != RESUMES and request.cause is None:
+            self.found.wordless += 1
+        tree.told, tree.talked_over = True, False
+        for other in self._trees.values():
+            other.talked_over = other.talked_over or (other.told and other.app != tree.app)
 
     def _over(self, record: Entry) -> None:
         """A behavior ends; of a question: whose answer is it?"""

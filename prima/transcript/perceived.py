@@ -31,6 +31,10 @@ class PerceivedStream:
     """Whether another application has spoken, by no reaction, since it last did."""
     since: float = 0.0
     """When another application came in or spoke into it."""
+    told: bool = False
+    """Whether it has ever spoken."""
+    talked_over: bool = False
+    """Whether another application has spoken since it last did."""
     owed: list[tuple[float, ReactionDelay]] = field(default_factory=list)
     """Events that it reacts to and has not responded to, with their times."""
     begun: bool = False

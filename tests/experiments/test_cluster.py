@@ -137,6 +137,37 @@ def test_a_worker_killed_in_the_middle_loses_nothing(dask: Cluster) -> None:
     assert Path("local/t.csv").read_bytes() == Path("t.csv").read_bytes()
 
 
+def test_a_cluster_whose_workers_have_all_gone(dask: Cluster, monkeypatch: Any) -> None:
+    """It says so, ends after a while, and goes on with --resume as soon as there is one."""
+    monkeypatch.setenv("PRIMA_CLUSTER_PATIENCE", "9")
+    command = ["sweep", "visit.xml", "-o", "t.csv", "--on", dask.address, *VARY]
+    only = dask.worker("--nthreads", "1", "--no-nanny")
+    made = subprocess.Popen(
+        [sys.executable, "-m", "prima", *command],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    until(lambda: Path("t.csv").exists() and Path("t.csv").read_bytes().count(b"\n") > 20)
+    only.send_signal(signal.SIGKILL)
+    out, err = made.communicate(timeout=90)
+    assert (made.returncode, out) == (3, ""), err
+    assert err.count("has no worker; waiting for one, 9 s at most") == 1
+    assert "has had no worker for 9 s. Start some, and go on with --resume." in err
+    assert Path("t.csv").read_bytes().count(b"\n") > 20
+    dask.worker()
+    done = prima(*command, "--resume")
+    assert done.returncode == 0, done.stderr
+    Path("local").mkdir()
+    prima("sweep", "visit.xml", *VARY, "-o", "local/t.csv")
+    assert Path("local/t.csv").read_bytes() == Path("t.csv").read_bytes()
+
+
+@pytest.mark.parametrize("wrong", ["soon", "0", "-1", "nan", "inf"])
+def test_a_patience_that_is_none(dask: Cluster, monkeypatch: Any, wrong: str) -> None:
+    monkeypatch.setenv("PRIMA_CLUSTER_PATIENCE", wrong)
+    done = prima("sweep", "visit.xml", "--on", dask.address)
+    assert done.returncode == 2 and "write seconds, as 300" in done.stderr, done.stderr
+
+
 class Deadly(Stage):
     """Makes runs, of which one kills its process."""
 

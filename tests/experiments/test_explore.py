@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -173,18 +174,45 @@ def test_kept_runs_that_are_none_are_made_again(line: str) -> None:
     assert "0 runs had been made before" in again.stderr
 
 
-def test_ctrl_c_keeps_the_runs() -> None:
-    Path("visit.xml").write_text(TWO)
-    made = subprocess.Popen(
-        [sys.executable, "-m", "prima", "explore", "visit.xml", "-o", "out", "--step", "50ms"],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
-    until(lambda: Path("out/runs.jsonl").exists() and os.path.getsize("out/runs.jsonl") > 20_000)
+LONG = [sys.executable, "-m", "prima", "explore", "visit.xml", "--step", "20ms", "--within", "20s"]
+
+
+def interrupted(made: subprocess.Popen[str]) -> tuple[str, str]:
     made.send_signal(signal.SIGINT)
     out, err = made.communicate(timeout=60)
-    assert (made.returncode, out) == (130, "")
+    assert made.returncode == 130 and "Traceback" not in err, err
+    return out, err
+
+
+def test_ctrl_c_keeps_the_runs_and_prints_what_they_show() -> None:
+    Path("visit.xml").write_text(TWO)
+    made = subprocess.Popen(
+        [*LONG, "-o", "out"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    until(lambda: Path("out/runs.jsonl").exists() and os.path.getsize("out/runs.jsonl") > 20_000)
+    out, err = interrupted(made)
     assert "out: the runs made so far are kept; --resume goes on." in err
-    assert "Traceback" not in err
+    assert out.splitlines()[1].endswith("as written")
+    assert re.search(r"^[1-9]\d* runs: .* not complete: it was interrupted$", out, re.M), out
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no pseudo-terminals")
+def test_ctrl_c_prints_what_was_found_without_a_folder() -> None:
+    Path("visit.xml").write_text(TWO)
+    main, side = os.openpty()
+    made = subprocess.Popen(
+        [*LONG, "--format", "json"], stdout=subprocess.PIPE, stderr=side, text=True
+    )
+    os.close(side)
+    shown = b""
+    while b"\r20" not in shown:  # progress: runs have been made
+        shown += os.read(main, 1_000)
+    made.send_signal(signal.SIGINT)
+    found = json.loads(made.communicate(timeout=60)[0])
+    os.close(main)
+    assert made.returncode == 130
+    assert found["orders"] and not found["complete"]
+    assert 20 <= found["runs"] == sum(one["runs"] for one in found["orders"])
 
 
 @pytest.mark.parametrize(

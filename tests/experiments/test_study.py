@@ -80,6 +80,23 @@ def test_streams_broken_by_no_reaction(policy: str, cause: int | None, broken: i
     assert seen(in_turns(policy, cause)).broken == broken
 
 
+@pytest.mark.parametrize(
+    ("policy", "cause", "wordless"), [("fair", None, 1), ("prima", None, 0), ("prima", EVENT, 1)]
+)
+def test_topics_taken_up_after_others_have_spoken(
+    policy: str, cause: int | None, wordless: int
+) -> None:
+    """ "Two." comes after the FA's "Hello.", and nothing says so; a reaction takes nothing up."""
+    assert seen(in_turns(policy, cause)).wordless == wordless
+
+
+@pytest.mark.parametrize(("policy", "wordless"), [("prima", 1), ("prima+x9", 0), ("prima+all", 0)])
+def test_x9_takes_topics_up_in_words(policy: str, wordless: int) -> None:
+    path = api.documents_folder() / "scenarios" / "politeness" / "in-words.xml"
+    (result,) = study([path], [policy])
+    assert result.criteria.wordless == wordless
+
+
 def test_what_goes_on_at_the_same_time_breaks_nothing() -> None:
     stage = Stage()
     stage.request("ea", move(), say("Here."))

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from prima.api import rehearse
-from prima.errors import DocumentError, UsageError
+from prima.errors import DocumentError, Problem, UsageError
 from prima.experiments.pools import local
 from prima.experiments.sweep import Output, Sweep, SweepQuestion, estimate
 from prima.experiments.variants import Stage, Variant, signature
@@ -267,3 +267,26 @@ def test_what_python_may_leave_out() -> None:
     for wrong in ({"within": 0}, {"workers": -1}, {"step": -1}, {"runs": True}):
         with pytest.raises(UsageError, match="write a whole number"):
             package.explore("visit.xml", "touch", **wrong)
+
+
+def test_planning_takes_no_longer_with_more_levels_than_are_tried(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each level that is tried reads the scenario once, and not more are than told."""
+    tried: list[Variant] = []
+    problems = Stage.problems
+
+    def count(stage: Stage, variant: Variant) -> list[Problem]:
+        tried.append(variant)
+        return problems(stage, variant)
+
+    monkeypatch.setattr(Stage, "problems", count)
+    Path("again.xml").write_text(Path("visit.xml").read_text())
+    counts = []
+    for step in ("20ms", "10ms", "5ms"):
+        tried.clear()
+        Sweep(
+            SweepQuestion(("visit.xml", "again.xml"), {"touch": f"0s..20s/{step}", "reply": "No."})
+        )
+        counts.append(len(tried))
+    assert counts == [1002, 1002, 1002]
