@@ -226,7 +226,7 @@ def _result(client: Client, task: Future) -> Any:
     """
     alone: float | None = None
     told = 0.0
-    while not task.done():
+    while True:  # also what is done may be lost with its worker, and has to be done again
         with suppress(TimeoutError):
             return task.result(timeout=1)
         if client.scheduler_info()["workers"]:
@@ -246,7 +246,6 @@ def _result(client: Client, task: Future) -> Any:
                 f"prima: the scheduler of Dask has no worker; waiting for one, {limit:g} s at most."
             )
             print(message, file=sys.stderr, flush=True)
-    return task.result()
 
 
 def _patience() -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from prima.results.data import Data, FactorColumn, Levels, MeasureColumn
 from prima.results.statistics import (
-    TestResult,
+    FactorTest,
     Untested,
     Values,
     ValueSummary,
@@ -59,7 +59,7 @@ class Analysis:
     distributions: list[Distribution] = field(default_factory=list)
     constant: list[MeasureColumn] = field(default_factory=list)
     """Measures that are the same in all runs, or missing in all."""
-    tests: list[tuple[MeasureColumn, FactorColumn, TestResult]] = field(default_factory=list)
+    tests: list[tuple[MeasureColumn, FactorColumn, FactorTest]] = field(default_factory=list)
     untested: list[tuple[MeasureColumn, FactorColumn, Untested]] = field(default_factory=list)
 
 
@@ -111,7 +111,7 @@ def _panel(measure: MeasureColumn, factor: FactorColumn, levels: Levels) -> Pane
 
 def _tests(
     measure: MeasureColumn, factor: FactorColumn, levels: Levels
-) -> Iterator[TestResult | Untested]:
+) -> Iterator[FactorTest | Untested]:
     """The tests of a measure by a factor.
 
     Levels are compared with each other. Numbers are, if there are more than two, also correlated:

@@ -69,7 +69,7 @@ SPEARMAN = Method("Spearman", "ρ", "ρ", "scipy.stats.spearmanr")
 
 
 @dataclass(frozen=True, slots=True)
-class TestResult:
+class FactorTest:
     """A test of whether a measure depends on a factor."""
 
     method: Method
@@ -134,7 +134,7 @@ def interval(known: Values) -> tuple[float, float, bool]:
     return float(low), float(high), True
 
 
-def compare(values: Values, groups: Groups, names: Sequence[str]) -> TestResult | Untested:
+def compare(values: Values, groups: Groups, names: Sequence[str]) -> FactorTest | Untested:
     """Whether groups of runs differ: Mann-Whitney for two, Kruskal-Wallis for more.
 
     Args:
@@ -157,13 +157,13 @@ def compare(values: Values, groups: Groups, names: Sequence[str]) -> TestResult 
     if len(parts) == 2:
         found = stats.mannwhitneyu(*parts, alternative="two-sided")
         delta = 2 * float(found.statistic) / (sizes[0] * sizes[1]) - 1
-        return TestResult(MANN_WHITNEY, sizes, float(found.statistic), float(found.pvalue), delta)
+        return FactorTest(MANN_WHITNEY, sizes, float(found.statistic), float(found.pvalue), delta)
     found = stats.kruskal(*parts)
     epsilon = float(found.statistic) / (len(whole) - 1)
-    return TestResult(KRUSKAL_WALLIS, sizes, float(found.statistic), float(found.pvalue), epsilon)
+    return FactorTest(KRUSKAL_WALLIS, sizes, float(found.statistic), float(found.pvalue), epsilon)
 
 
-def correlate(values: Values, factor: Values) -> TestResult | Untested:
+def correlate(values: Values, factor: Values) -> FactorTest | Untested:
     """Whether a measure goes up or down with a numeric factor: Spearman's rank correlation."""
     known = ~(np.isnan(values) | np.isnan(factor))
     mine, other = values[known], factor[known]
@@ -176,7 +176,7 @@ def correlate(values: Values, factor: Values) -> TestResult | Untested:
         return Untested("the measure is the same in all runs")
     found = stats.spearmanr(other, mine)
     rho = float(found.statistic)
-    return TestResult(SPEARMAN, (len(mine),), rho, float(found.pvalue), rho)
+    return FactorTest(SPEARMAN, (len(mine),), rho, float(found.pvalue), rho)
 
 
 def holm(p: Sequence[float]) -> list[float]:
@@ -188,7 +188,7 @@ def holm(p: Sequence[float]) -> list[float]:
     return made
 
 
-def corrected(results: Sequence[TestResult]) -> list[TestResult]:
+def corrected(results: Sequence[FactorTest]) -> list[FactorTest]:
     """Tests with their p-values corrected."""
     adjusted = holm([one.p for one in results])
     return [replace(one, adjusted=p) for one, p in zip(results, adjusted, strict=True)]

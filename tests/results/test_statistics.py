@@ -16,7 +16,7 @@ from prima.results.statistics import (
     MANN_WHITNEY,
     MOST_DISTINCT,
     SPEARMAN,
-    TestResult,
+    FactorTest,
     Untested,
     Values,
     compare,
@@ -36,12 +36,12 @@ def groups(*sizes: int) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
     return np.repeat(np.arange(len(sizes)), sizes)
 
 
-def result_of(found: TestResult | Untested) -> TestResult:
-    assert isinstance(found, TestResult), found
+def result_of(found: FactorTest | Untested) -> FactorTest:
+    assert isinstance(found, FactorTest), found
     return found
 
 
-def why(found: TestResult | Untested) -> str:
+def why(found: FactorTest | Untested) -> str:
     assert isinstance(found, Untested)
     return found.why
 
