@@ -200,10 +200,16 @@ def tell_cut(*transcripts: Transcript) -> None:
     for transcript in transcripts:
         if message := transcript.cut or transcript.early:
             tell(f"prima: {message}")
-            if transcript.records and "live" in transcript.records[0].get("data", {}):
-                tell(f"The run can go on: prima live --resume {transcript.name}")
+            head = transcript.records[0].get("data", {}) if transcript.records else {}
+            if "live" in head and not head.get("redacted"):
+                tell(how_to_go_on(transcript.name))
     if any(transcript.cut for transcript in transcripts):
         raise click.exceptions.Exit(2)
+
+
+def how_to_go_on(journal: str) -> str:
+    """A message that a live run can go on from its journal."""
+    return f"Go on with: prima live --resume {journal}"
 
 
 def print_json(data: Any) -> None:

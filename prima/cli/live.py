@@ -20,6 +20,7 @@ from prima.cli.common import (
     fa_option,
     format_option,
     hosts_option,
+    how_to_go_on,
     isolate_option,
     limit_option,
     map_option,
@@ -170,8 +171,9 @@ def _run(visit: Visit, why: bool, as_json: bool) -> None:
     for failure in session.failures:
         tell(f"prima: {failure}")
     if visit.stopped:
-        if visit.journal is not None and os.path.exists(visit.journal.path):
-            tell(f"Stopped. Go on with: prima live --resume {visit.journal.path}")
+        journal = visit.journal
+        if journal is not None and os.path.exists(journal.path) and not visit.settings.redact:
+            tell(f"Stopped. {how_to_go_on(journal.path)}")
         raise Exit(INTERRUPTED)
     if session.failures:
         raise Exit(3)

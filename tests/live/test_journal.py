@@ -193,7 +193,12 @@ def test_who_reads_a_journal_that_was_cut_off_is_told_how_it_goes_on(
     for path, code in ((whole, 0), (half, 2)):
         ran = prima(verb, str(path))
         assert ran.returncode == code, ran.stderr
-        assert f"The run can go on: prima live --resume {path}\n" in ran.stderr
+        assert f"Go on with: prima live --resume {path}\n" in ran.stderr
+    records = [json.loads(line) for line in whole.read_text().splitlines()]
+    records[0]["data"]["redacted"] = True
+    whole.write_text("".join(json.dumps(record) + "\n" for record in records))
+    ran = prima("show", str(whole))
+    assert ran.returncode == 0 and "Go on" not in ran.stderr, "a redacted run cannot"
 
 
 def test_a_journal_is_replayed_as_far_as_it_goes(journal: Path) -> None:

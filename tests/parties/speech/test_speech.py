@@ -89,7 +89,7 @@ def test_a_user_who_is_heard_takes_the_robot_along(python: str, tmp_path: Path) 
     told, _ = again.communicate(timeout=60)
     assert again.returncode == 0
     assert told.splitlines()[1:] == [
-        f"The run can go on: prima live --resume {journal}",
+        f"Go on with: prima live --resume {journal}",
         "the same, byte for byte",
     ]
 
