@@ -10,11 +10,11 @@ from typing import Any
 import click
 
 from prima.cli.common import tell
-from prima.errors import DocumentError, RunError, UsageError, listed
+from prima.errors import DocumentError, RunError, UsageError, brief, listed
 
 FINE, PROBLEMS, USAGE, RUN, INTERRUPTED = 0, 1, 2, 3, 130
-PART = 2_000
-"""Letters of a long message that are printed, of its beginning and of its end."""
+LONGEST = 4_000
+"""Letters of a message above which its middle is left out: it may name something very long."""
 
 
 def exit_code(error: BaseException) -> int:
@@ -39,15 +39,10 @@ def _message(code: int, text: str = "") -> Callable[[Any], int]:
     """A handler that prints a text, by default that of the exception."""
 
     def handle(error: BaseException) -> int:
-        tell(f"prima: {_short(text or str(error))}")
+        tell(f"prima: {brief(text or str(error), LONGEST)}")
         return code
 
     return handle
-
-
-def _short(text: str) -> str:
-    """A message that names something very long, with its beginning and its end."""
-    return text if len(text) <= 2 * PART else f"{text[:PART]} ... {text[-PART:]}"
 
 
 def _problems(error: DocumentError) -> int:

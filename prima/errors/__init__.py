@@ -23,7 +23,6 @@ from prima.errors.guesses import (
     suggestion,
 )
 from prima.errors.problems import (
-    CUT,
     LONGEST_TEXT,
     MOST_TOLD,
     SEVERITIES,
@@ -34,6 +33,7 @@ from prima.errors.problems import (
     Problem,
     Severity,
     Span,
+    brief,
     few,
     has_errors,
     in_order,
@@ -42,7 +42,6 @@ from prima.errors.problems import (
 from prima.errors.words import counted, one_of
 
 __all__ = [
-    "CUT",
     "LONGEST_TEXT",
     "MOST_TOLD",
     "SEVERITIES",
@@ -59,6 +58,7 @@ __all__ = [
     "Severity",
     "Span",
     "UsageError",
+    "brief",
     "counted",
     "did_you_mean",
     "few",

@@ -108,7 +108,7 @@ class Problem(_Problem):
             remedy, fixes = remedy
         short = len(message) <= LONGEST_TEXT and len(remedy) <= LONGEST_TEXT
         kept = fixes if short else ()
-        texts = _brief(message), _brief(remedy)
+        texts = brief(message), brief(remedy)
         return super().__new__(cls, place, severity, code, *texts, kept, parameters)
 
     def __str__(self) -> str:
@@ -125,11 +125,11 @@ class Problem(_Problem):
         return dict(self.parameters).get(name, "")
 
 
-def _brief(text: str) -> str:
-    """A text; if very long, only its beginning and end."""
-    if len(text) <= LONGEST_TEXT:
+def brief(text: str, longest: int = LONGEST_TEXT) -> str:
+    """A text; if it has more letters than ``longest``, only its beginning and end."""
+    if len(text) <= longest:
         return text
-    return text[: 2 * LONGEST_TEXT // 3] + CUT + text[-LONGEST_TEXT // 3 :]
+    return text[: 2 * longest // 3] + CUT + text[-longest // 3 :]
 
 
 def has_errors(problems: Iterable[Problem]) -> bool:

@@ -224,24 +224,21 @@ def _result(client: Client, task: Future) -> Any:
     Raises:
         RunError: there has been none for too long.
     """
-    alone: float | None = None
-    told = 0.0
+    limit, since = _patience(), monotonic()
+    tell_at = since + FIRST_TOLD
     while True:  # also what is done may be lost with its worker, and has to be done again
         with suppress(TimeoutError):
             return task.result(timeout=1)
-        if client.scheduler_info()["workers"]:
-            alone = None
-            continue
         now = monotonic()
-        alone = alone or now
-        limit = _patience()
-        if now - alone > limit:
+        if client.scheduler_info()["workers"]:
+            since, tell_at = now, now + FIRST_TOLD
+        elif now - since > limit:
             raise RunError(
                 f"the scheduler of Dask has had no worker for {limit:g} s. Start some, and go on"
                 " with --resume."
             )
-        if now - alone > FIRST_TOLD and now - max(told, alone) > (TOLD_EVERY if told else 0):
-            told = now
+        elif now > tell_at:
+            tell_at = now + TOLD_EVERY
             message = (
                 f"prima: the scheduler of Dask has no worker; waiting for one, {limit:g} s at most."
             )

@@ -32,7 +32,7 @@ from prima.pool import Died
 from prima.version import __version__
 
 MOST_CHECKED = 2_000
-"""Levels that are tried before the first run: of each factor and scenario as many."""
+"""Levels that are tried before the first run, divided equally among scenarios and factors."""
 PLAN, ORDERS, ROWS = "plan.json", "orders", "rows.csv"
 """Names in the folder beside a table."""
 

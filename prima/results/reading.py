@@ -236,22 +236,19 @@ def _columns(sheet: Sheet) -> list[Column]:
     known = {one.name: one for one in (*HEAD, *OUTCOMES, *MEASURES)}
     known |= {name: _measure(name, meaning) for name, meaning in MEANINGS.items()}
     data = _beside(sheet.path, DICTIONARY)
-    told = list({one.name: one for one in _told(data)}.values()) if data else []
+    told = {one.name: one for one in _told(data)} if data else {}
     if not told:
         sheet.notes.append(
             "There is no data dictionary beside the table: columns are known by their names, and"
             " those that no measure has are taken for factors."
         )
         return [known.get(name) or _guessed(name, sheet.cells[name]) for name in sheet.cells]
-    lost = [one.name for one in told if one.name not in sheet.cells]
-    if lost:
+    described = told | {name: one for name, one in known.items() if name not in told}
+    if lost := [name for name in told if name not in sheet.cells]:
         sheet.notes.append(f"The table lacks columns of its dictionary: {_names(lost)}.")
-    listed = {one.name for one in told} | set(known)
-    new = [name for name in sheet.cells if name not in listed]
-    if new:
+    if new := [name for name in sheet.cells if name not in described]:
         sheet.notes.append(f"Columns that no dictionary describes are left out: {_names(new)}.")
-    more = [one for name, one in known.items() if name not in {column.name for column in told}]
-    return [one for one in (*told, *more) if one.name in sheet.cells]
+    return [one for name, one in described.items() if name in sheet.cells]
 
 
 def _names(columns: list[str]) -> str:

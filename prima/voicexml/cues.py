@@ -112,16 +112,16 @@ class _Kept:
         full = len(self._cues) >= MAX_CUES
         if cue.kind == "lasts":
             self._opened.append(-1 if full else len(self._cues))
-        if not full and self._changes(cue):
-            self._cues.append(cue)
+        if full or not self._changes(cue):
+            return
+        if cue.kind == "rate":
+            self._rate = float(cue.value or 1.0)
+        self._cues.append(cue)
 
     def _changes(self, cue: Cue) -> bool:
         if cue.kind == "sentence":
             return _wants_pause(self._text, cue.at, self._cues)
-        if cue.kind == "rate":
-            before, self._rate = self._rate, float(cue.value or 1.0)
-            return cue.value != before
-        return True
+        return cue.kind != "rate" or cue.value != self._rate
 
     def _end(self, cue: Cue) -> None:
         begun = self._opened.pop()
