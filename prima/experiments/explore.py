@@ -23,7 +23,6 @@ from prima.experiments.variants import ExperimentSettings, Made, Variant
 from prima.language.distributions import written
 from prima.language.values import LONGEST_MS, read_value
 from prima.pool import Died
-from prima.sim.paths import find
 from prima.version import __version__
 
 MOST_DEPTH = 4
@@ -318,4 +317,5 @@ def _events(scenario: str, settings: ExperimentSettings) -> list[str]:
     """The paths of all times of a scenario's events."""
     root = Examiner.of([scenario], [], settings).scripts[0].root
     paths = [f"when[{number}]" for number in range(1, len(root.all("when")) + 1)]
-    return [one for one in paths if isinstance(read_value("delay", find(root, one).written), int)]
+    times = Examiner.of([scenario], paths, settings).targets(0)
+    return [one.path for one in times if isinstance(read_value("delay", one.written), int)]

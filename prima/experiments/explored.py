@@ -218,11 +218,7 @@ class ExplorationFolder:
         """Write a run as a scenario, and its transcript if it can be made."""
         there = self.path / folder
         there.mkdir(exist_ok=True)
-        stage = self.exploration.stage
-        data, text = stage.transcript(str(there), name, self.exploration.variant(point))
-        with (there / f"{name}.xml").open("wb") as stream:
-            stream.write(data)
-        write_whole(there / f"{name}.jsonl", text)
+        self.exploration.stage.save(there, name, self.exploration.variant(point))
 
 
 def carried_out(

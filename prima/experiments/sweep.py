@@ -315,10 +315,7 @@ class Output:
             order = left.pop(variant.number, None)
             if order is None:
                 continue
-            data, text = self.sweep.stage.transcript(str(folder), order, variant)
-            with (folder / f"{order}.xml").open("wb") as scenario:
-                scenario.write(data)
-            write_whole(folder / f"{order}.jsonl", text)
+            self.sweep.stage.save(folder, order, variant)
             if not left:
                 return
 

@@ -7,20 +7,25 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
 from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
 from prima import api
+from prima.devices.vocabulary import ROBOT
 from prima.errors import TOO_MUCH, DocumentError, PrimaError, Problem, UsageError, has_errors
 from prima.errors.visible import visible
 from prima.interpreter.elements import Document
-from prima.loading import Loaded, load_text, with_scenario
+from prima.loading import Loaded, load_text, with_robot, with_scenario
 from prima.loading.files import Files, GivenFiles, in_place_of_files, read_file, read_head
+from prima.loading.writing import write_whole
 from prima.markup.edits import TextEdit, edited, set_attribute
 from prima.markup.limits import LIMITS
+from prima.markup.reader import read_tree
+from prima.markup.tree import Node
 from prima.messages import Json
 from prima.sim.paths import ScenarioValue, find
 from prima.sim.scenario import look_at_scenario
@@ -96,7 +101,7 @@ class ScenarioText:
         self.root = scenario.node
         self.policy = scenario.policy
         try:
-            self.targets = [find(self.root, one) for one in paths]
+            self.targets = [find(self.root, one, lambda: self.robot) for one in paths]
         except UsageError as error:
             raise UsageError(f"{path}: {error}") from None
         self._check_apart()
@@ -107,20 +112,49 @@ class ScenarioText:
             or any(one.attribute and one.attribute.name == "user" for one in self.targets)
         )
 
+    @cached_property
+    def robot(self) -> Node:
+        """The robot's document.
+
+        Raises:
+            DocumentError: it is no robot's document.
+            UsageError: it cannot be read.
+        """
+        path = os.path.normpath(os.path.join(os.path.dirname(self.path), self.root.get("robot")))
+        root, problems = read_tree(path, read_file(path), ROBOT)
+        if has_errors(problems):
+            raise DocumentError(problems)
+        return root
+
     def _check_apart(self) -> None:
-        """Refuse two paths of one value."""
-        seen: dict[tuple[int, str], str] = {}
+        """Refuse two paths of one value, and another robot beside changes of the one it replaces."""
+        seen: dict[tuple[bool, int, str], str] = {}
         for target in self.targets:
-            key = target.node.index, target.attribute.name if target.attribute else ""
+            name = target.attribute.name if target.attribute else ""
+            key = target.of_robot, target.node.index, name
             if key in seen:
                 raise UsageError(f'"{seen[key]}" and "{target.path}" are the same value.')
             seen[key] = target.path
+        changed = next((one.path for one in self.targets if one.of_robot), None)
+        if changed and (False, self.root.index, "robot") in seen:
+            message = f'"{changed}" is a value of one robot, and "robot" names others.'
+            raise UsageError(f"{message} Vary one of the two.")
+
+    def _changed(self, variant: Variant) -> Iterator[tuple[ScenarioValue, str]]:
+        """The values that a run changes."""
+        pairs = zip(self.targets, variant.values, strict=True)
+        return ((one, value) for one, value in pairs if value != one.written)
 
     def text(self, variant: Variant) -> bytes:
         """The scenario of a run."""
-        pairs = zip(self.targets, variant.values, strict=True)
-        edits = [one.edit(value) for one, value in pairs if value != one.written]
+        changed = self._changed(variant)
+        edits = [one.edit(value) for one, value in changed if not one.of_robot]
         return edited(self.root.source.text, [*edits, *self._seeded(variant)])
+
+    def robot_text(self, variant: Variant) -> bytes | None:
+        """The robot's document of a run; None if it is as it is written."""
+        edits = [one.edit(value) for one, value in self._changed(variant) if one.of_robot]
+        return edited(self.robot.source.text, edits) if edits else None
 
     def _seeded(self, variant: Variant) -> list[TextEdit]:
         """The edit that lets a run be drawn by its seed, if anything is drawn."""
@@ -128,30 +162,45 @@ class ScenarioText:
             return []
         return [set_attribute(self.root, "seed", str(variant.seed))]
 
-    def moved(self, variant: Variant, folder: str) -> bytes:
-        """The scenario of a run with its policy, as a file of another folder."""
-        values, policy, more = variant.values, variant.policy, self._seeded(variant)
-        more += [set_attribute(self.root, "policy", policy)] if policy else []
-        varied = {
+    def moved(self, variant: Variant, folder: Path, robot: Path | None = None) -> bytes:
+        """The scenario of a run with its policy, as a file of another folder.
+
+        Args:
+            variant: the run.
+            folder: the folder.
+            robot: another document of the robot.
+        """
+        changed = [one for one in self._changed(variant) if not one[0].of_robot]
+        files = {
             (one.node.index, one.attribute.name): value
-            for one, value in zip(self.targets, values, strict=True)
-            if one.attribute
+            for one, value in changed
+            if one.attribute and one.kind == "path"
         }
+        if robot:
+            files[self.root.index, "robot"] = str(robot.absolute())
+        edits = [one.edit(value) for one, value in changed if one.kind != "path"]
+        edits += self._seeded(variant)
+        if variant.policy:
+            edits.append(set_attribute(self.root, "policy", variant.policy))
+        edits += self._files_from(folder, files)
+        return edited(self.root.source.text, edits)
+
+    def _files_from(
+        self, folder: Path, varied: Mapping[tuple[int, str], str]
+    ) -> Iterator[TextEdit]:
+        """Edits by which all files are named as seen from another folder.
+
+        Args:
+            folder: the other folder.
+            varied: the files that a run has in place of those written, by element and attribute.
+        """
         here = os.path.dirname(os.path.abspath(self.path))
-        kept = [v for t, v in zip(self.targets, values, strict=True) if not _is_path(t)]
-        targets = [t for t in self.targets if not _is_path(t)]
         for node in self.root.walk():
             for item in SCENARIO.elements[node.key].attributes:
                 value = varied.get((node.index, item.name), node.get(item.name))
                 if item.kind == "path" and value:
-                    beside = os.path.relpath(os.path.join(here, value), os.path.abspath(folder))
-                    more.append(set_attribute(node, item.name, PurePath(beside).as_posix()))
-        edits = [t.edit(v) for t, v in zip(targets, kept, strict=True) if v != t.written]
-        return edited(self.root.source.text, [*edits, *more])
-
-
-def _is_path(target: ScenarioValue) -> bool:
-    return target.kind == "path"
+                    beside = os.path.relpath(os.path.join(here, value), folder.absolute())
+                    yield set_attribute(node, item.name, PurePath(beside).as_posix())
 
 
 class Kept:
@@ -201,6 +250,17 @@ class Kept:
                         f" and its folder has more than {MOST_SENT // 1_000_000} MB of them,"
                         f" or more than {MOST_FILES:,}. Keep it in a folder of its own."
                     )
+
+    @contextmanager
+    def beside(self, files: Mapping[Path, bytes]) -> Iterator[None]:
+        """Let files that are still to be written count as if they were there."""
+        added = {path.absolute(): data for path, data in files.items()}
+        self.texts |= added
+        try:
+            yield
+        finally:
+            for path in added:
+                del self.texts[path]
 
     def contents(self) -> GivenFiles:
         """What was read, for another process."""
@@ -258,7 +318,8 @@ class Stage:
     @cached_property
     def scripts(self) -> list[ScenarioText]:
         """The scenarios as written."""
-        return [ScenarioText(path, data, self.paths) for path, data in self.scenarios]
+        with in_place_of_files(self.files):
+            return [ScenarioText(path, data, self.paths) for path, data in self.scenarios]
 
     @cached_property
     def _cast(self) -> dict[tuple[int, tuple[str, ...]], Loaded]:
@@ -298,7 +359,9 @@ class Stage:
                 self._cast.clear()
             with in_place_of_files(self.files):
                 self._cast[key] = load_text(script.path, data)
-        return with_scenario(self._cast[key], script.path, data)
+        loaded = with_scenario(self._cast[key], script.path, data)
+        robot = script.robot_text(variant)
+        return loaded if robot is None else with_robot(loaded, robot)
 
     def run(self, variant: Variant) -> Made:
         """Make a run; whatever goes wrong is in its result."""
@@ -361,20 +424,30 @@ class Stage:
             },
         )
 
-    def transcript(self, folder: str, name: str, variant: Variant) -> tuple[bytes, str]:
-        """A variant as a scenario for a file in a folder, and the transcript of its run.
+    def save(self, folder: Path, name: str, variant: Variant) -> None:
+        """Write a variant as a scenario into a folder, and the transcript of its run.
+
+        Beside ``NAME.xml`` and ``NAME.jsonl`` there is ``NAME.robot.xml`` if it changes the robot.
 
         Raises:
             DocumentError: it has errors.
+            OSError: a file cannot be written.
             RunError: the run cannot be made.
         """
-        script = self.scripts[variant.scenario]
+        assert isinstance(self.files, Kept)
+        script, made = self.scripts[variant.scenario], {}
+        lines: list[str] = []
         with in_place_of_files(self.files):
-            data = script.moved(variant, folder)
-            loaded = load_text(os.path.join(folder, f"{name}.xml"), data)
-            lines: list[str] = []
-            self.rehearsed(variant, loaded, lines.append)
-        return data, "".join(lines)
+            robot = script.robot_text(variant)
+            if robot is not None:
+                made[folder / f"{name}.robot.xml"] = robot
+            path = folder / f"{name}.xml"
+            made[path] = script.moved(variant, folder, *made)
+            with self.files.beside(made):
+                self.rehearsed(variant, load_text(path, made[path]), lines.append)
+        for path, data in made.items():
+            path.write_bytes(data)
+        write_whole(folder / f"{name}.jsonl", "".join(lines))
 
 
 def failed_expectations(loaded: Loaded, transcript: api.Transcript) -> list[Failure]:

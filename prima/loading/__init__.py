@@ -10,7 +10,14 @@ from prima.loading.applications import load, load_services, read_application
 from prima.loading.folders import documents_folder, schemas_folder
 from prima.loading.kinds import is_application, is_grammar, is_voicexml
 from prima.loading.reading import FAVOURITE, favourite_problem
-from prima.loading.scenarios import Loaded, load_scenario, load_text, seeded, with_scenario
+from prima.loading.scenarios import (
+    Loaded,
+    load_scenario,
+    load_text,
+    seeded,
+    with_robot,
+    with_scenario,
+)
 from prima.loading.stages import stage
 from prima.loading.validation import Validation, once, validate
 from prima.loading.voicedocuments import mappings
@@ -35,5 +42,6 @@ __all__ = [
     "seeded",
     "stage",
     "validate",
+    "with_robot",
     "with_scenario",
 ]

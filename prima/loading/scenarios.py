@@ -82,6 +82,22 @@ def with_scenario(loaded: Loaded, path: str | Path, data: bytes) -> Loaded:
     return Loaded(replace(loaded.cast, scenario=scenario), files, loaded.problems)
 
 
+def with_robot(loaded: Loaded, data: bytes) -> Loaded:
+    """What was loaded, with another text of its robot's document.
+
+    Raises:
+        DocumentError: the text has errors.
+    """
+    from dataclasses import replace
+
+    from prima.devices.profile import read_robot
+
+    cast = loaded.cast
+    robot = read_robot(cast.robot.place.file, data)
+    files = {**loaded.files, cast.scenario.robot: digest(data)}
+    return Loaded(replace(cast, robot=robot), files, loaded.problems)
+
+
 def seeded(loaded: Loaded, seed: int | None) -> Loaded:
     """What was loaded, drawn by another seed; None for the scenario's own."""
     from dataclasses import replace

@@ -4,18 +4,24 @@ A path leads from the root element down. Each step is the name of a child elemen
 number among those of that name (``when[2]``) or its own name (``service[message-server]``)
 where there are several; a first step may be an element's ``id``. The last one may be an
 attribute; without one the path means the element's own value, as in OWN.
+
+A path that begins with ``robot`` and does not mean the scenario's own ``<robot>`` leads on in the
+document that the scenario names as its robot: ``robot.speed``, ``robot.gesture[nod]``.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import NamedTuple
 
+from prima.devices.vocabulary import ROBOT
 from prima.errors import UsageError, did_you_mean, one_of
+from prima.language.distributions import MEASURED
 from prima.language.values import DRAWABLE
 from prima.markup.edits import TextEdit, set_attribute, set_text
 from prima.markup.tree import Node
-from prima.markup.vocabulary import Attribute
+from prima.markup.vocabulary import Attribute, Vocabulary
 from prima.sim.vocabulary import SCENARIO
 
 STEP = re.compile(r"(?P<name>[^\[\].]+)(?:\[(?P<which>[^\]]*)\])?")
@@ -34,11 +40,15 @@ OWN = {
     "follow": "distance",
     "event": "name",
     "release": "resume",
+    **dict.fromkeys(("gesture", "adds"), "duration"),
+    "voice": "rate",
 }
 """The attribute that is an element's own value; its text where it is empty.
 
 Of a ``when`` it is ``after``, or ``at`` where that is its trigger.
 """
+NAMES = ("id", "name", "to", "src", "lang", "sensor", "command")
+"""Attributes by whose values a step may choose among elements of one name."""
 LOADED = frozenset({"scenario", "person", "application", "service", "reply"})
 """Elements of which some attributes name files, or what runs."""
 LIGHT = frozenset(
@@ -53,12 +63,14 @@ MOST_TOLD = 12
 
 
 class ScenarioValue(NamedTuple):
-    """A value of a scenario: an attribute of an element, or its text."""
+    """A value of a scenario, or of its robot's document: an attribute, or an element's text."""
 
     path: str
     node: Node
     attribute: Attribute | None
     """None for its text."""
+    of_robot: bool = False
+    """Whether it is in the robot's document."""
 
     @property
     def kind(self) -> str:
@@ -68,7 +80,7 @@ class ScenarioValue(NamedTuple):
 
     @property
     def written(self) -> str:
-        """The value in the scenario, or the attribute's default."""
+        """The value in its document, or the attribute's default."""
         if self.attribute is None:
             return self.node.text
         return self.node.attributes.get(self.attribute.name, self.attribute.default)
@@ -76,9 +88,9 @@ class ScenarioValue(NamedTuple):
     @property
     def loads(self) -> bool:
         """Whether another value may mean that other files are read, or other applications run."""
-        return self.node.tag in LOADED and (
-            self.attribute is None or self.attribute.name not in LIGHT
-        )
+        if self.of_robot or self.node.tag not in LOADED:
+            return False
+        return self.attribute is None or self.attribute.name not in LIGHT
 
     def edit(self, value: str) -> TextEdit:
         """Give it a value; an empty one takes the attribute, or the element of a text, away."""
@@ -87,69 +99,114 @@ class ScenarioValue(NamedTuple):
         return set_attribute(self.node, self.attribute.name, value)
 
 
-def find(root: Node, path: str) -> ScenarioValue:
+def find(root: Node, path: str, robot: Callable[[], Node]) -> ScenarioValue:
     """The value that a path means in a scenario.
 
+    Args:
+        root: the scenario.
+        path: the path.
+        robot: gives the document of its robot, if the path leads there.
+
     Raises:
-        UsageError: the path is malformed, or leads to nothing, or to several elements.
+        DocumentError: the robot's document has errors.
+        UsageError: the path is malformed, or leads to nothing, or to several elements, or to what
+            only another document of the robot can change.
     """
-    return _Search(root, path).found()
+    steps = _steps(path)
+    if not _leads_to_robot(root, steps):
+        return _Search(root, path, SCENARIO).found(steps)
+    search = _Search(robot(), path, ROBOT)
+    found = search.found(steps[1:])._replace(of_robot=True)
+    if found.kind not in MEASURED:
+        message = f'"{path}" is neither a number nor a time.'
+        raise UsageError(f"{message} Vary the robot's document: --vary robot=ONE.xml|OTHER.xml.")
+    return found
+
+
+_Step = tuple[str, str | None]
+"""A name, and which of several is meant."""
+
+
+def _steps(path: str) -> list[_Step]:
+    if WHOLE.fullmatch(path) is None:
+        why = "Write it as when[2].after or person.speed."
+        raise UsageError(f'"{path}" is no value of the scenario. {why}')
+    return [(one["name"], one["which"]) for one in STEP.finditer(path)]
+
+
+def _leads_to_robot(root: Node, steps: list[_Step]) -> bool:
+    """Whether a path leads into the robot's document: its second step means nothing before."""
+    if steps[0] != ("robot", None) or len(steps) == 1 or _named(root, "robot"):
+        return False
+    return steps[1][0] not in {one.name for one in SCENARIO.elements["robot"].attributes}
+
+
+def _named(root: Node, name: str) -> Node | None:
+    """The element with an id."""
+    everything = iter(root.walk())
+    next(everything)  # its own id names the document
+    return next((one for one in everything if one.get("id") == name), None)
 
 
 class _Search:
-    """The search for one path."""
+    """The search for one path in a document."""
 
-    def __init__(self, root: Node, path: str) -> None:
+    def __init__(self, root: Node, path: str, vocabulary: Vocabulary) -> None:
         self.root = root
         self.path = path
-        if WHOLE.fullmatch(path) is None:
-            raise self.wrong("Write it as when[2].after or person.speed.")
-        self.steps = [(one["name"], one["which"]) for one in STEP.finditer(path)]
+        self.vocabulary = vocabulary
 
     def wrong(self, why: str) -> UsageError:
-        return UsageError(f'"{self.path}" is no value of the scenario. {why}'.rstrip())
+        where = "the scenario" if self.vocabulary is SCENARIO else self.root.place.file
+        return UsageError(f'"{self.path}" is no value of {where}. {why}'.rstrip())
 
-    def found(self) -> ScenarioValue:
+    def found(self, steps: list[_Step]) -> ScenarioValue:
+        """The value to which steps lead."""
         node = self.root
-        for index, (name, which) in enumerate(self.steps):
-            last = which is None and index == len(self.steps) - 1
-            attribute = _attribute(node, name) if last else None
-            if attribute is not None and not (index == 0 and self.named(name)):
+        for index, (name, which) in enumerate(steps):
+            last = which is None and index == len(steps) - 1
+            attribute = self.attribute(node, name) if last else None
+            if attribute is not None and not (index == 0 and _named(self.root, name)):
                 return ScenarioValue(self.path, node, attribute)
             node = self.below(node, name, which, index == 0)
         return self.own(node)
 
-    def named(self, name: str) -> Node | None:
-        """The element with an id."""
-        everything = iter(self.root.walk())
-        next(everything)  # its own id names the scenario
-        return next((one for one in everything if one.get("id") == name), None)
+    def attribute(self, node: Node, name: str) -> Attribute | None:
+        """An attribute that an element may have."""
+        element = self.vocabulary.elements[node.key]
+        return next((one for one in element.attributes if one.name == name), None)
 
     def below(self, node: Node, name: str, which: str | None, first: bool) -> Node:
         """The child that a step means."""
-        called = self.named(name) if first and which is None else None
+        called = _named(self.root, name) if first and which is None else None
         if called is not None:
             return called
         there = node.all(name)
         if not there:
             raise self.wrong(self.nothing(node, name, first))
         if which is None:
-            if len(there) > 1:
-                ways = f"{name}[1] to {name}[{len(there)}]"
-                raise self.wrong(f"There are {len(there)} <{name}>: write {ways}, or an id.")
-            return there[0]
+            return self.single(there, name)
         if which.isascii() and which.isdigit():
-            if not 1 <= int(which[:9]) <= len(there):
-                there_are = "There is one" if len(there) == 1 else f"There are {len(there)}"
-                raise self.wrong(f"{there_are} <{name}>.")
-            return there[int(which) - 1]
+            return self.numbered(there, name, which)
         for one in there:
-            if which in (one.get("id"), one.get("name"), one.get("to"), one.get("src")):
+            if which in (one.get(name) for name in NAMES):
                 return one
         raise self.wrong(f'No <{name}> has the name "{which}".')
 
+    def single(self, there: list[Node], name: str) -> Node:
+        if len(there) > 1:
+            ways = f"{name}[1] to {name}[{len(there)}]"
+            raise self.wrong(f"There are {len(there)} <{name}>: write {ways}, or an id.")
+        return there[0]
+
+    def numbered(self, there: list[Node], name: str, which: str) -> Node:
+        if not 1 <= int(which[:9]) <= len(there):
+            there_are = "There is one" if len(there) == 1 else f"There are {len(there)}"
+            raise self.wrong(f"{there_are} <{name}>.")
+        return there[int(which) - 1]
+
     def nothing(self, node: Node, name: str, first: bool) -> str:
-        element = SCENARIO.elements[node.key]
+        element = self.vocabulary.elements[node.key]
         names = {one.name for one in element.attributes} | {one.tag for one in node.nodes}
         if first:
             names |= {one.get("id") for one in self.root.walk() if "id" in one.attributes}
@@ -164,14 +221,9 @@ class _Search:
             own = "at" if "at" in node.attributes else "after"
         if own == "":
             return ScenarioValue(self.path, node, None)
-        attribute = _attribute(node, own or "")
+        attribute = self.attribute(node, own or "")
         if attribute is None:
-            names = [one.name for one in SCENARIO.elements[node.key].attributes]
+            names = [one.name for one in self.vocabulary.elements[node.key].attributes]
             ways = one_of([f"{self.path}.{name}" for name in names][:MOST_TOLD])
             raise self.wrong(f"<{node.tag}> has no value of its own: write {ways}.")
         return ScenarioValue(self.path, node, attribute)
-
-
-def _attribute(node: Node, name: str) -> Attribute | None:
-    element = SCENARIO.elements[node.key]
-    return next((one for one in element.attributes if one.name == name), None)

@@ -7,8 +7,10 @@ from typing import Any
 
 import pytest
 
+from prima.devices.vocabulary import ROBOT
 from prima.experiments.design import DESIGNS
 from prima.experiments.levels import cell
+from prima.markup.reader import read_tree
 from prima.sim.paths import find
 from prima.sim.scenario import look_at_scenario
 from tests import ROOT
@@ -40,11 +42,12 @@ def test_python_and_data_frames(
 
 def test_all_paths_of_the_page_lead_somewhere() -> None:
     root = look_at_scenario("x.xml", SCENARIO.encode())[0].node
+    robot = read_tree("papero.xml", (ROOT / "documents/robots/papero.xml").read_bytes(), ROBOT)[0]
     section = TEXT[TEXT.index("## What is varied") : TEXT.index("An `id` is the best name")]
     paths = re.findall(r"`([^`<]+)`", " ".join(re.findall(r"^\| (`.*?) \|", section, re.MULTILINE)))
     assert len(paths) >= 10
     for path in paths:
-        target = find(root, path)
+        target = find(root, path, lambda: robot)
         assert cell(target.kind, target.written) is not None
 
 

@@ -17,7 +17,7 @@ from tests.helpers.sweeps import VISIT
 
 def factor(path: str, levels: str, folder: str = "") -> Factor:
     root = look_at_scenario("visit.xml", VISIT.encode())[0].node
-    return read_factor(find(root, path), levels, folder)
+    return read_factor(find(root, path, lambda: root), levels, folder)
 
 
 def drawn(path: str, levels: str, folder: str = "") -> list[float]:

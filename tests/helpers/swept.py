@@ -23,7 +23,8 @@ def known_columns() -> list[Column]:
     """The columns of a sweep over a time and an answer."""
     root = look_at_scenario(str(SCENARIO), SCENARIO.read_bytes())[0].node
     varied = {"when.at": "0s..9s/1s", "answer": "Yes.|No.|"}
-    return columns([read_factor(find(root, path), told, "") for path, told in varied.items()])
+    found = [(find(root, path, lambda: root), told) for path, told in varied.items()]
+    return columns([read_factor(target, told, "") for target, told in found])
 
 
 def cells(number: int) -> dict[str, Any]:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from prima.devices.vocabulary import ROBOT
 from prima.errors import UsageError
 from prima.markup.edits import edited
+from prima.markup.reader import read_tree
 from prima.markup.tree import Node
 from prima.sim.paths import find
 from prima.sim.scenario import look_at_scenario
@@ -25,9 +27,23 @@ TEXT = """<scenario xmlns="urn:prima:scenario:1" version="1.0" id="visit" until=
 </scenario>
 """
 
+ROBOT_TEXT = """<robot xmlns="urn:prima:robot:1" version="1.0" id="papero">
+  <device name="speaker"/>
+  <voice lang="en" rate="14"/>
+  <voice lang="ja" rate="8"/>
+  <gesture name="nod" duration="800ms"/>
+  <gesture name="wave"/>
+  <adds command="dance" devices="locomotion" duration="4s"/>
+</robot>
+"""
+
 
 def root() -> Node:
     return look_at_scenario("visit.xml", TEXT.encode())[0].node
+
+
+def robot() -> Node:
+    return read_tree("papero.xml", ROBOT_TEXT.encode(), ROBOT)[0]
 
 
 @pytest.mark.parametrize(
@@ -54,11 +70,55 @@ def root() -> Node:
     ],
 )
 def test_what_a_path_means(path: str, written: str, kind: str, loads: bool) -> None:
-    target = find(root(), path)
+    target = find(root(), path, robot)
     assert (target.written, target.kind, target.loads) == (written, kind, loads)
     value = "9" if kind == "number" else "9s" if kind == "duration" else "nine"
     again = edited(TEXT, [target.edit(value)])
-    assert find(look_at_scenario("visit.xml", again)[0].node, path).written == value
+    assert find(look_at_scenario("visit.xml", again)[0].node, path, robot).written == value
+
+
+@pytest.mark.parametrize(
+    ("path", "written", "kind"),
+    [
+        ("robot.speed", "0.5", "number"),
+        ("robot.loop", "500ms", "duration"),
+        ("robot.gesture[nod]", "800ms", "duration"),
+        ("robot.gesture[2].duration", "1s", "duration"),
+        ("robot.voice[ja].rate", "8", "number"),
+        ("robot.voice[en]", "14", "number"),
+        ("robot.adds", "4s", "duration"),
+    ],
+)
+def test_a_path_that_leads_on_in_the_robots_document(path: str, written: str, kind: str) -> None:
+    target = find(root(), path, robot)
+    assert (target.written, target.kind, target.of_robot, target.loads) == (
+        *(written, kind),
+        *(True, False),
+    )
+    again = edited(ROBOT_TEXT, [target.edit("9")])
+    changed = read_tree("papero.xml", again, ROBOT)[0]
+    assert find(root(), path, lambda: changed).written == "9"
+
+
+@pytest.mark.parametrize(
+    ("path", "why"),
+    [
+        ("robot.sped", r'"robot.sped" is no value of papero.xml. Did you mean "speed"\?'),
+        ("robot.gesture", r"There are 2 <gesture>: write gesture\[1\] to gesture\[2\]"),
+        ("robot.gesture[bow]", 'No <gesture> has the name "bow".'),
+        ("robot.device", "<device> has no value of its own: write robot.device.name."),
+        ("robot.device.name", "neither a number nor a time. Vary the robot's document: --vary"),
+        ("robot.id", "neither a number nor a time"),
+    ],
+)
+def test_a_path_that_leads_nowhere_in_the_robots_document(path: str, why: str) -> None:
+    with pytest.raises(UsageError, match=why):
+        find(root(), path, robot)
+
+
+def test_an_element_called_robot_comes_before_the_robots_document() -> None:
+    text = TEXT.replace('id="touch"', 'id="robot"').encode()
+    assert not find(look_at_scenario("visit.xml", text)[0].node, "robot.after", robot).of_robot
 
 
 @pytest.mark.parametrize(
@@ -80,12 +140,12 @@ def test_what_a_path_means(path: str, written: str, kind: str, loads: bool) -> N
 )
 def test_a_path_that_leads_nowhere(path: str, why: str) -> None:
     with pytest.raises(UsageError, match=why):
-        find(root(), path)
+        find(root(), path, robot)
 
 
 def test_an_id_comes_before_an_attribute_or_element_of_that_name() -> None:
     text = TEXT.replace('id="touch"', 'id="until"').encode()
-    assert find(look_at_scenario("visit.xml", text)[0].node, "until").written == "1s"
+    assert find(look_at_scenario("visit.xml", text)[0].node, "until", robot).written == "1s"
 
 
 def test_two_elements_of_one_id() -> None:
