@@ -5,7 +5,6 @@ It has no clock of its own and starts no task: the shell gives it both.
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable, Coroutine, Sequence
 from functools import partial
 from typing import Any, Protocol, TypeVar
@@ -38,6 +37,7 @@ from prima.devices.profile import Profile
 from prima.devices.settings import DriverLimits
 from prima.grammar.answers import Answers
 from prima.live.carried import lacking, route
+from prima.live.deadlines import within
 from prima.live.driver import Driver
 from prima.live.journal import KnownAtCut
 from prima.messages import (
@@ -319,8 +319,7 @@ class LiveDevices:
 
     async def _make_safe(self, driver: Driver) -> None:
         try:
-            async with asyncio.timeout(SAFE_S):
-                await driver.safe()
+            await within(SAFE_S, driver.safe())
         finally:
             self._stopping -= 1
             if self._news and self._told is None:

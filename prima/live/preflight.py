@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from dataclasses import dataclass, replace
 from statistics import median
 from time import monotonic
+from typing import Any
 
 from prima.devices.goals import (
     LISTEN,
@@ -24,6 +25,7 @@ from prima.devices.settings import DriverLimits
 from prima.errors import UsageError
 from prima.language.commands import Argument, CommandType
 from prima.live.carried import SPOKEN, lacking, route
+from prima.live.deadlines import run, within
 from prima.live.devices import SAFE_S, LiveDevices
 from prima.live.driver import Driver, Unreachable
 from prima.live.shell import open_driver
@@ -99,7 +101,7 @@ def check_robot(chosen: Chosen, settings: LiveSettings, say: Say) -> int:
     site = read_world(world, read_file(world))
     drivers = make_drivers(robot, site, settings.drivers)
     try:
-        return asyncio.run(_stoppable(Preflight(robot, site, drivers, say)))
+        return run(_stoppable(Preflight(robot, site, drivers, say)))
     except KeyboardInterrupt as error:  # a driver blocked it
         say(str(error))
         return INTERRUPTED
@@ -156,10 +158,9 @@ class Preflight:
                 await asyncio.gather(*ended)
         return 2 if self._unusable else 3 if self._wrong else 0
 
-    async def _end(self, driver: Driver, end: Callable[[], object]) -> None:
+    async def _end(self, driver: Driver, end: Callable[[], Coroutine[Any, Any, None]]) -> None:
         try:
-            async with asyncio.timeout(SAFE_S):
-                await end()  # type: ignore[misc]
+            await within(SAFE_S, end())
         except Exception as error:
             name = getattr(end, "__name__", "")
             reason = f"{name} has failed: {error or type(error).__name__}"

@@ -15,6 +15,7 @@ from prima.devices.goals import Back
 from prima.devices.loop import Loop
 from prima.errors import UsageError
 from prima.live.clock import Clock
+from prima.live.deadlines import within
 from prima.live.devices import SAFE_S, LiveDevices
 from prima.live.driver import Driver, Unreachable, Unusable
 
@@ -158,8 +159,7 @@ class Shell:
     async def _end(self, driver: Driver, end: Callable[[], Coroutine[Any, Any, None]]) -> None:
         """Let a driver end something; warn if it fails to."""
         try:
-            async with asyncio.timeout(SAFE_S):
-                await end()
+            await within(SAFE_S, end())
         except Exception as error:
             self._warn(f"{driver.kind}: {end.__name__} has failed: {_why(error)}.")
 
@@ -206,8 +206,7 @@ class Shell:
             if driver in self._lost:
                 continue
             try:
-                async with asyncio.timeout(seconds):
-                    await driver.ping()
+                await within(seconds, driver.ping())
             except TimeoutError:
                 driver.lose("the robot does not answer")
             except Exception as error:
@@ -224,9 +223,7 @@ async def open_driver(driver: Driver) -> None:
     settings = driver.settings
     where = f" at {settings.address}" if settings.address else ""
     try:
-        async with asyncio.timeout(settings.open / 1000):
-            await driver.open()
-            await driver.ping()
+        await within(settings.open / 1000, _opened(driver))
     except TimeoutError:
         reason = f"no answer within {settings.open / 1000:g} s"
         raise Unreachable(f"{settings.place}: {driver.kind}{where}: {reason}.") from None
@@ -234,11 +231,18 @@ async def open_driver(driver: Driver) -> None:
         raise Unreachable(f"{settings.place}: {driver.kind}{where}: {error}") from None
     except Unusable as error:
         raise Unusable(f"{settings.place}: {driver.kind}{where}: {error}") from None
-    except (UsageError, asyncio.CancelledError, KeyboardInterrupt):
+
+
+async def _opened(driver: Driver) -> None:
+    """Open a driver; whatever goes wrong in it is an error of its own."""
+    try:
+        await driver.open()
+        await driver.ping()
+    except (Unreachable, UsageError, TimeoutError, asyncio.CancelledError, KeyboardInterrupt):
         raise
     except BaseException as error:  # also SystemExit: a robot's library wants to end the program
         reason = f"the driver has failed: {type(error).__name__}: {error}"
-        raise Unreachable(f"{settings.place}: {driver.kind}{where}: {reason}") from error
+        raise Unreachable(reason) from error
 
 
 def _why(error: BaseException) -> str:

@@ -16,6 +16,7 @@ from prima.devices.profile import Profile
 from prima.errors import UsageError
 from prima.live.carried import uncarried
 from prima.live.clock import Clock
+from prima.live.deadlines import run
 from prima.live.devices import LiveDevices
 from prima.live.driver import Driver
 from prima.live.drivers import driver_class
@@ -226,7 +227,7 @@ class Visit:
 
         self.loop.journal = keep
         try:
-            asyncio.run(self._run(warn))
+            run(self._run(warn))
         except KeyboardInterrupt as error:  # a driver blocked the run
             self.stopped = True
             warn(str(error) or "The run was broken off.")

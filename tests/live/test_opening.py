@@ -39,6 +39,20 @@ class Slow(Well):
             print("slow gives up", file=sys.stderr)
             raise
 
+class Stubborn(Well):
+    kind = "stubborn"
+    async def open(self):
+        print("stubborn opens", file=sys.stderr, flush=True)
+        while True:
+            try:
+                await asyncio.sleep(1000)
+            except BaseException:
+                pass
+
+class Owns(Well):
+    kind = "owns"
+    async def open(self): self.task = asyncio.ensure_future(Stubborn.open(self))
+
 class Raises(Well):
     kind = "raises"
     async def open(self): raise ZeroDivisionError("division by zero")
@@ -108,6 +122,7 @@ def live(stage: Path, drivers: str, *more: str) -> Any:
         ("raises", 3, "robot.xml:20:3: raises: the driver has failed: ZeroDivisionError: division"),
         ("exits", 3, "robot.xml:20:3: exits: the driver has failed: SystemExit: 7"),
         ("slow", 3, "robot.xml:20:3: slow: no answer within 0.5 s"),
+        ("stubborn", 3, "robot.xml:20:3: stubborn: no answer within 0.5 s"),
         ("never", 3, "robot.xml:20:3: never: no answer within 0.5 s"),
         ("lacks", 2, "robot.xml:20:3: lacks: the library wheels is missing: pip install wheels"),
         ("made", 2, "robot.xml:20:3: made: the driver has failed: KeyError: 'wheels'"),
@@ -148,6 +163,26 @@ def test_a_second_signal_ends_a_run_that_a_driver_blocks(check: list[str], stage
     assert "well is safe" in told
     assert "Go on with" not in told
     assert not (stage / "visit.jsonl").exists()
+
+
+@pytest.mark.parametrize("check", [[], ["--check"]])
+def test_a_signal_ends_a_run_whose_driver_does_not_heed_it(check: list[str], stage: Path) -> None:
+    words = ["--robot", robot(stage, TWO.format("stubborn", "")), "--driver", "drivers.py", *check]
+    command = [sys.executable, "-m", "prima", "live", *words]
+    command += [] if check else ["--ea", "hello.xml"]
+    with subprocess.Popen(command, cwd=stage, stdout=PIPE, stderr=PIPE, text=True) as run:
+        assert run.stderr is not None
+        assert any(line == "stubborn opens\n" for line in run.stderr)
+        run.send_signal(signal.SIGINT)
+        told = "".join(run.communicate(timeout=60))
+    assert run.returncode == 130, told
+    assert "well is safe" in told and "Traceback" not in told
+
+
+def test_a_task_of_a_driver_that_does_not_end_keeps_no_run_from_its_end(stage: Path) -> None:
+    ran = live(stage, TWO.format("owns", ""))
+    assert ran.returncode == 0, ran.stderr
+    assert "stubborn opens" in ran.stderr and "Traceback" not in ran.stderr
 
 
 def test_no_driver_stays_half_open(stage: Path) -> None:
