@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from prima.errors import did_you_mean
 from prima.language.arguments import check_arguments
@@ -27,7 +27,7 @@ def check_command(command: Command, app: Application, table: Table) -> None:
     """Refuse a Command that the rules or this robot do not know, and fill in defaults.
 
     Raises:
-        Refused: with ``error.unsupported.TYPE`` or ``error.semantic``.
+        CommandRefused: with ``error.unsupported.TYPE`` or ``error.semantic``.
     """
     row = table.get(command.type)
     if row is None or row.substitute:
@@ -67,14 +67,11 @@ def silence(command: Command) -> float:
 def substitute(steps: list[Step], table: Table) -> list[tuple[Command, str]]:
     """X6: put other Commands in the place of those that the robot lacks; gives what they were."""
     made = []
-    for step in steps:
-        if isinstance(step.what, Group):
-            made += substitute(step.what.steps, table)
-            continue
-        row = table.get(step.what.type)
+    for command in commands_of(steps):
+        row = table.get(command.type)
         if row is not None and row.substitute:
-            made.append((step.what, step.what.type))
-            step.what.type = row.substitute
+            made.append((command, command.type))
+            command.type = row.substitute
     return made
 
 
@@ -86,15 +83,33 @@ def check_steps(
     ``owned`` are the devices of the unit that they are requested in, if any (U5).
 
     Raises:
-        Refused: for the first bad one.
+        CommandRefused: for the first bad one.
+    """
+    for command in commands_of(steps):
+        check_command(command, app, table)
+    check_units(steps, table, owned)
+
+
+def commands_of(steps: list[Step]) -> Iterator[Command]:
+    """All Commands of a request, those of its units as well."""
+    for step in steps:
+        if isinstance(step.what, Group):
+            yield from commands_of(step.what.steps)
+        else:
+            yield step.what
+
+
+def check_units(steps: list[Step], table: Table, owned: frozenset[str] | None) -> None:
+    """U4, U5: check what is inside units; ``owned`` are the devices of the one around them.
+
+    Raises:
+        CommandRefused: for the first bad Command.
     """
     for step in steps:
         if isinstance(step.what, Group):
             inner = group_devices(step.what, table) if owned is None else owned
-            check_steps(step.what.steps, app, table, inner)
-            continue
-        check_command(step.what, app, table)
-        if owned is not None:
+            check_units(step.what.steps, table, inner)
+        elif owned is not None:
             check_in_unit(step.what, table[step.what.type], owned)
 
 
@@ -102,7 +117,7 @@ def check_in_unit(command: Command, row: CommandType, owned: frozenset[str]) -> 
     """U4, U5: refuse in a unit what is not one piece, or needs a device that the unit lacks.
 
     Raises:
-        Refused: with ``error.semantic``.
+        CommandRefused: with ``error.semantic``.
     """
     if row.feedback or row.leaves:
         what = "works in loops" if row.feedback else "leaves the user"
@@ -116,13 +131,8 @@ def check_in_unit(command: Command, row: CommandType, owned: frozenset[str]) -> 
 
 def group_devices(group: Group, table: Table) -> frozenset[str]:
     """All devices of a unit's Commands, of every branch (rule U4)."""
-    devices = NO_DEVICES
-    for step in group.steps:
-        if isinstance(step.what, Group):
-            devices |= group_devices(step.what, table)
-        else:
-            devices |= table[step.what.type].occupied(step.what.text)
-    return devices
+    occupied = (table[one.type].occupied(one.text) for one in commands_of(group.steps))
+    return NO_DEVICES.union(*occupied)
 
 
 class Maker:

@@ -250,6 +250,18 @@ def test_e5_only_what_returns_is_recorded_as_halted() -> None:
     assert stage.select() == ["fa#1"]
 
 
+def test_e5_is_recorded_with_what_the_operator_says() -> None:
+    stage = Stage()
+    stage.mediator.emergency(True, True, 8)
+    stage.at(20).mediator.emergency(False, False, 9)
+    stage.select()
+    names = ("actor", "rule", "outcome", "inbound", "serial", "data")
+    assert [[one.get(name) for name in names] for one in stage.phases("emergency")] == [
+        ["mediator", "E5", "pressed", True, 8, None],
+        ["mediator", "E5", "released", True, 9, {"resume": False}],
+    ]
+
+
 def test_e5_streams_do_not_resume_when_the_operator_says_so() -> None:
     stage = Stage()
     stage.request("ea", say("One."), say("Two."))
