@@ -2,7 +2,8 @@
 
 ``python -m bench.fuzz mutated 100000 [SEED]`` breaks the shipped documents in one to four places;
 ``python -m bench.fuzz generated 100000 [SEED]`` puts their elements together at random. Each document
-is validated and, if nothing forbids it, run for a minute beside an application of the other kind.
+is validated and, if nothing forbids it, run beside an application of the other kind, on one of the
+shipped robots and under one of the policies, each in turn.
 Faults of PRIMA itself (a traceback, a defect, a run that takes too long) are kept in
 ``build/fuzz``.
 """
@@ -48,6 +49,11 @@ FILES = sorted(
     for path in (ROOT / "documents" / folder).rglob("*")
     if path.suffix in (".xml", ".vxml")
 )
+
+
+ROBOTS = sorted(path.name for path in (ROOT / "documents" / "robots").glob("*.xml"))
+"""The bodies on which applications run, most of which lack something."""
+POLICIES = ("prima", "prima+all", "fifo", "none", "fair")
 
 
 def mutated(chance: random.Random) -> tuple[Path, str]:
@@ -204,17 +210,20 @@ def _act(chance: random.Random, depth: int) -> str:
     )
 
 
-def attempt(path: Path, text: str, documents: Path) -> str:
+def attempt(path: Path, text: str, documents: Path, number: int) -> str:
     """Validate and run a document; ``fine``, ``refused``, ``ended`` or what went wrong.
 
-    ``documents`` is a copy of the shipped ones, in which it takes the place of its original.
+    ``documents`` is a copy of the shipped ones, in which it takes the place of its original;
+    by its ``number`` it has its robot and its policy.
     """
     tried = documents / path.relative_to(ROOT / "documents")
     original = path.read_bytes() if path.exists() else b""
     tried.write_bytes(text.encode("utf-8", "surrogatepass"))
     began = _worked()
     try:
-        made = api.rehearse(_run_of(tried, documents), keep=False)
+        robot = documents / "robots" / ROBOTS[number % len(ROBOTS)]
+        policy = POLICIES[number // len(ROBOTS) % len(POLICIES)]
+        made = api.rehearse(_run_of(tried, documents, robot), policy, keep=False)
     except PrimaError:
         return "refused" if _worked() - began < SLOW_SECONDS else "slow (refused)"
     except Exception as error:
@@ -234,7 +243,7 @@ def _worked() -> float:
     return times.user + times.system + times.children_user + times.children_system
 
 
-def _run_of(tried: Path, documents: Path) -> api.Loaded:
+def _run_of(tried: Path, documents: Path, robot: Path) -> api.Loaded:
     """A run in which a document is needed."""
     folder = tried.relative_to(documents).parts[0]
     if folder == "scenarios":
@@ -242,7 +251,7 @@ def _run_of(tried: Path, documents: Path) -> api.Loaded:
     if folder in ("fa", "ea"):
         pair = {"fa": documents / "fa" / "follow.xml", "ea": documents / "ea" / "library.xml"}
         pair[folder] = tried
-        return api.stage([str(pair["fa"])], [str(pair["ea"])], ["yes", "a"])
+        return api.stage([str(pair["fa"])], [str(pair["ea"])], ["yes", "a"], robot=str(robot))
     return api.load_scenario(documents / "scenarios" / "follow-during-navigation.xml")
 
 
@@ -257,7 +266,7 @@ def several(job: tuple[str, int]) -> Counter[str]:
         for number in range(SHARE):
             chance = random.Random(f"{how} {seed} {number}")
             path, text = (mutated if how == "mutated" else generated)(chance)
-            result = attempt(path, text, documents)
+            result = attempt(path, text, documents, number)
             if result not in ("fine", "refused", "ended"):
                 KEPT.mkdir(parents=True, exist_ok=True)
                 (KEPT / f"{how}-{seed}-{number}-{path.name}").write_text(
