@@ -7,10 +7,17 @@ import functools
 import logging
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 from cattrs import Converter
 from lsprotocol import types as lsp
-from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
+from pygls.exceptions import (
+    JsonRpcException,
+    JsonRpcInvalidParams,
+    JsonRpcInvalidRequest,
+    JsonRpcParseError,
+    JsonRpcServerNotInitialized,
+)
 from pygls.lsp.server import LanguageServer
 from pygls.protocol import LanguageServerProtocol, default_converter
 
@@ -29,6 +36,9 @@ SEVERITIES = {
     "note": lsp.DiagnosticSeverity.Information,
 }
 
+IDS = (str, int, float)
+"""What the id of a request may be."""
+NO_MESSAGE = "It is no message of JSON-RPC 2.0."
 logger = logging.getLogger("prima.lsp")
 
 
@@ -47,23 +57,69 @@ def _exactly(kind: type, value: Any, _: object) -> Any:
 
 
 class Protocol(LanguageServerProtocol):
-    """Answers requests with wrong parameters with an error; pygls leaves them unanswered."""
+    """Answers requests that are wrong, or come too early or late, with an error; pygls does not."""
 
     def structure_message(self, data: dict[str, Any]) -> Any:
         """Read a message; errors in a request are sent back."""
+        asked = data.get("id")
+        is_request = "jsonrpc" in data and "id" in data and "method" in data
+        known = isinstance(asked, IDS) and isinstance(data.get("method"), str)
+        if is_request and not (known and data["jsonrpc"] == self.VERSION):
+            raise self.refused(asked, JsonRpcInvalidRequest(NO_MESSAGE))
         try:
-            return super().structure_message(data)
-        except JsonRpcException as error:
-            if "id" in data and "method" in data:
-                asked = data["id"] if isinstance(data["id"], str | int) else None
-                message = f"Wrong parameters of {str(data['method'])[:80]}."
-                told = lsp.ResponseError(JsonRpcInvalidParams.CODE, message)
-                self._send_response(asked, None, told)  # type: ignore[arg-type]
-            raise error
+            message = super().structure_message(data)
+            if isinstance(message, lsp.InitializeRequest):
+                _check_folders(message.params)
+        except (JsonRpcException, ValueError) as error:
+            if not is_request:
+                raise
+            told = f"Wrong parameters of {data['method'][:80]}."
+            raise self.refused(asked, JsonRpcInvalidParams(told)) from error
+        if is_request and not hasattr(message, "id"):
+            told = f"{data['method']} is a notification: it has no id."
+            raise self.refused(asked, JsonRpcInvalidRequest(told))
+        return message
+
+    def handle_message(self, message: Any) -> None:
+        """Handle a message, if there is one and it may come now."""
+        if getattr(message, "jsonrpc", None) != self.VERSION:
+            asked = message.get("id") if isinstance(message, dict) else getattr(message, "id", None)
+            self.refused(asked, JsonRpcInvalidRequest(NO_MESSAGE))
+            return
+        method = getattr(message, "method", "")
+        error: JsonRpcException | None = None
+        if self._shutdown and method != lsp.EXIT:
+            error = JsonRpcInvalidRequest("The server has been shut down.")
+        elif self._workspace is None and method not in (lsp.INITIALIZE, lsp.EXIT):
+            error = JsonRpcServerNotInitialized("The server waits for initialize.")
+        if error is None:
+            super().handle_message(message)
+        elif method and hasattr(message, "id"):
+            self.refused(message.id, error)
+
+    def refused(self, asked: Any, error: JsonRpcException) -> JsonRpcException:
+        """Send an error as the answer to what was asked by an id, which may be none; give it."""
+        known = asked if isinstance(asked, IDS) else None
+        told = {"code": error.code, "message": error.message}
+        self._send_data({"jsonrpc": self.VERSION, "id": known, "error": told})
+        return error
+
+
+def _check_folders(params: lsp.InitializeParams) -> None:
+    """Check that folders are URIs.
+
+    Raises:
+        ValueError: one is not.
+    """
+    folders = [folder.uri for folder in params.workspace_folders or ()]
+    for uri in (*folders, params.root_uri):
+        urlsplit(uri or "")
 
 
 class Server(LanguageServer):
     """The state of the server between requests."""
+
+    protocol: Protocol
 
     def __init__(self) -> None:
         super().__init__(
@@ -80,6 +136,8 @@ class Server(LanguageServer):
 
     def report_server_error(self, error: Exception, source: Any) -> None:
         """Do not log wrong messages of an editor: it gets an error as answer."""
+        if source is JsonRpcException and isinstance(error, ValueError | RecursionError):
+            self.protocol.refused(None, JsonRpcParseError("It is no JSON."))
         logger.debug("%s: %s", type(error).__name__, error)
 
     # Places -------------------------------------------------------------------

@@ -7,6 +7,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -232,7 +233,7 @@ def ill(params: Any) -> Iterator[Any]:
 
 def speak(process: subprocess.Popen[bytes], message: Any) -> None:
     assert process.stdin is not None
-    data = json.dumps(message).encode()
+    data = message if isinstance(message, bytes) else json.dumps(message).encode()
     process.stdin.write(b"Content-Length: %d\r\n\r\n%s" % (len(data), data))
     process.stdin.flush()
 
@@ -245,28 +246,83 @@ def hear(process: subprocess.Popen[bytes]) -> Any:
     return json.loads(process.stdout.read(size))
 
 
-def test_wrong_parameters_are_answered_as_such_and_the_server_goes_on() -> None:
+HOVER = {"jsonrpc": "2.0", "method": lsp.TEXT_DOCUMENT_HOVER, "params": WHERE}
+BEGINNING: Any = {
+    "jsonrpc": "2.0", "id": 0, "method": "initialize",
+    "params": {"processId": None, "rootUri": None, "capabilities": {}},
+}  # fmt: skip
+ODD_NAMES: list[Any] = [None, 5, {}, []]
+NO_MESSAGES: list[tuple[Any, Any, int]] = [
+    *(([{**HOVER, "id": 1}], None, -32600), ([], None, -32600), (5, None, -32600), (None, None, -32600)),
+    *(({**HOVER, "id": {}}, None, -32600), ({**HOVER, "id": [1]}, None, -32600)),
+    *(({**HOVER, "id": 1, "method": name}, 1, -32600) for name in ODD_NAMES),
+    *(({**HOVER, "id": 1, "jsonrpc": mark}, 1, -32600) for mark in (None, "1.0", 2.0)),
+    ({"id": 1, "method": "shutdown"}, 1, -32600),
+    ({**HOVER, "id": 1, "method": "no/such"}, 1, -32601),
+    ({**HOVER, "id": 1, "method": "textDocument/didOpen"}, 1, -32602),
+    ({**HOVER, "id": 1, "method": "textDocument/didClose"}, 1, -32600),
+    *((text, None, -32700) for text in (b"{", b"hello", b"[" * 100_000, b"\xff", b"9" * 5_000)),
+]  # fmt: skip
+
+
+@contextmanager
+def served() -> Iterator[subprocess.Popen[bytes]]:
+    """A server of its own, which writes nothing but messages and ends when it is told to."""
     process = subprocess.Popen(
         [sys.executable, "-m", "prima", "lsp"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
     )  # fmt: skip
-    begin: Any = {"processId": None, "rootUri": None, "capabilities": {}}
-    speak(process, {"jsonrpc": "2.0", "id": 0, "method": "initialize", "params": begin})
-    assert hear(process)["id"] == 0
-    count = 0
-    for method, params in REQUESTS.items():
-        for one in (params, *ill(params), params):
-            count += 1
-            speak(process, {"jsonrpc": "2.0", "id": count, "method": method, "params": one})
-            answer = hear(process)
-            assert answer["id"] == count
-            if one is params:
-                assert "error" not in answer
-            else:
-                assert answer.get("error", {}).get("code") == -32602, (method, one, answer)
-                assert answer["error"]["message"] == f"Wrong parameters of {method}."
-    speak(process, {"jsonrpc": "2.0", "id": -1, "method": "shutdown"})
-    assert hear(process) == {"jsonrpc": "2.0", "id": -1, "result": None}
+    yield process
     speak(process, {"jsonrpc": "2.0", "method": "exit"})
     assert process.stderr is not None
     assert (process.wait(SECONDS), process.stderr.read()) == (0, b"")
+
+
+def test_what_is_no_request_is_answered_and_the_server_goes_on() -> None:
+    with served() as process:
+        speak(process, BEGINNING)
+        assert hear(process)["id"] == 0
+        for message, asked, code in NO_MESSAGES:
+            speak(process, message)
+            answer = hear(process)
+            assert (answer["id"], answer["error"]["code"]) == (asked, code), message
+            assert "data" not in answer["error"], "no traceback"
+        speak(process, {**HOVER, "id": 2})
+        assert hear(process) == {"jsonrpc": "2.0", "id": 2, "result": None}
+
+
+def test_requests_before_the_beginning_and_after_the_end_are_refused() -> None:
+    with served() as process:
+        speak(process, {**HOVER, "id": 1})
+        assert hear(process)["error"]["code"] == -32002
+        wrong = {**BEGINNING["params"], "rootUri": "http://[::1"}
+        speak(process, {**BEGINNING, "params": wrong})
+        assert hear(process)["error"]["code"] == -32602
+        speak(process, {"jsonrpc": "2.0", "method": "initialized", "params": {}})
+        speak(process, BEGINNING)
+        assert "result" in hear(process)
+        speak(process, {"jsonrpc": "2.0", "id": 2, "method": "shutdown"})
+        assert hear(process)["result"] is None
+        for method in ("shutdown", lsp.TEXT_DOCUMENT_HOVER):
+            speak(process, {**HOVER, "id": 3, "method": method})
+            assert hear(process)["error"]["code"] == -32600
+
+
+def test_wrong_parameters_are_answered_as_such_and_the_server_goes_on() -> None:
+    with served() as process:
+        speak(process, BEGINNING)
+        assert hear(process)["id"] == 0
+        count = 0
+        for method, params in REQUESTS.items():
+            for one in (params, *ill(params), params):
+                count += 1
+                speak(process, {"jsonrpc": "2.0", "id": count, "method": method, "params": one})
+                answer = hear(process)
+                assert answer["id"] == count
+                if one is params:
+                    assert "error" not in answer
+                else:
+                    assert answer.get("error", {}).get("code") == -32602, (method, one, answer)
+                    assert answer["error"]["message"] == f"Wrong parameters of {method}."
+        speak(process, {"jsonrpc": "2.0", "id": -1, "method": "shutdown"})
+        assert hear(process) == {"jsonrpc": "2.0", "id": -1, "result": None}
