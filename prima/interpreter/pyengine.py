@@ -131,8 +131,9 @@ class PythonEngine:
     def event(self, name: str, message: str, data: Json) -> Scope:
         """The scope of an event's handler: ``event``, ``_event`` and ``_message``."""
         given = inward(data) if data else {}
-        event = {"name": name, "message": message, "data": given}
-        return Scope(event=event, _event=name, _message=message)
+        said = well_formed(message)
+        event = {"name": name, "message": said, "data": given}
+        return Scope(event=event, _event=name, _message=said)
 
     def clock(self, scope: Scope, seconds: float) -> None:
         """Tell a scope the time of the run, as ``session.time``."""

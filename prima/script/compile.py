@@ -103,9 +103,6 @@ class _Piece:
     """Part of an expression."""
 
     call: Function
-    place: tuple[int, int] | None = None
-    """Line and column of the last operator or name in it: an error of a member of it is reported there,
-    as the engine does."""
     optional: bool = False
     """Whether it is a chain with ``?.``: its value may be :data:`CUT`."""
 
@@ -119,6 +116,9 @@ class _Builder:
 
     def __init__(self, code: Code) -> None:
         self.code = code
+        self.last = (1, 1)
+        """Line and column of the last name, or of what is behind the last operator: the error of a
+        member is reported there, as the engine does."""
 
     def build(self, node: Node, depth: int) -> _Piece:
         """The function of an expression.
@@ -139,8 +139,14 @@ class _Builder:
         return self.build(held, depth)
 
     def place(self, node: Node) -> tuple[int, int]:
-        """Line and column of a node."""
+        """Line and column of a node.
+
+        Raises:
+            Beyond: the engine counts other line ends, too.
+        """
         before = self.code.text[: self.code.start(node)]
+        if "\u2028" in before or "\u2029" in before:
+            raise Beyond
         return before.count("\n") + 1, len(before) - before.rfind("\n")
 
     # Literals and names -----------------------------------------------------------------------
@@ -155,7 +161,7 @@ class _Builder:
     def name(self, node: Node, _depth: int) -> _Piece:
         """A variable, looked for from the innermost scope."""
         name = self._name(node)
-        line, column = place = self.place(node)
+        line, column = self.last = self.place(node)
 
         def call(scopes: Scopes) -> Any:
             _, document, dialog, local = scopes
@@ -167,7 +173,7 @@ class _Builder:
                 return document[name]
             return sought(name, line, column, scopes)
 
-        return _Piece(call, place)
+        return _Piece(call)
 
     def _name(self, node: Node) -> str:
         name = self.code.of(node)
@@ -182,39 +188,36 @@ class _Builder:
         held = node.named_children
         if len(held) != 1:
             raise Beyond
-        piece = self.build(held[0], depth)
-        return _Piece(piece.call, piece.place)
+        return _Piece(self.build(held[0], depth).call)
 
     def conditional(self, node: Node, depth: int) -> _Piece:
         """``a ? b : c``."""
-        test, first, second = (
-            self.part(node, name, depth) for name in ("condition", "consequence", "alternative")
+        asks, one, other = (
+            self.part(node, name, depth).call
+            for name in ("condition", "consequence", "alternative")
         )
-        asks, one, other = test.call, first.call, second.call
-        return _Piece(
-            lambda scopes: one(scopes) if truth(asks(scopes)) else other(scopes),
-            second.place or first.place or test.place,
-        )
+        return _Piece(lambda scopes: one(scopes) if truth(asks(scopes)) else other(scopes))
 
     def binary(self, node: Node, depth: int) -> _Piece:
         """``a + b`` and the like."""
-        operator = node.child_by_field_name("operator")
-        left, right = self.part(node, "left", depth), self.part(node, "right", depth)
-        if operator is None:
+        operator, held = (node.child_by_field_name(name) for name in ("operator", "right"))
+        if operator is None or held is None:
             raise Beyond
-        if operator.type in ("&&", "||"):
-            return self._logical(operator.type, left, right)
+        first = self.part(node, "left", depth).call
+        logical = operator.type in ("&&", "||")
+        if not logical:
+            self.last = self.place(held)
+        second = self.build(held, depth).call
+        if logical:
+            return _Piece(self._logical(operator.type, first, second))
         if operator.type not in OPERATIONS:
             raise Beyond
-        act, first, second = OPERATIONS[operator.type], left.call, right.call
-        return _Piece(
-            lambda scopes: act(first(scopes), second(scopes), scopes), self.place(operator)
-        )
+        act = OPERATIONS[operator.type]
+        return _Piece(lambda scopes: act(first(scopes), second(scopes), scopes))
 
     @staticmethod
-    def _logical(mark: str, left: _Piece, right: _Piece) -> _Piece:
+    def _logical(mark: str, first: Function, second: Function) -> Function:
         """``a && b`` or ``a || b``: one of the two values."""
-        first, second = left.call, right.call
 
         def both(scopes: Scopes) -> Any:
             value = first(scopes)
@@ -224,7 +227,7 @@ class _Builder:
             value = first(scopes)
             return value if truth(value) else second(scopes)
 
-        return _Piece(both if mark == "&&" else either, right.place or left.place)
+        return both if mark == "&&" else either
 
     def unary(self, node: Node, depth: int) -> _Piece:
         """``!a``, ``-a``, ``+a`` and ``typeof a``."""
@@ -234,9 +237,9 @@ class _Builder:
             operand = operand.named_children[0]
         if operator == "typeof" and operand is not None and operand.type == "identifier":
             name = self._name(operand)  # an undeclared one is not an error here
+            self.last = self.place(operand)
             return _Piece(lambda scopes: kind_of(found(name, scopes)))
-        piece = self.part(node, "argument", depth)
-        call = piece.call
+        call = self.part(node, "argument", depth).call
         made: dict[str, Function] = {
             "!": lambda scopes: not truth(call(scopes)),
             "-": lambda scopes: -numeric(call(scopes), scopes),
@@ -245,7 +248,7 @@ class _Builder:
         }
         if operator not in made:
             raise Beyond
-        return _Piece(made[operator], piece.place)
+        return _Piece(made[operator])
 
     # Members ----------------------------------------------------------------------------------
 
@@ -260,7 +263,7 @@ class _Builder:
             value = call(scopes)
             return UNDEFINED if value is CUT else value
 
-        return _Piece(whole, piece.place)
+        return _Piece(whole)
 
     def _chain(self, node: Node, depth: int) -> _Piece:
         """A chain of members; ``?.`` ends it where there is no value."""
@@ -269,7 +272,7 @@ class _Builder:
             raise Beyond
         inside = self._chain if holder.type in MEMBERS else self.build
         value = inside(holder, depth + 1)
-        index, (line, column) = index_of(key), value.place or self.place(node)
+        index, (line, column) = index_of(key), self.last
         asks, cuts = node.child_by_field_name("optional_chain") is not None, value.optional
         call = value.call
 
@@ -285,7 +288,7 @@ class _Builder:
                 return CUT
             return member(held, key, index, line, column, scopes)
 
-        return _Piece(look_on if asks or cuts else look, value.place, asks or cuts)
+        return _Piece(look_on if asks or cuts else look, asks or cuts)
 
     def _key(self, node: Node) -> str:
         """The name of the member."""
@@ -300,7 +303,7 @@ class _Builder:
             key = self.code.of(part)
         else:
             raise Beyond
-        if key in INHERITED or key in METHODS or "\\" in key:
+        if key in INHERITED or key in METHODS or "\\" in key or not key.isprintable():
             raise Beyond
         return key
 

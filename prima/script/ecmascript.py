@@ -230,7 +230,7 @@ def inward(value: Json, depth: int = 0) -> Any:
         ScriptError: it has lists or objects too deep inside each other.
     """
     if isinstance(value, str):
-        return value if type(value) is str else str.__str__(value)
+        return well_formed(value if type(value) is str else str.__str__(value))
     if value is None or isinstance(value, bool):
         return value
     if isinstance(value, int | float):
@@ -240,7 +240,7 @@ def inward(value: Json, depth: int = 0) -> Any:
     if isinstance(value, list | tuple):
         return [inward(one, depth + 1) for one in value]
     if isinstance(value, Mapping):
-        return {str(key): inward(one, depth + 1) for key, one in value.items()}
+        return {well_formed(str(key)): inward(one, depth + 1) for key, one in value.items()}
     return value
 
 

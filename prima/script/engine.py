@@ -33,7 +33,7 @@ from prima.script.evaluation import (
 from prima.script.hoisting import Hoisted, hoisted
 from prima.script.names import script_names
 from prima.script.surrogates import well_formed, well_formed_json
-from prima.script.syntax import FAILURES, TIME_LIMIT, Syntax, script_error
+from prima.script.syntax import FAILURES, TIME_LIMIT, Syntax, column_in, script_error
 from prima.script.wrapping import Helpers, assignment, guarded, head, wrapped
 
 if TYPE_CHECKING:
@@ -44,6 +44,11 @@ MAY_ASK_TIME = re.compile(
     r"""|\[(?!\s*(?:\d*|"[^"]*"|'[^']*')\s*\])"""
 )
 """Code that names ``Date``, or may find it without naming it."""
+
+
+def _json(value: Json) -> str:
+    """Plain data as JSON that the engine can read: texts in it are UTF-8."""
+    return well_formed(json.dumps(value, ensure_ascii=False, allow_nan=False))
 
 
 class Engine:
@@ -97,6 +102,14 @@ class Engine:
             raise script_error(error) from None
         finally:
             self.spent += thread_time() - began
+
+    def _evaluate(self, code: str, function: Any, args: tuple[Any, ...]) -> Any:
+        """Call the function of an expression; errors have their place in its code."""
+        try:
+            return self._call(function, args, MAX_SCRIPT_SECONDS)
+        except ScriptError as error:
+            error.column = column_in(code, error.line, error.column)
+            raise
 
     def _check(self, check: Callable[[str], None], code: str) -> None:
         """Let code in that compiles by itself."""
@@ -163,7 +176,7 @@ class Engine:
     def event(self, name: str, message: str, data: Json) -> Scope:
         """The scope of an event's handler: ``event``, ``_event`` and ``_message``."""
         given = self.into(data) if data else None
-        return self._call(self._help["event"], (name, message, given))
+        return self._call(self._help["event"], (name, self.into(message), given))
 
     def clock(self, scope: Scope, seconds: float) -> None:
         """Tell a scope the time of the run, as ``session.time``."""
@@ -177,9 +190,9 @@ class Engine:
         """
         if isinstance(value, dict | list | tuple):
             try:
-                return self._call(self._context.parse_json, (json.dumps(value, allow_nan=False),))
+                return self._call(self._context.parse_json, (_json(value),))
             except ValueError:  # JSON has no such numbers
-                return self._call(self._help["parse"], (json.dumps(marked(value)),))
+                return self._call(self._help["parse"], (_json(marked(value)),))
             except RecursionError:
                 raise ScriptError("it is nested too deep") from None
         if isinstance(value, str):
@@ -205,18 +218,17 @@ class Engine:
 
     def raw(self, code: str, scopes: tuple[Scope, ...]) -> Any:
         """Evaluate an expression and give the engine's own value."""
-        return self._call(self.compile(code), scopes, MAX_SCRIPT_SECONDS)
+        return self._evaluate(code, self.compile(code), scopes)
 
     def condition(self, code: str, scopes: tuple[Scope, ...]) -> bool:
         """Evaluate an expression as a condition; the inner scopes may be left out."""
         key = code, len(scopes)
         function = self._conditions.get(key)
         if function is None:
-            whole = f"!!({code}\n)"
-            self._check(self._syntax.expression, whole)
-            body = f"return (\n{whole}\n)"
+            self._check(self._syntax.expression, code)
+            body = f"return !!(\n{code}\n)"
             function = self._conditions[key] = self._compile(body, self._scopes[: len(scopes)])
-        return bool(self._call(function, scopes, MAX_SCRIPT_SECONDS))
+        return bool(self._evaluate(code, function, scopes))
 
     def text(self, code: str, scopes: tuple[Scope, ...]) -> str:
         """Evaluate an expression and give its value as text for speech or a log."""
@@ -280,7 +292,7 @@ class Engine:
             body = f"{{$s[$n] = (\n{code}\n)}}"
             function = self._function(f"{self._names},$s,$n", f"{self._withs}{body}")
             self._giving[code] = function
-        self._call(function, (*scopes, scope, name), MAX_SCRIPT_SECONDS)
+        self._evaluate(code, function, (*scopes, scope, name))
 
     def assign_declared(self, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
         """Give a declared variable, by its name as written, a value (VoiceXML 5.3.2).
@@ -296,7 +308,7 @@ class Engine:
             self._check(self._syntax.expression, code)
             names = self._scopes[: len(scopes)]
             function = self._assigning[key] = self._compile(assignment(name, code, names), names)
-        self._call(function, scopes, MAX_SCRIPT_SECONDS)
+        self._evaluate(code, function, scopes)
 
     def detach(self, scope: Scope, name: str) -> None:
         """Let a variable hold a private copy of its data."""
@@ -327,6 +339,7 @@ class Engine:
         except ScriptError as error:
             if len(error.places) > 1:  # the outermost function is ours
                 line, column = error.places[-2]
+                column = column_in(script.code, line, column)
                 error.line, error.column = line, script.column(line, column)
             raise
 

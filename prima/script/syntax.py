@@ -32,8 +32,11 @@ def script_error(error: Exception) -> ScriptError:
     text = str(error)
     message = reason(text or type(error).__name__, TIME_LIMIT)
     # The outermost place is in this code; inner ones may be in a function declared elsewhere.
-    found = CALLED.findall(text)
-    return ScriptError(message, [(max(int(line) - 1, 1), int(column)) for line, column in found])
+    # The first line is ours: what has its place there is told where the code begins.
+    found = [(int(line), int(column)) for line, column in CALLED.findall(text)]
+    return ScriptError(
+        message, [(line - 1, column) if line > 1 else (1, 1) for line, column in found]
+    )
 
 
 DECLARE = "((F, read) => (body) => { new F(read(body)); })(Function, JSON.parse)"
@@ -120,6 +123,15 @@ class Syntax:
             raise _placed(script_error(error), str(error), code) from None
 
 
+def column_in(code: str, line: int, column: int) -> int:
+    """A column of the engine, which counts bytes, in characters."""
+    if code.isascii() or line <= 0:
+        return column
+    there = code.split("\n", line)[line - 1 : line] or [""]
+    seen = there[0].encode(errors="replace")[: max(column - 1, 0)]
+    return len(seen.decode(errors="ignore")) + 1
+
+
 def _placed(failure: ScriptError, said: str, code: str) -> ScriptError:
     """An error with its place in code, around which there are lines of ours; those are no place."""
     failure.places, failure.line, failure.column = [], 0, 0
@@ -131,8 +143,7 @@ def _placed(failure: ScriptError, said: str, code: str) -> ScriptError:
     if line > len(lines):
         failure = ScriptError("it ends too early")
         line, column = len(lines), len(lines[-1]) + 1
-    else:  # the engine counts bytes
-        seen = lines[line - 1].encode()[: column - 1]
-        column = len(seen.decode(errors="ignore")) + 1
+    else:
+        column = column_in(code, line, column)
     failure.line, failure.column = line, column
     return failure
