@@ -9,6 +9,7 @@ from itertools import islice
 
 from prima.certificate.model import Delay, Starving
 from prima.checks.prices import Gap, Outline, Price, PricedReaction, worst
+from prima.checks.prices.again import reacting_again
 from prima.checks.prices.bounds import (
     MOST_COMPARED,
     Busy,
@@ -286,7 +287,13 @@ def starving(own: Outline, theirs: Outline) -> list[Starving]:
     found = [_by_loops(part, held, part in floor, drives) for part in theirs.parts]
     found += [_by_cycle(loop, held, floors, drives) for loop in loops(theirs)]
     found += [Starving(gap.place, gap.reason, "", everything, drives, True) for gap in theirs.gaps]
-    return [one for one in found if one is not None]
+    told = [one for one in found if one is not None]
+    floors_kept = {(one.place, one.what) for one in told if one.everything}
+    return told + [
+        Starving(gap.place, gap.reason, "F2", (), drives, True)
+        for gap in reacting_again(theirs)
+        if (gap.place, gap.reason) not in floors_kept
+    ]
 
 
 def _parts_with_floor(theirs: Outline) -> set[Price]:

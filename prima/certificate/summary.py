@@ -122,7 +122,9 @@ def _starving(starved: Starving, one: Certificate) -> list[str]:
     if starved.devices:
         rule = f" ({starved.rule})" if starved.rule else ""
         if starved.rule == "S2c" and "speaker" in starved.devices:
-            rule += f", each for a run's patience, {PATIENCE_MS / 1000:g} s by default (E6)"
+            alone = {*starved.devices} <= {"speaker", "speech-recognition"}
+            which = "each" if alone else "what waits for the speaker alone"
+            rule += f", {which} for a run's patience, {PATIENCE_MS / 1000:g} s by default (E6)"
         kinds.append(f"equal ones on {_list(starved.devices)}{rule}")
     if starved.leaving:
         kinds.append("those that leave the user (K1)")

@@ -135,3 +135,82 @@ def test_an_event_asks_the_question_of_a_voicexml_document_anew(tmp_path: Path) 
     assert faults(found, records, PROFILE.voices) == []
     without_more_for_each_event(found)
     assert faults(found, records, PROFILE.voices) != []
+
+
+KEPT = {
+    "what the watch sees is the robot's own turn": (
+        '<watch name="moves" when="sensor.moving"/><form id="f"><block><turn angle="90"/></block>'
+        '<on event="moves"><speak>I turn.</speak><turn angle="90"/></on></form>',
+        "what is done about moves leads to it again",
+    ),
+    "the robot turns away and finds the user again": (
+        '<form id="f"><block><turn angle="180"/></block>'
+        '<on event="human"><speak>There.</speak><turn angle="180"/></on></form>',
+        "what is done about human may bring it again",
+    ),
+    "two questions to a service that is not there are under way": (
+        '<form id="f"><block><send to="nobody"/><send to="nobody"/></block>'
+        '<on event="error.service"><speak>I ask it again.</speak><send to="nobody"/></on></form>',
+        "what is done about error.service may bring it again",
+    ),
+    "one service is asked because of the other's answer": (
+        '<form id="f"><block><send to="a"/><send to="b"/></block>'
+        '<on event="error.service.a"><speak>Now the other.</speak><goto next="#b"/></on></form>'
+        '<form id="b"><block><send to="b"/><send to="b"/></block>'
+        '<on event="error.service.b"><speak>And the first.</speak><goto next="#f"/></on></form>',
+        "what is done about error.service.a may bring it again",
+    ),
+}
+"""EAs that keep the floor by reactions to what they bring themselves, from outside as well."""
+
+
+@pytest.mark.parametrize(("body", "why"), KEPT.values(), ids=KEPT)
+def test_reactions_to_what_the_ea_itself_brings_may_starve_all_else(
+    tmp_path: Path, body: str, why: str
+) -> None:
+    own = (
+        '<form id="s"><block><send event="now" delay="5s"/></block>'
+        '<on event="now"><speak>It is time.</speak></on></form>'
+    )
+    found = certified(tmp_path, body, own)
+    (starved,) = found.starves
+    assert (starved.what, starved.everything) == (why, True)
+    assert "nothing: others than reactions" not in format_certificate(found)
+    records = run(tmp_path, "mine.xml", "theirs.xml", "", until="120s")
+    assert faults(found, records, PROFILE.voices) == []
+
+
+def test_the_runs_of_the_first_three_starve(tmp_path: Path) -> None:
+    own = (
+        '<form id="s"><block><send event="now" delay="5s"/></block>'
+        '<on event="now"><speak>It is time.</speak></on></form>'
+    )
+    for body, _ in [*KEPT.values()][:3]:
+        certified(tmp_path, body, own)
+        records = run(tmp_path, "mine.xml", "theirs.xml", "", until="120s")
+        assert "It is time." not in [r.get("text") for r in records if r["phase"] == "start"]
+        (told,) = [one for one in records if one["phase"] == "starve"]
+        assert (told["app"], told["rule"]) == ("mine", "F2")
+
+
+def test_what_the_user_brings_keeps_nothing_for_ever(tmp_path: Path) -> None:
+    """An answer of the user, or the end of a move, lies between one answer of a service and the next."""
+    body = (
+        '<form id="ask"><field name="q" type="boolean"><prompt>Shall I?</prompt><noinput><exit/></noinput>'
+        '<nomatch><exit/></nomatch><filled><goto next="#send"/></filled></field></form>'
+        '<form id="send"><block><send to="x"/></block>'
+        '<on event="error.service"><speak>No.</speak><goto next="#ask"/></on>'
+        '<on event="touch"><speak>Yes?</speak></on></form>'
+    )
+    assert not [one for one in certified(tmp_path, body).starves if "bring" in one.what]
+
+
+def test_only_what_waits_for_the_speaker_alone_has_a_turn(tmp_path: Path) -> None:
+    body = block_again('<par><speak>On and on.</speak><move-head pan="3"/></par>')
+    own = '<form id="s"><block><speak>Yes?</speak><move-head pan="9"/></block></form>'
+    told = format_certificate(certified(tmp_path, body, own))
+    assert "equal ones on neck, speaker (S2c), what waits for the speaker alone for a run's" in told
+
+
+def block_again(content: str) -> str:
+    return f'<form id="f"><block>{content}<goto next="#f"/></block></form>'

@@ -14,6 +14,7 @@ from prima.checks.prices.model import (
     PricedState,
     devices_of,
 )
+from prima.checks.prices.rings import rings
 from prima.errors import Place
 from prima.markup.tree import Node
 
@@ -181,63 +182,17 @@ def _loop(place: Place, what: str, parts: list[Price], names: frozenset[str]) ->
 def _cycles(outline: Outline) -> list[list[PricedState]]:
     """The cycles of states."""
     order = {name: at for at, name in enumerate(outline.states)}
-    rings = [sorted(ring, key=order.__getitem__) for ring in _rings(outline)]
+    sets = [sorted(ring, key=order.__getitem__) for ring in _rings(outline)]
     return [
         [outline.states[one] for one in ring]
-        for ring in sorted(rings, key=lambda ring: order[ring[0]])
+        for ring in sorted(sets, key=lambda ring: order[ring[0]])
         if len(ring) > 1 or ring[0] in _ways(outline, ring[0]) or outline.states[ring[0]].repeats
     ]
 
 
 def _rings(outline: Outline) -> Iterator[list[str]]:
-    """Sets of states that lead to each other (Tarjan's strongly connected components)."""
-    search = _RingSearch(outline)
-    for start in outline.states:
-        yield from search.rings(start)
-
-
-class _RingSearch:
-    """Tarjan's algorithm, without recursion."""
-
-    def __init__(self, outline: Outline) -> None:
-        self._outline = outline
-        self._number: dict[str, int] = {}
-        self._lowest: dict[str, int] = {}
-        self._kept: list[str] = []
-        self._done: set[str] = set()
-
-    def rings(self, start: str) -> Iterator[list[str]]:
-        """The rings reached from a state that have not been returned before."""
-        path = [] if start in self._number else [self._enter(start)]
-        while path:
-            name, left = path[-1]
-            to = next((one for one in left if one not in self._done), None)
-            if to is None:
-                path.pop()
-                if path:
-                    self._lower(path[-1][0], self._lowest[name])
-                yield from self._ring(name)
-            elif to in self._number:
-                self._lower(name, self._number[to])
-            else:
-                path.append(self._enter(to))
-
-    def _enter(self, name: str) -> tuple[str, Iterator[str]]:
-        self._number[name] = self._lowest[name] = len(self._number)
-        self._kept.append(name)
-        return name, iter(_ways(self._outline, name))
-
-    def _lower(self, name: str, number: int) -> None:
-        self._lowest[name] = min(self._lowest[name], number)
-
-    def _ring(self, name: str) -> Iterator[list[str]]:
-        """The ring that a state closes, if it is the first of one."""
-        if self._lowest[name] == self._number[name]:
-            ring = [self._kept.pop()]
-            while ring[-1] != name:
-                ring.append(self._kept.pop())
-            self._done.update(ring)
-            yield ring
+    """Sets of states that lead to each other."""
+    return rings(outline.states, lambda name: _ways(outline, name))
 
 
 def _ways(outline: Outline, name: str) -> list[str]:

@@ -158,12 +158,14 @@ class _DialoguePrices(Times):
     def _state(self, form: Form) -> PricedState:
         """What a form does, and what its answers and its own events lead to."""
         state = PricedState(form.id, form.node)
-        contents: list[Sequence[Act]] = [filled.content for filled in form.filled]
+        contents: list[Sequence[Act]] = []
+        answers: list[Sequence[Act]] = [filled.content for filled in form.filled]
         handlers = [*form.handlers, *self._everywhere]
         for item in all_items(form.items):
             handlers += item.handlers
             self._add_item(state, item, form)
-            contents += [] if item.node.index in self.inside else own_contents(item)
+            if item.node.index not in self.inside:
+                (answers if isinstance(item, Field) else contents).extend(own_contents(item))
         inner = [one for one in handlers if one.node.index in self._inner]
         self._leads.among(inner)
         state.repeats += [
@@ -172,7 +174,11 @@ class _DialoguePrices(Times):
             if self._leads.round(one)
         ]
         contents += [one.content for one in inner]
-        return self._content(state, contents, form)
+        self._content(state, contents, form)
+        state.onward, brought = set(state.goes), set(state.brings)
+        self._content(state, answers, form)
+        state.brings = brought
+        return state
 
     def _add_item(self, state: PricedState, item: Item, form: Form) -> None:
         """What an item does itself: it asks, or calls another form, or is a unit."""
@@ -201,6 +207,7 @@ class _DialoguePrices(Times):
         """Add what pieces of content do, and where they lead."""
         for content in contents:
             state.raises |= self.own.raised(content)
+            state.brings |= self.own.brought(content)
             if not inside:
                 state.parts += self.steps(content)
             for act in all_acts(content):

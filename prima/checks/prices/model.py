@@ -81,6 +81,11 @@ class PricedState:
     """Why it may take longer than its parts: delayed events, content of arrays."""
     raises: set[str] = field(default_factory=set)
     """The events of the application's own that it may raise before it has ended."""
+    brings: set[str] = field(default_factory=set)
+    """The events from outside that it may bring, though the user says nothing: answers of services,
+    what the robot sees."""
+    onward: set[str] = field(default_factory=set)
+    """The states that follow though the user says nothing."""
 
 
 @dataclass(slots=True)

@@ -5,15 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from itertools import takewhile
 
+from prima.checks.prices.contents import handlers_of
 from prima.checks.prices.model import Price
 from prima.interpreter.acts import Act, Assign, CommandRun, Handler, Script, SendOut, all_acts
 from prima.interpreter.elements import Document, Form
 from prima.interpreter.rounds import EventLeads, raised_in
-from prima.interpreter.selection import prefixes
+from prima.interpreter.selection import prefixes, takes
 from prima.interpreter.sensors import sensors_of
 
 MOVED = ("human", "moving", "position")
 """Sensors whose values change because the robot moves."""
+SEEN = ("human.found", "human.lost")
+"""Events that come because the robot turns to the user or away."""
+ANSWERS = ("reply", "error.service")
+"""Events of services; the name of the service follows."""
 
 
 class OwnEvents:
@@ -40,6 +45,13 @@ class OwnEvents:
         """The watches that may look at variables."""
         self._moved = {name for name, of in sensors if of is None or not of.isdisjoint(MOVED)}
         """The watches that may look at where the robot is."""
+        self._answers = {
+            name
+            for _, one in handlers_of(document)
+            for name in one.events
+            if any(takes(kind, name) or takes(name, kind) for kind in ANSWERS)
+        }
+        """The handled events of services."""
         self._leads = EventLeads(self.raised)
 
     def leads_round(self, handler: Handler, form: Form | None) -> bool:
@@ -58,8 +70,21 @@ class OwnEvents:
         for act in all_acts(tuple(takewhile(lambda one: not isinstance(one, CommandRun), content))):
             if isinstance(act, SendOut) and isinstance(act.delay, int) and act.delay < self._takes:
                 found.add(act.event)
-        if any("locomotion" in part.devices for part in self._steps(content)):
+        if self._moves(content):
             return found | self._moved
         if any(isinstance(one, Assign | Script) for one in all_acts(content)):
             return found | self._anything
         return found
+
+    def brought(self, content: Sequence[Act]) -> set[str]:
+        """The events from outside that content may bring, after others have had a turn."""
+        found = set(SEEN) if self._moves(content) else set[str]()
+        for act in all_acts(content):
+            if isinstance(act, SendOut) and isinstance(act.service, str) and act.service:
+                found.update(f"{name}.{act.service}" for name in ANSWERS)
+            elif isinstance(act, SendOut) and act.service:
+                found |= self._answers
+        return found
+
+    def _moves(self, content: Sequence[Act]) -> bool:
+        return any("locomotion" in part.devices for part in self._steps(content))
