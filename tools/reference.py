@@ -345,6 +345,12 @@ def limits() -> str:
             f"{lines.MAX_LINE:,} characters",
             "it is no transcript",
         ),
+        (
+            "a transcript that is read",
+            f"{lines.MAX_LINES:,} lines, {lines.MAX_CHARACTERS:,} characters,"
+            f" {lines.MAX_VALUES:,} values",
+            "the rest is not read (exit code 2)",
+        ),
     )
     return table(("what", "limit", "beyond it"), rows)
 

@@ -140,7 +140,8 @@ def _others(one: Certificate) -> list[str]:
             one.others.unknown, "not known how long Commands that are no reactions wait"
         )
     longest = f"{one.others.lasts / 1000:.1f} s"
-    return [f"  nothing: others than reactions wait up to {longest} each time {one.ea} is busy"]
+    nothing = "nothing else" if one.holds else "nothing"
+    return [f"  {nothing}: others than reactions wait up to {longest} each time {one.ea} is busy"]
 
 
 def certificate_data(one: Certificate) -> dict[str, Any]:

@@ -9,9 +9,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from typing import Literal
 
+from prima.errors import brief
 from prima.errors.visible import escaped, visible
 from prima.transcript.measures import Summary
 from prima.transcript.row import Row
+from prima.transcript.table import LONGEST_SHOWN
 
 DELAY = 0.5
 """Seconds by which a behaviour must be delayed more than its predecessors to count."""
@@ -199,7 +201,8 @@ def format_difference(difference: Difference, colour: bool = False) -> str:
     for change in difference.changes:
         row = change.after or change.before
         assert row is not None
-        text = f"{MARKS[change.kind]} {row.time:>8.2f} {row.actor} {row.app:<12} {row.what}"
+        what = brief(row.what, LONGEST_SHOWN)
+        text = f"{MARKS[change.kind]} {row.time:>8.2f} {row.actor} {row.app:<12} {what}"
         text = visible(text + (f"  ({told})" if (told := remark(change)) else ""))
         if colour and change.kind != "same":
             text = f"\x1b[{codes[change.kind]}m{text}\x1b[0m"
@@ -216,7 +219,7 @@ def remark(change: Change) -> str:
             return f"moved: was row {before.number}, at {before.time:.2f} s"
         case "changed":
             assert before is not None
-            return f"was: {before.what}"
+            return f"was: {brief(before.what, LONGEST_SHOWN)}"
         case "delayed":
             return f"{'later' if change.delay > 0 else 'earlier'} by {abs(change.delay):.2f} s"
         case "split":

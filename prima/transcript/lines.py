@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 MAX_LINE = 1_000_000
 """Maximum length of a line of a transcript."""
+MAX_LINES, MAX_CHARACTERS, MAX_VALUES = 1_000_000, 400_000_000, 20_000_000
+"""Maximum number of lines, characters and values (about) of a transcript that is read: more than
+any run writes."""
 
 
 _encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
@@ -75,12 +78,14 @@ def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) ->
 
     quick = quick_reader()
     count, latest = 0, 0.0
+    size = _Size()
     for number, text in enumerate(lines, 1):
         if not text.strip():
             continue
         if len(text) > MAX_LINE:
             raise UsageError(f"{name}:{number}: the line is too long for a transcript.")
         try:
+            size.add(text)
             record = _read(text, quick)
             if missing := lacking(record):
                 raise ValueError(f'{record["phase"]} needs "{missing}"')
@@ -154,7 +159,38 @@ class _Backward(ValueError):
     """A record is before the one that stands above it."""
 
 
+class _TooMuch(ValueError):
+    """A transcript holds more than is read."""
+
+
+class _Size:
+    """How much of a transcript has been read."""
+
+    def __init__(self) -> None:
+        self.lines = self.characters = self.values = 0
+
+    def add(self, text: str) -> None:
+        """Count a line before anything is made of it.
+
+        Raises:
+            _TooMuch: it is all together more than is read.
+        """
+        self.lines += 1
+        self.characters += len(text)
+        # An object takes as much memory as a few other values.
+        self.values += text.count(",") + text.count("[") + 4 * text.count("{")
+        for held, most, what in (
+            (self.lines, MAX_LINES, "lines"),
+            (self.characters, MAX_CHARACTERS, "characters"),
+            (self.values, MAX_VALUES, "values"),
+        ):
+            if held > most:
+                raise _TooMuch(f"it has more than {most:,} {what}; no run writes so many")
+
+
 def _why(error: Exception, text: str, invalid: type[Exception]) -> str:
+    if isinstance(error, _TooMuch):
+        return f"{error}."
     if isinstance(error, _Backward):
         return f"{error}; lines have been moved, or are of two transcripts."
     if isinstance(error, invalid):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -9,6 +10,8 @@ from typing import Any
 
 import pytest
 
+from prima.errors import UsageError
+from prima.transcript import lines
 from tests.helpers.bad_input import (
     GIGABYTE,
     Prima,
@@ -163,3 +166,29 @@ def test_a_time_far_away(prima: Prima, tmp_path: Path) -> None:
 
 def test_a_transcript_without_an_end(tmp_path: Path) -> None:
     process(tmp_path, "show", "/dev/zero", memory=GIGABYTE).check(2, "/dev/zero:1")
+
+
+def test_a_transcript_of_very_many_values_is_read_to_a_limit(tmp_path: Path) -> None:
+    write(tmp_path, "t.jsonl", record("note", text="x", data={"a": [{}] * 150_000}) * 100)
+    found = process(tmp_path, "explain", "t.jsonl", "0", memory=2 * GIGABYTE)
+    found.check(2, "t.jsonl:27:", "it has more than 20,000,000 values; no run writes so many.")
+
+
+@pytest.mark.parametrize("limit", ["MAX_LINES", "MAX_CHARACTERS", "MAX_VALUES"])
+def test_a_transcript_without_end_is_read_to_a_limit(
+    monkeypatch: pytest.MonkeyPatch, limit: str
+) -> None:
+    monkeypatch.setattr(lines, limit, 1_000)
+    endless = itertools.repeat(record("note", text="x"))
+    with pytest.raises(UsageError, match=r"t\.jsonl:\d+: it has more than 1,000 "):
+        for _ in lines.read_lines("t.jsonl", endless):
+            pass
+
+
+def test_a_diff_shortens_what_no_application_says(prima: Prima, tmp_path: Path) -> None:
+    told = [
+        record("event", actor="environment", event=one, data={"a": "x" * 900_000}) for one in "ab"
+    ]
+    write(tmp_path, "t.jsonl", record("event", actor="user", event="x") + told[0])
+    write(tmp_path, "u.jsonl", record("event", actor="user", event="x") + told[1])
+    assert len(prima("diff", "t.jsonl", "u.jsonl").out) < 30_000
