@@ -158,12 +158,17 @@ MOST_BESIDE = 300
 """How many files of a folder are looked at for one that was meant."""
 
 
-def nearby(path: Path, *spans: Span) -> Hint:
-    """The file beside that a name which leads nowhere most likely means: its ending says little."""
-    try:
-        beside = sorted(islice(path.parent.iterdir(), MOST_BESIDE))
-    except (OSError, ValueError):
-        return Hint()
-    alike = sorted(beside, key=lambda one: one.suffix == path.suffix)  # the last one counts
+def nearby(path: Path, *spans: Span, listed: dict[Path, list[Path]]) -> Hint:
+    """The file beside that a name which leads nowhere most likely means: its ending says little.
+
+    ``listed`` keeps what is in each folder: a document may name very many files.
+    """
+    folder = path.parent
+    if folder not in listed:
+        try:
+            listed[folder] = sorted(islice(folder.iterdir(), MOST_BESIDE))
+        except (OSError, ValueError):
+            listed[folder] = []
+    alike = sorted(listed[folder], key=lambda one: one.suffix == path.suffix)  # the last one counts
     stems = {one.stem: one.name for one in alike if one.name != path.name}
     return meant(stems.get(near(path.stem, stems), ""), *spans)

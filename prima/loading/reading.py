@@ -66,6 +66,8 @@ class Reading:
     """Whether all documents of VoiceXML applications are looked into, not only the first."""
     answered: tuple[str, ...] = ()
     """How URIs begin that the scenario's services answer."""
+    _listed: dict[Path, list[Path]] = field(default_factory=dict)
+    """What stands in folders in which a document was looked for in vain."""
 
     def read(self, name: str, place: Place, made_of: Callable[[str, bytes], Made]) -> Made | None:
         """A document that the scenario names, or None where it cannot be had."""
@@ -80,7 +82,7 @@ class Reading:
         except UsageError as error:
             wrong = str(error).removeprefix(f"{target}: ")
             at = place._replace(column=place.column + len(name) - len(target.name))
-            hint = nearby(target, Span.of(at, target.name))
+            hint = nearby(target, Span.of(at, target.name), listed=self._listed)
             self.problems.append(UNREADABLE.at(place, hint, name=name, wrong=wrong))
         except DocumentError as error:
             self.problems += [_named_wrongly(name, place, one, content) for one in error.problems]

@@ -8,6 +8,7 @@ from os.path import exists
 from typing import TYPE_CHECKING
 
 from prima.errors import (
+    Hint,
     Problem,
     UsageError,
 )
@@ -16,6 +17,7 @@ from prima.loading.diagnoses import (
     NO_FILE_HERE,
 )
 from prima.loading.files import Folder, path_of
+from prima.markup.limits import LIMITS
 from prima.markup.spans import value_span
 
 if TYPE_CHECKING:
@@ -84,8 +86,10 @@ def voicexml_problems(
             return None
 
     for page in pages:
-        yield from (*page.problems, *page.warnings(), *_not_there(page, folder, answered))
-        yield from (*_grammars_of(page, folder), *check_variables(page, pages.root(page), script))
+        missing: set[int] = set()
+        yield from (*page.problems, *page.warnings(), *_not_there(page, folder, answered, missing))
+        yield from _grammars_of(page, folder, missing)
+        yield from check_variables(page, pages.root(page), script)
         yield from check_caught(page.root, pages.thrown)
         yield from check_listening(page, pages.root(page))
     yield from check_sketched((page, pages.root(page)) for page in pages)
@@ -104,10 +108,16 @@ SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:|//")
 """How a URI begins that is no file's name."""
 
 
-def _not_there(page: Page, folder: Path, answered: tuple[str, ...]) -> Iterator[Problem]:
-    """Warn of files that a VoiceXML document names and that are not in its folder."""
+def _not_there(
+    page: Page, folder: Path, answered: tuple[str, ...], missing: set[int]
+) -> Iterator[Problem]:
+    """Warn of files that a VoiceXML document names and that are not in its folder.
+
+    The indices of the elements that name them are put into ``missing``.
+    """
     from urllib.parse import unquote
 
+    listed: dict[Path, list[Path]] = {}
     for node in page.root.walk():
         for name, tags in NAMING_FILES.items():
             uri = node.get(name).strip()
@@ -121,19 +131,23 @@ def _not_there(page: Page, folder: Path, answered: tuple[str, ...]) -> Iterator[
             if SCHEME.match(whole) or not file or (inside and exists(folder / file)):
                 continue
             spans = value_span(node, name, file.rpartition("/")[2])
-            hint = nearby(folder / file, *spans)
+            missing.add(node.index)
+            few = len(missing) <= LIMITS.problems  # what is not listed needs no hint
+            hint = nearby(folder / file, *spans, listed=listed) if few else Hint()
             yield NO_FILE_HERE.at(node.attribute_place(name), hint, file=file[:80])
 
 
-def _grammars_of(page: Page, folder: Path) -> Iterator[Problem]:
-    """What is wrong with the grammars in files that a VoiceXML document names."""
+def _grammars_of(page: Page, folder: Path, missing: set[int]) -> Iterator[Problem]:
+    """What is wrong with the grammars in files that a VoiceXML document names, if they are there."""
     from prima.voicexml.checks import grammar_problems
 
     site = page.site
     fetch, base = fetcher(folder, site), site.whole(page.base()) if site else page.base()
     for node in page.root.walk():
         uri = node.get("src").strip()
-        if node.tag != "grammar" or not uri or SCHEME.match(page.resolve(uri, node)):
+        if node.tag != "grammar" or not uri or node.index in missing:
+            continue
+        if SCHEME.match(page.resolve(uri, node)):
             continue
         for problem in grammar_problems(node, page.lang, base, fetch):
             if problem.place.file != node.source.file:
