@@ -6,19 +6,23 @@ import asyncio
 import functools
 import logging
 import os
+import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, BinaryIO, TypeVar, cast
 
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcException
 
+from prima.errors import UsageError
 from prima.lsp import answers
 from prima.lsp.paths import path_of
 from prima.lsp.protocol import Server
 
 SOON, LATER = 0.005, 0.25
 """Seconds after a change until its document is checked, and those that depend on it."""
+MOST_BYTES = 100_000_000
+"""Bytes that a message may have; a document has 2 MB at most."""
 TRIGGERS = ["<", "/", '"', "'", "#", ".", " "]
 
 Answer = TypeVar("Answer")
@@ -160,9 +164,27 @@ def make_server() -> Server:
     return server
 
 
+class _Input:
+    """The standard input, of which no message may be longer than memory allows."""
+
+    def readline(self) -> bytes:
+        """The next line of a head."""
+        return sys.stdin.buffer.readline(MOST_BYTES)
+
+    def read(self, size: int) -> bytes:
+        """A message.
+
+        Raises:
+            UsageError: it is too long; where the next one begins is not known.
+        """
+        if size > MOST_BYTES:
+            raise UsageError(f"the editor sends more than {MOST_BYTES:,} bytes at once.")
+        return sys.stdin.buffer.read(size)
+
+
 def serve() -> None:
     """Serve an editor over standard input and output until it disconnects."""
     logging.basicConfig(level=logging.ERROR, format="prima lsp: %(message)s")
     logging.getLogger("pygls").setLevel(logging.CRITICAL)
     with os.fdopen(os.dup(1), "wb") as stdout:  # pygls closes what it writes to
-        make_server().start_io(stdout=stdout)
+        make_server().start_io(cast("BinaryIO", _Input()), stdout)

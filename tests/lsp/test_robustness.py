@@ -194,6 +194,18 @@ def test_what_is_no_message_does_not_end_it() -> None:
     assert b"Traceback" not in done.stderr
 
 
+@pytest.mark.parametrize("size", ["999999999999", "9" * 30])
+def test_a_message_that_is_too_long_is_not_waited_for(size: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "prima", "lsp"],
+        input=f"Content-Length: {size}\r\n\r\n{{}}".encode(),
+        capture_output=True,
+        timeout=SECONDS,
+    )
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert done.stderr == b"prima: the editor sends more than 100,000,000 bytes at once.\n"
+
+
 # Requests that are none -----------------------------------------------------------------------
 WHERE = {"textDocument": {"uri": "file:///none.xml"}, "position": {"line": 0, "character": 0}}
 SPAN = {"start": WHERE["position"], "end": WHERE["position"]}
