@@ -10,7 +10,7 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from errno import ENOSPC
-from itertools import islice
+from itertools import islice, product
 from pathlib import Path
 
 from prima.errors import UsageError, counted
@@ -148,17 +148,16 @@ class Sweep:
         Raises:
             UsageError: the scenario does not allow one.
         """
-        scenarios = len(self.question.scenarios)
-        most = max(MOST_CHECKED // max(len(self.factors) * scenarios, 1), 1)
-        for scenario in range(scenarios):
+        scenarios = range(len(self.question.scenarios))
+        most = max(MOST_CHECKED // max(len(self.factors) * len(scenarios), 1), 1)
+        for scenario, (index, factor) in product(scenarios, enumerate(self.factors)):
             written = tuple(one.written for one in self.stage.targets(scenario))
-            for index, factor in enumerate(self.factors):
-                for level in factor.levels[:most]:
-                    values = (*written[:index], level, *written[index + 1 :])
-                    found = self.stage.problems(Variant(0, scenario, "", 0, values))
-                    if found:
-                        message = " ".join(filter(None, (found[0].message, found[0].remedy)))
-                        raise UsageError(f'{factor.path}: with "{level}": {message}')
+            for level in factor.levels[:most]:
+                values = (*written[:index], level, *written[index + 1 :])
+                found = self.stage.problems(Variant(0, scenario, "", 0, values))
+                if found:
+                    message = " ".join(filter(None, (found[0].message, found[0].remedy)))
+                    raise UsageError(f'{factor.path}: with "{level}": {message}')
 
     def row(self, variant: Variant, made: Made | Died, folder: str) -> list[Json]:
         """A row of the table."""

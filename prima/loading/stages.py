@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
-from prima.errors import (
-    DocumentError,
-    UsageError,
-)
+from prima.errors import DocumentError, Problem, UsageError
 from prima.loading.applications import read_application
 from prima.loading.files import path_of, read_file
 from prima.loading.folders import documents_folder
@@ -50,17 +47,21 @@ def stage(
     try:
         loaded = load_whole(path_of("stage.xml"), _scenario(world, robot, entrances, inside))
     except DocumentError as error:
-        stage_own = [one for one in error.problems if one.place.file == "stage.xml"]
-        if any(one.code == "duplicate-id" for one in stage_own):
+        own = (one.code for one in error.problems if one.place.file == "stage.xml")
+        if "duplicate-id" in own:
             _refuse_same_id(given)
         raise
     problems = [one for one in loaded.problems if one.code != "other-kind"]
+    loaded.problems = sorted([*problems, *_other_kinds(given, loaded)])
+    return without_ignored(loaded)
+
+
+def _other_kinds(given: list[tuple[str, str]], loaded: Loaded) -> Iterator[Problem]:
+    """Documents of another kind than their options say."""
     for (kind, _), document in zip(given, loaded.cast.documents, strict=False):
         own, place = document.node.get("kind"), document.node.attribute_place("kind")
         remedy = f'Name it with --{own}, or write kind="{kind}".'
-        problems += other_kind(document, "The document", f"--{kind} names it", place, remedy)
-    loaded.problems = sorted(problems)
-    return without_ignored(loaded)
+        yield from other_kind(document, "The document", f"--{kind} names it", place, remedy)
 
 
 def _scenario(world: str, robot: str, entrances: bool, inside: str) -> bytes:
