@@ -193,29 +193,31 @@ def _endpoint(reader: Reader, node: Node, grammars: Grammars) -> Endpoint:
     chats = node.tag == "language-model"
     _check_url(reader, node)
     method = "post" if chats else reader.get(node, "method") or "post"
-    repeats = chats or method in SAFE or bool(reader.get(node, "idempotent"))
-    retries = reader.get(node, "retries") or 0
-    if retries and not repeats:
-        message = "A post is not asked again: it might be carried out twice."
-        remedy = 'Remove retries, or add idempotent="true" if that does no harm.'
-        reader.problem(node, "exclusive", message, "retries", remedy)
     made = Endpoint(
         node.get("name"),
         node.get("url"),
         method,
         reader.get(node, "deadline") or 1,
-        retries,
+        reader.get(node, "retries") or 0,
         reader.get(node, "most") or 1,
-        repeats,
+        chats or method in SAFE or bool(reader.get(node, "idempotent")),
         node.place,
         slots=tuple(_slot(reader, child) for child in node.all("slot")),
         model=node.get("model"),
         prompts=tuple((one.get("role", "user"), one.text) for one in node.all("prompt")),
     )
+    _check_retries(reader, node, made)
     _read_headers(reader, node, made)
     if chats:
         _read_fallback(reader, node, made, grammars)
     return made
+
+
+def _check_retries(reader: Reader, node: Node, made: Endpoint) -> None:
+    if made.retries and not made.repeats:
+        message = "A post is not asked again: it might be carried out twice."
+        remedy = 'Remove retries, or add idempotent="true" if that does no harm.'
+        reader.problem(node, "exclusive", message, "retries", remedy)
 
 
 def _check_url(reader: Reader, node: Node) -> None:

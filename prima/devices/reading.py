@@ -28,12 +28,7 @@ class Reader:
 
     def get(self, node: Node, name: str) -> Any:
         """An attribute's value, its default, or None; of a distribution, its quantiles."""
-        element = self.vocabulary.elements.get(node.key)
-        item = (
-            next((item for item in element.attributes if item.name == name), None)
-            if element
-            else None
-        )
+        item, _ = self.vocabulary.attributes.get(node.key, {}).get(name, (None, False))
         if item is None:
             return None  # an element that the language lacks; told already
         text = node.attributes.get(name, item.default)

@@ -274,11 +274,16 @@ def _note_asked(asked: dict[str, Order], record: Record) -> None:
         case "transferred":
             asked.pop(f"{app}!{record['serial']}", None)
         case "event" if record.get("inbound"):
-            for name, order in asked.items():
-                to = order.data["to"]
-                if order.app == app and record["event"] in (f"reply.{to}", f"error.service.{to}"):
-                    del asked[name]
-                    return
+            asked.pop(_answered(asked, app, record["event"]), None)
+
+
+def _answered(asked: dict[str, Order], app: str, event: str) -> str:
+    """The name of what an application has asked that an event answers; empty for nothing."""
+    for name, order in asked.items():
+        to = order.data["to"]
+        if order.app == app and event in (f"reply.{to}", f"error.service.{to}"):
+            return name
+    return ""
 
 
 def going_on(state: KnownAtCut) -> Iterator[Inbound]:

@@ -335,10 +335,10 @@ class Preflight:
         queue = self._reports[key]
         try:
             async with asyncio.timeout((limit or UNBOUNDED_MS) / 1000):
-                while True:
+                report = await self._next(queue)
+                while last and not isinstance(report, ENDS):
                     report = await self._next(queue)
-                    if not last or isinstance(report, ENDS):
-                        return report
+                return report
         except TimeoutError:
             return None
 

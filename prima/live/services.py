@@ -228,11 +228,7 @@ class LiveServices:
         asking = _ServiceRequests(endpoint, self._secrets[endpoint.name], self._hosts, check)
         try:
             async with asyncio.timeout(endpoint.deadline / 1000):
-                for count in range(endpoint.retries if again else 0):
-                    with suppress(_Busy):
-                        return await in_thread(lambda: asking.run(make()))
-                    await asyncio.sleep(FIRST_S * 2**count)
-                return await in_thread(lambda: asking.run(make()))
+                return await asking.repeat(make, endpoint.retries if again else 0)
         except TimeoutError:
             raise Unfit(f"no answer within {endpoint.deadline / 1000:g} s") from None
         finally:
@@ -253,6 +249,18 @@ class _ServiceRequests:
     check: Callable[[HTTPResponse], None]
     held: list[socket.socket] = field(default_factory=list)
     closed: bool = False
+
+    async def repeat(self, make: Callable[[], Request], retries: int) -> bytes:
+        """Ask, and again where it may help, later each time.
+
+        Raises:
+            Unfit: there is no answer.
+        """
+        for count in range(retries):
+            with suppress(_Busy):
+                return await in_thread(lambda: self.run(make()))
+            await asyncio.sleep(FIRST_S * 2**count)
+        return await in_thread(lambda: self.run(make()))
 
     def run(self, request: Request) -> bytes:
         """Ask.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import repeat
 
 from prima.errors import DocumentError, Problem, UsageError
 from prima.loading.applications import read_application
@@ -37,8 +38,9 @@ def stage(
         DocumentError: with the problems of all files, if any is an error.
         UsageError: a file cannot be read, or two of the applications have one id.
     """
-    given = [("fa", path) for path in fas] + [("ea", path) for path in eas]
-    for path in (*(path for _, path in given), *filter(None, (robot, world))):
+    fas, eas = list(fas), list(eas)
+    given = [*zip(repeat("fa"), fas), *zip(repeat("ea"), eas)]
+    for path in (*fas, *eas, *filter(None, (robot, world))):
         read_file(path)  # a missing file is a wrong option, not a wrong document
     demo = documents_folder()
     world = world or str(demo / "worlds" / "room.xml")

@@ -76,17 +76,22 @@ def analyse(data: Data) -> Analysis:
         panels = [_panel(measure, one, levels[one.name]) for one in data.varied]
         made.distributions.append(Distribution(measure, whole, edges, counts, panels))
         for factor in data.varied:
-            for found in _tests(measure, factor, levels[factor.name]):
-                if isinstance(found, Untested):
-                    made.untested.append((measure, factor, found))
-                else:
-                    made.tests.append((measure, factor, found))
+            _test(made, measure, factor, levels[factor.name])
     results = corrected([result for _, _, result in made.tests])
     made.tests = [
         (measure, factor, result)
         for (measure, factor, _), result in zip(made.tests, results, strict=True)
     ]
     return made
+
+
+def _test(made: Analysis, measure: MeasureColumn, factor: FactorColumn, levels: Levels) -> None:
+    """Test a measure for a factor; what cannot be tested is noted as well."""
+    for found in _tests(measure, factor, levels):
+        if isinstance(found, Untested):
+            made.untested.append((measure, factor, found))
+        else:
+            made.tests.append((measure, factor, found))
 
 
 def bins(values: Values) -> tuple[list[float], list[int]]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Iterator
+from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
@@ -236,23 +236,25 @@ def _columns(sheet: Sheet) -> list[Column]:
     known = {one.name: one for one in (*HEAD, *OUTCOMES, *MEASURES)}
     known |= {name: _measure(name, meaning) for name, meaning in MEANINGS.items()}
     data = _beside(sheet.path, DICTIONARY)
-    told = {one.name: one for one in _told(data)} if data else {}
+    told = {one.name: one for one in _told(data or {})}
     if not told:
         sheet.notes.append(
             "There is no data dictionary beside the table: columns are known by their names, and"
             " those that no measure has are taken for factors."
         )
         return [known.get(name) or _guessed(name, sheet.cells[name]) for name in sheet.cells]
-    described = told | {name: one for name, one in known.items() if name not in told}
-    if lost := [name for name in told if name not in sheet.cells]:
-        sheet.notes.append(f"The table lacks columns of its dictionary: {_names(lost)}.")
-    if new := [name for name in sheet.cells if name not in described]:
-        sheet.notes.append(f"Columns that no dictionary describes are left out: {_names(new)}.")
+    described = told | known | told
+    _note_missing(sheet, "The table lacks columns of its dictionary", told, sheet.cells)
+    _note_missing(
+        sheet, "Columns that no dictionary describes are left out", sheet.cells, described
+    )
     return [one for name, one in described.items() if name in sheet.cells]
 
 
-def _names(columns: list[str]) -> str:
-    return ", ".join(one[:100] for one in columns[:20])
+def _note_missing(sheet: Sheet, what: str, names: Iterable[str], there: Container[str]) -> None:
+    """Note the names of columns that are not there, if any."""
+    if missing := [name for name in names if name not in there]:
+        sheet.notes.append(f"{what}: {', '.join(one[:100] for one in missing[:20])}.")
 
 
 def _told(data: dict[str, Any]) -> Iterator[Column]:

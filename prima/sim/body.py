@@ -8,18 +8,15 @@ from dataclasses import dataclass, field
 from prima.devices.goals import SAY, Again, Begin, Broke, Cancel, Done, Report, Stand, Stopped
 from prima.devices.goals import Call as Told
 from prima.devices.profile import BRAKING_MS, POINTING_MS, Profile
-from prima.messages import Json, Occurred
+from prima.messages import Occurred
 from prima.sim.locomotion import Locomotion, LocomotionMemory
+from prima.sim.measuring import STANDING, OwnSensors
 from prima.sim.routes import Routes
-from prima.sim.world import World, distance
+from prima.sim.world import World
 
 FAILING_MS = 300
 """How long a broken device tries before it says that it fails."""
 FAILS = "the device fails"
-ITS_OWN = frozenset({"human", "position", "moving"})
-"""What it measures itself, by the first part of the sensors' names."""
-STANDING = (0.0, 0.0)
-"""What the wheels are told when the robot stands."""
 
 
 @dataclass(slots=True, eq=False)
@@ -65,15 +62,12 @@ class Body:
         self.profile = profile
         self.world = world
         self.locomotion = Locomotion(profile, world, routes)
+        self.sensors = OwnSensors(world)
         self.efforts: dict[str, Effort] = {}
         """By the keys of their goals."""
         self.broken: dict[str, bool] = {}
         """Devices that fail, and whether they hang instead."""
-        self.told_of: frozenset[str] | None = None
-        """Sensors that somebody looks at, by the first part of their names; None for all of them."""
         self._now = 0
-        self._around: tuple[object, ...] = ()
-        """Where robot and person were when it last measured, and how the robot moved."""
 
     # Calls ------------------------------------------------------------------------
 
@@ -185,12 +179,7 @@ class Body:
             case "point-by-hand":
                 effort.ends = now + POINTING_MS
             case "gesture":
-                lasts = self.profile.gestures.get(str(args["name"]))
-                if lasts is None:
-                    why = f'the robot knows no gesture "{args["name"]}"'
-                    self._refuse(now, effort, "arm", why)
-                else:
-                    effort.ends = now + (lasts or 1)
+                self._gesture(now, effort, str(args["name"]))
             case other:
                 if other in self.profile.motions:
                     effort.control = lambda: self._dance(effort)
@@ -208,6 +197,13 @@ class Body:
             return
         effort.plan.turn_left = left
         effort.control = lambda: self.locomotion.turn(effort.plan)
+
+    def _gesture(self, now: int, effort: Effort, name: str) -> None:
+        lasts = self.profile.gestures.get(name)
+        if lasts is None:
+            self._refuse(now, effort, "arm", f'the robot knows no gesture "{name}"')
+        else:
+            effort.ends = now + (lasts or 1)
 
     @staticmethod
     def _refuse(now: int, effort: Effort, device: str, why: str) -> None:
@@ -315,35 +311,6 @@ class Body:
             Occurred(corner.event, "environment", {"corner": corner.id})
             for corner in self.world.corners()
         ]
-
-    # Sensors ------------------------------------------------------------------------
-
-    def measure(self) -> dict[str, Json]:
-        """What its own sensors say, if anything around it has changed.
-
-        The first time that is all of them; later only what somebody looks at.
-        """
-        looked_at = ITS_OWN if self.told_of is None or not self._around else self.told_of
-        world = self.world
-        around = (world.position, world.heading, world.pan, world.person, world.drive)
-        if around == self._around or looked_at.isdisjoint(ITS_OWN):
-            return {}
-        self._around = around
-        now: dict[str, Json] = {}
-        if "human" in looked_at:
-            person = world.person
-            now["human.visible"] = world.sees_person()
-            now["human.distance"] = (
-                None if person is None else round(distance(world.position, person), 1)
-            )
-        if "position" in looked_at:
-            pose = world.pose()
-            now["position.x"] = round(pose["x"], 1)
-            now["position.y"] = round(pose["y"], 1)
-            now["position.heading"] = round(pose["heading"]) % 360
-        if "moving" in looked_at:
-            now["moving"] = world.drive != STANDING
-        return now
 
 
 def _behavior(begin: Begin) -> str:

@@ -49,7 +49,7 @@ class SimulatedDevices:
         """Applications of PRIMA's own language."""
         self._watched = watches(cast.documents)
         if self._watched:
-            self.robot.body.told_of = sensors_watched(cast.documents)
+            self.robot.body.sensors.told_of = sensors_watched(cast.documents)
         self._loads = sorted(
             (start.ms(scenario.seed), index, doc.id)
             for index, ((_, start, _), doc) in enumerate(

@@ -80,20 +80,16 @@ def _expectation(
 ) -> Expectation:
     given = [name for name in SUBJECTS if name in node.attributes]
     triggers = [name for name in TRIGGERS if name in node.attributes]
-    _check_subject(reader, node, given)
-    if len(triggers) > 1:
-        message = f'<{node.tag}> has both "{triggers[0]}" and "{triggers[1]}".'
-        reader.problem(node, "exclusive", message, triggers[1], "Keep one of them.")
+    if node.key in reader.vocabulary.elements:  # else of another namespace; told already
+        _check_subject(reader, node, given)
+    _check_when(reader, node, triggers)
     if ordered and "state" in given:
         message = "A state lasts: it cannot stand in <in-order>."
         remedy = "Write it outside, and say when by at, said, asked, doing, done or on."
         reader.problem(node, "exclusive", message, "state", remedy)
-    for name in ("after", "before"):
-        _check_other(reader, node, name, ids)
-    trigger = triggers[0] if triggers else ""
-    if "count" in node.attributes and trigger in ("", "at"):
-        message = "count says which time of said, asked, doing, done or on is meant."
-        reader.problem(node, "exclusive", message, "count", "Name one of these, or remove it.")
+    _check_other(reader, node, "after", ids)
+    _check_other(reader, node, "before", ids)
+    trigger = next(iter(triggers), "")
     return Expectation(
         words={name: node.get(name) for name in given},
         never=node.tag == "never",
@@ -115,15 +111,12 @@ def _expectation(
 
 def _check_subject(reader: Reader, node: Node, given: list[str]) -> None:
     """One thing is expected, with what belongs to it."""
-    if node.key not in reader.vocabulary.elements:
-        return  # it is of another namespace; told already
-    known = {item.name for item in reader.vocabulary.elements[node.key].attributes}
-    if not given and not set(node.attributes) <= known:
-        return  # a word is misspelt; told already
     if not given:
-        message = f"<{node.tag}> does not say what."
-        remedy = f"It needs one of {', '.join(SUBJECTS[:-1])} or {SUBJECTS[-1]}."
-        reader.problem(node, "missing-attribute", message, "", remedy)
+        known = {item.name for item in reader.vocabulary.elements[node.key].attributes}
+        if set(node.attributes) <= known:  # else a word is misspelt; told already
+            message = f"<{node.tag}> does not say what."
+            remedy = f"It needs one of {', '.join(SUBJECTS[:-1])} or {SUBJECTS[-1]}."
+            reader.problem(node, "missing-attribute", message, "", remedy)
         return
     for name in given:
         if not node.get(name).strip():
@@ -133,6 +126,11 @@ def _check_subject(reader: Reader, node: Node, given: list[str]) -> None:
         message = f'<{node.tag}> has both "{given[0]}" and "{given[1]}".'
         remedy = "Write an element for each; an <in-order> holds those that follow one another."
         reader.problem(node, "exclusive", message, given[1], remedy)
+    _check_closer(reader, node, given)
+
+
+def _check_closer(reader: Reader, node: Node, given: list[str]) -> None:
+    """What tells a subject closer belongs to it."""
     first = given[0]
     if "reason" in node.attributes and first != "ends":
         reader.problem(node, "exclusive", "reason says why an application ends.", "reason",
@@ -147,6 +145,16 @@ def _check_subject(reader: Reader, node: Node, given: list[str]) -> None:
         if name in node.attributes and first == "state":
             message = "A state lasts: it is not counted, and nothing comes before or after it."
             reader.problem(node, "exclusive", message, name, f"Remove {name}.")
+
+
+def _check_when(reader: Reader, node: Node, triggers: list[str]) -> None:
+    """One trigger at most, and one that can be counted if it is."""
+    if len(triggers) > 1:
+        message = f'<{node.tag}> has both "{triggers[0]}" and "{triggers[1]}".'
+        reader.problem(node, "exclusive", message, triggers[1], "Keep one of them.")
+    if "count" in node.attributes and (not triggers or triggers[0] == "at"):
+        message = "count says which time of said, asked, doing, done or on is meant."
+        reader.problem(node, "exclusive", message, "count", "Name one of these, or remove it.")
 
 
 def _check_other(reader: Reader, node: Node, name: str, ids: set[str]) -> None:

@@ -116,24 +116,13 @@ def read_services(draws: Draws) -> list[Service]:
 def read_when(draws: Draws, node: Node) -> When:
     """A trigger, with what happens then."""
     reader = draws.reader
-    given = [name for name in TRIGGERS if name in node.attributes]
-    if len(given) != 1:
-        message = "<when> needs exactly one of at, said, asked, doing, done, on."
-        if given:
-            reader.problem(node, "exclusive", message, given[1], "Write a <when> for each.")
-        else:
-            known = reader.vocabulary.attributes["when"].keys()
-            if node.attributes.keys() <= known:  # else told already
-                remedy = 'Write when it happens, such as at="3s" or said="Hello".'
-                reader.problem(node, "missing-attribute", message, "", remedy)
-            given = ["at"]
+    trigger = _trigger(reader, node)
     if not node.nodes and not node.text:
         message = "<when> holds nothing."
         remedy = (
             'Put into it what happens then, such as <say>Hello.</say> or <touch sensor="head"/>.'
         )
         reader.problem(node, "empty", message, "", remedy)
-    trigger = given[0]
     return When(
         trigger,
         draws.amount(node, "at") if trigger == "at" else reader.get(node, trigger),
@@ -145,6 +134,18 @@ def read_when(draws: Draws, node: Node) -> When:
         node.get("person"),
         node,
     )
+
+
+def _trigger(reader: Reader, node: Node) -> str:
+    """The attribute that says when; ``at`` if none does."""
+    given = [name for name in TRIGGERS if name in node.attributes]
+    message = "<when> needs exactly one of at, said, asked, doing, done, on."
+    if len(given) > 1:
+        reader.problem(node, "exclusive", message, given[1], "Write a <when> for each.")
+    elif not given and node.attributes.keys() <= reader.vocabulary.attributes["when"].keys():
+        remedy = 'Write when it happens, such as at="3s" or said="Hello".'
+        reader.problem(node, "missing-attribute", message, "", remedy)
+    return given[0] if given else "at"
 
 
 def _doing(draws: Draws, node: Node) -> Doing:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import chain
+from itertools import chain, product
 
 from prima.errors import Hint, Place, Problem, Span, meant, one_of, suggestion
 from prima.interpreter.elements import Document
@@ -49,24 +49,16 @@ WORDS = (
 
 def check_hearing(cast: Cast) -> list[Problem]:
     """Warnings about a scenario together with its applications, world and robot."""
-    world, robot = cast.world, cast.robot
-    names = Surroundings(
-        *(frozenset(world.places), frozenset(world.things), frozenset(robot.gestures)),
-        *(robot.touch, frozenset(robot.voices), frozenset({*world.places, *world.things})),
-    )
-    documents = [document for document in cast.documents if isinstance(document, Document)]
-    problems = [one for document in documents for one in check_surroundings(document, names)]
-    for document in cast.documents:
-        if not isinstance(document, Document):
-            problems += _in_voicexml(document.page.root, names)
+    world, documents = cast.world, cast.documents
+    pages = [one.page.root for one in documents if not isinstance(one, Document)]
+    events = [KnownEvents(one) for one in documents if isinstance(one, Document)]
     nodes = list(cast.scenario.node.walk())
-    problems += [*_late(nodes, cast.scenario.until), *_outside(nodes, cast.world)]
-    problems += _nobody(nodes)
-    problems += world.plan.narrow(room_beside(robot)) if world.plan is not None else ()
-    events = [KnownEvents(document) for document in documents]
-    corners = [*_corners(nodes, events, cast)]
+    problems = [*_not_there(cast), *_late(nodes, cast.scenario.until)]
+    problems += [*_outside(nodes, world), *_nobody(nodes)]
+    problems += world.plan.narrow(room_beside(cast.robot)) if world.plan is not None else ()
+    corners = [*_corners(nodes, events, pages, world)]
     problems += [*corners, *_words(nodes, cast)]
-    if len(documents) < len(cast.documents):
+    if pages:
         return problems  # what a VoiceXML application hears is known only when it runs
     problems += _services(events, cast)
     told = {one.place for one in corners}
@@ -74,23 +66,42 @@ def check_hearing(cast: Cast) -> list[Problem]:
     return [*problems, *_unheard(nodes, events), *triggers]
 
 
-def _corners(nodes: list[Node], events: list[KnownEvents], cast: Cast) -> Iterator[Problem]:
+def _not_there(cast: Cast) -> Iterator[Problem]:
+    """What documents name and neither the world nor the robot has."""
+    world, robot = cast.world, cast.robot
+    names = Surroundings(
+        *(frozenset(world.places), frozenset(world.things), frozenset(robot.gestures)),
+        *(robot.touch, frozenset(robot.voices), frozenset({*world.places, *world.things})),
+    )
+    for document in cast.documents:
+        if isinstance(document, Document):
+            yield from check_surroundings(document, names)
+        else:
+            yield from _in_voicexml(document.page.root, names)
+
+
+def _corners(
+    nodes: list[Node], events: list[KnownEvents], pages: list[Node], world: Map
+) -> Iterator[Problem]:
     """A corner's event that is waited for and that no corner of the world raises: likely a slip."""
-    corners = {corner.event for corner in cast.world.corners} - {"corner"}
-    pages = [one.page.root for one in cast.documents if not isinstance(one, Document)]
+    corners = {corner.event for corner in world.corners} - {"corner"}
     known = {*corners, *_raised(nodes, events)}
     known.update(*(thrown_in(root) for root in pages))
     begins = {name for one in known for name in beginnings(one)}
     for place, name in _waiting(nodes, events, pages):
-        if name in begins:
-            continue
-        other = "" if name.startswith(OPEN) else near(name, corners)
-        if other or name.startswith("corner."):
-            message = f'No corner of the world raises the event "{name}".'
-            span = Span.of(place, name)
-            hint = meant(other, span) or nearest(name, corners, span)
-            remedy = hint or "Write corner, or name the corner's event in the world."
-            yield Problem(place, "warning", "unknown-event", message, remedy)
+        if name not in begins:
+            yield from _no_corner(place, name, corners)
+
+
+def _no_corner(place: Place, name: str, corners: set[str]) -> Iterator[Problem]:
+    """An event that nothing raises, if it was meant to be a corner's."""
+    other = "" if name.startswith(OPEN) else near(name, corners)
+    if other or name.startswith("corner."):
+        message = f'No corner of the world raises the event "{name}".'
+        span = Span.of(place, name)
+        hint = meant(other, span) or nearest(name, corners, span)
+        remedy = hint or "Write corner, or name the corner's event in the world."
+        yield Problem(place, "warning", "unknown-event", message, remedy)
 
 
 def _raised(nodes: list[Node], events: list[KnownEvents]) -> set[str]:
@@ -122,11 +133,11 @@ def _awaited(nodes: list[Node]) -> Iterator[tuple[Node, str, str]]:
 
 def _in_voicexml(root: Node, names: Surroundings) -> Iterator[Problem]:
     """What a VoiceXML document names and is not there: in Commands of PRIMA, and touch sensors."""
-    for node in root.walk():
-        if node.namespace == PRIMA_NAMESPACE and node.tag in TABLE_4_2:
-            for name, value in node.attributes.items():
-                if name in PLACED and name in TABLE_4_2[node.tag].arguments:
-                    yield from check_name(node, name, value, names)
+    commands = (one for one in root.walk() if one.namespace == PRIMA_NAMESPACE)
+    for node in [one for one in commands if one.tag in TABLE_4_2]:
+        placed = PLACED.keys() & TABLE_4_2[node.tag].arguments.keys()
+        for name in [one for one in node.attributes if one in placed]:
+            yield from check_name(node, name, node.get(name), names)
     thrown = {*thrown_in(root)}
     for node, event in caught_in(root):
         if event not in thrown:
@@ -153,14 +164,15 @@ def _sayings(cast: Cast) -> tuple[Sayings, Sayings] | None:
 
 def _words(nodes: list[Node], cast: Cast) -> Iterator[Problem]:
     """Triggers that wait for words which nobody says; what is never to be said, if it is a slip."""
-    waiting = [one for one in nodes if any(one.get(name) for name in ("asked", "said", "says"))]
-    answers = [one for one in nodes if one.tag == "answer"]
-    found = _sayings(cast) if waiting or answers else None
-    if found is None:
-        return
-    for tag, name, asked in WORDS:
-        for node in [one for one in nodes if one.tag == tag][:MOST]:
-            yield from _never_said(node, name, asked, *found)
+    named = [
+        (node, name, asked)
+        for tag, name, asked in WORDS
+        for node in [one for one in nodes if one.tag == tag][:MOST]
+        if node.get(name)
+    ]
+    if named and (sayings := _sayings(cast)) is not None:
+        for node, name, asked in named:
+            yield from _never_said(node, name, asked, *sayings)
 
 
 def _never_said(
@@ -226,21 +238,23 @@ def _late(nodes: list[Node], until: int) -> Iterator[Problem]:
 
 def _outside(nodes: list[Node], world: Map) -> Iterator[Problem]:
     """Users who begin outside (m) the walls of a world whose places are all inside."""
+    persons = [one for one in nodes if one.tag == "person" and {"x", "y"} <= one.attributes.keys()]
+    for node, (name, least, most) in product(persons, _inside(world)):
+        if not least <= float(read_value("number", node.get(name))) <= most:
+            message = f'{name} "{node.get(name)}" is outside the walls of the world.'
+            remedy = f"They stand from {least:g} to {most:g}."
+            place = node.attribute_place(name)
+            yield Problem(place, "warning", "out-of-range", message, remedy)
+
+
+def _inside(world: Map) -> list[tuple[str, float, float]]:
+    """Where (m) a world's walls begin and end in x and y; nothing if a place is not among them."""
     corners = [end for wall in world.walls for end in wall]
     if not corners:
-        return
+        return []
     (left, right), (low, high) = ((min(side), max(side)) for side in zip(*corners, strict=True))
-    if not all(left <= x <= right and low <= y <= high for x, y in world.places.values()):
-        return  # the walls do not stand around the world
-    for node in nodes:
-        if node.tag != "person" or not {"x", "y"} <= node.attributes.keys():
-            continue
-        for name, least, most in (("x", left, right), ("y", low, high)):
-            if not least <= float(read_value("number", node.get(name))) <= most:
-                message = f'{name} "{node.get(name)}" is outside the walls of the world.'
-                remedy = f"They stand from {least:g} to {most:g}."
-                place = node.attribute_place(name)
-                yield Problem(place, "warning", "out-of-range", message, remedy)
+    around = all(left <= x <= right and low <= y <= high for x, y in world.places.values())
+    return [("x", left, right), ("y", low, high)] if around else []
 
 
 def _nobody(nodes: list[Node]) -> Iterator[Problem]:

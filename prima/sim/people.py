@@ -1,4 +1,4 @@
-"""The scripted users, and the surroundings' events, of a scenario."""
+"""The scripted users of a scenario."""
 
 from __future__ import annotations
 
@@ -7,21 +7,11 @@ from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
 
 from prima.devices import voice
-from prima.devices.senses import sensor_value
 from prima.grammar.text import fold
 from prima.interpreter.selection import takes
-from prima.messages import (
-    ApplicationLoaded,
-    ApplicationUnloaded,
-    Emergency,
-    Heard,
-    Inbound,
-    Json,
-    Narrated,
-    Occurred,
-    Record,
-)
+from prima.messages import Heard, Inbound, Json, Narrated, Occurred, Record
 from prima.sim.happenings import Doing, When
+from prima.sim.incidents import happen
 from prima.sim.robot import Robot
 from prima.sim.scenario import Scenario
 from prima.sim.world import World, distance
@@ -236,26 +226,14 @@ class People:
                 sensor = values["sensor"]
                 data = {"sensor": sensor, **self._by(who)}
                 return [Occurred(f"touch.{sensor}", "user", data)]
-            case "walk":
-                return self._walk(doing, script, now)
             case "wait":
                 script.time = now + values["for"].ms(self._seed, script.number)
             case "look":
                 return self._does(who, f"looks at the {values['at']}")
-            case "follow":
-                self._following[who] = values["distance"] or 1.2
-                return self._does(who, "goes along with the robot")
-            case "stay":
-                self._following.pop(who, None)
-                self.world.walk(who, None, self._speeds[who])
-            case "leave":
-                self._following.pop(who, None)
-                self.world.leave(who)
-                return self._does(who, "goes away")
-            case "note":
-                return [Narrated("environment", doing.text)]
+            case "walk" | "follow" | "stay" | "leave":
+                return self._go(doing, script, now)
             case _:
-                return self._happen(doing, now)
+                return happen(doing, self.robot, self.sensors, now)
         return []
 
     def _speak(self, text: str, script: TriggeredScript, now: int) -> None:
@@ -297,39 +275,25 @@ class People:
             heapify(self._scripts)
         return Occurred("connection.disconnect.hangup", "user", data)
 
-    def _happen(self, doing: Doing, now: int) -> list[Inbound]:
-        """What is none of the user's doing."""
-        values = doing.values
+    def _go(self, doing: Doing, script: TriggeredScript, now: int) -> list[Inbound]:
+        """Walk somewhere, go along with the robot, stop, or go away."""
+        who = script.who
+        self._following.pop(who, None)
         match doing.name:
-            case "message":
-                data = {"from": values["from"] or "", "text": doing.text}
-                return [Occurred("message", "environment", data, values["to"])]
-            case "event":
-                return [Occurred(values["name"], "environment", values["data"])]
-            case "sensor":
-                self.sensors[values["name"]] = sensor_value(values["value"])
-            case "fail":
-                device, hangs = values["device"], bool(values["hangs"])
-                how = "hangs" if hangs else "fails"
-                note = Narrated("environment", f"the {device} {how}")
-                return [note, *self.robot.broke(now, device, hangs)]
-            case "repair":
-                self.robot.body.broken.pop(values["device"], None)
-                return [Narrated("environment", f"the {values['device']} works again")]
-            case "emergency":
-                return [Emergency(True)]
-            case "release":
-                return [Emergency(False, bool(values["resume"]))]
-            case "unload":
-                return [ApplicationUnloaded(values["application"])]
-            case "load":
-                return [ApplicationLoaded(values["application"])]
+            case "walk":
+                return self._walk(doing, script, now)
+            case "follow":
+                self._following[who] = doing.values["distance"] or 1.2
+                return self._does(who, "goes along with the robot")
+            case "leave":
+                self.world.leave(who)
+                return self._does(who, "goes away")
+        self.world.walk(who, None, self._speeds[who])
         return []
 
     def _walk(self, doing: Doing, script: TriggeredScript, now: int) -> list[Inbound]:
         values, who, speed = doing.values, script.who, self._speeds[script.who]
         goal = self.world.map.point(values["to"]) if values["to"] else (values["x"], values["y"])
-        self._following.pop(who, None)
         at = self.world.people[who].at
         if at is None or goal is None:
             return []

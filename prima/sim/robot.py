@@ -60,7 +60,7 @@ class Robot:
 
     def sense(self, values: Data) -> list[Inbound]:
         """What the sensors say, if it has changed: the body's, and others of the surroundings."""
-        return self.conductor.sensors.take({**self.body.measure(), **values})
+        return self.conductor.sensors.take({**self.body.sensors.measure(), **values})
 
     # What happens to it ---------------------------------------------------------------
 

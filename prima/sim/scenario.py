@@ -126,13 +126,7 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
     root = reader.root
     draws = Draws(reader)
     robot, connection = _only(reader, "robot"), _only(reader, "connection")
-    applications = [
-        (node.get("src"), draws.amount(node, "start"), node) for node in root.all("application")
-    ]
-    if not applications and root.get("entrances") != "open":
-        message = "The scenario runs no <application>."
-        remedy = 'Name one, or write entrances="open" to take up what the world offers.'
-        reader.problem(root, "missing-element", message, "", remedy)
+    applications = _applications(draws)
     persons = _persons(draws)
     _check_ids(reader)
     until, patience = reader.get(root, "until"), reader.get(root, "patience")
@@ -162,6 +156,17 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
         node=root,
     )
     return scenario, reader.problems
+
+
+def _applications(draws: Draws) -> list[tuple[str, Amount, Node]]:
+    """The applications: path, when they start, element."""
+    root = draws.reader.root
+    named = root.all("application")
+    if not named and root.get("entrances") != "open":
+        message = "The scenario runs no <application>."
+        remedy = 'Name one, or write entrances="open" to take up what the world offers.'
+        draws.reader.problem(root, "missing-element", message, "", remedy)
+    return [(node.get("src"), draws.amount(node, "start"), node) for node in named]
 
 
 def _check_ids(reader: Reader) -> None:

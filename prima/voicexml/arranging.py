@@ -177,13 +177,7 @@ def check_arranged(node: Node, problems: list[Problem], depth: int = 0) -> list[
     if depth == DEEPEST:
         problems.append(NESTED_TOO_DEEP.at(node.place, most=DEEPEST))
         return []
-    found: list[list[Node]] = []
-    for child in node.content:
-        if isinstance(child, str):
-            _check_text(node, child, problems)
-        elif _fits(child, node, problems):
-            inner = child.tag in ARRANGING
-            found.append(check_arranged(child, problems, depth + 1) if inner else [child])
+    found = [*_branches(node, problems, depth)]
     if not node.nodes:
         problems.append(NO_COMMAND.at(node.place, tag=node.tag))
     if not depth or node.tag == "iu":
@@ -194,6 +188,16 @@ def check_arranged(node: Node, problems: list[Problem], depth: int = 0) -> list[
     if node.tag == "iu":
         _check_unit(commands, problems)
     return commands
+
+
+def _branches(node: Node, problems: list[Problem], depth: int) -> Iterator[list[Node]]:
+    """The Commands of each element in such an element."""
+    for child in node.content:
+        if isinstance(child, str):
+            _check_text(node, child, problems)
+        elif _fits(child, node, problems):
+            inner = child.tag in ARRANGING
+            yield check_arranged(child, problems, depth + 1) if inner else [child]
 
 
 def _check_text(node: Node, text: str, problems: list[Problem]) -> None:

@@ -156,14 +156,17 @@ class Inputs:
                 return
         if form is not None and form is not item:
             yield from self._of(context, form, page, form)
-        for wider in (page, context.root):
-            if wider is not None:
-                for node in wider.root.all("link", "form", "menu"):
-                    if node.tag == "link":
-                        yield from self._link(context, node, wider, wider.root)
-                    elif node is not form:
-                        yield from self._shared(context, node, wider)
+        for wider in filter(None, (page, context.root)):
+            yield from self._of_document(context, wider)
         yield from self._universals(context)
+
+    def _of_document(self, context: Context, page: Page) -> Iterator[Active]:
+        """The grammars of a document's links, and those of its other dialogs."""
+        for node in page.root.all("link", "form", "menu"):
+            if node.tag == "link":
+                yield from self._link(context, node, page, page.root)
+            elif node is not context.form:
+                yield from self._shared(context, node, page)
 
     def _shared(self, context: Context, dialog: Node, page: Page) -> Iterator[Active]:
         """The grammars of another dialog that listen in the whole document (3.1.3)."""

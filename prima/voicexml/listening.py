@@ -24,14 +24,18 @@ def check_listening(page: Page, root: Page | None) -> Iterator[Problem]:
     wider = [page.root, *([root.root] if root is not None else [])]
     given = {node.get("name") for node in page.root.walk() if node.key == "assign"}
     shared = any(map(_shares, wider))
+    for item in _asked_alone(page):
+        everywhere = shared and item.get("modal") != "true"
+        if not (everywhere or _listens(item) or item.get("name") in given):
+            name = f" {item.get('name')}".rstrip()
+            yield NO_GRAMMAR.at(item.place, tag=item.tag, name=name)
+
+
+def _asked_alone(page: Page) -> Iterator[Node]:
+    """The questions that are surely asked, in forms at which nothing listens."""
     for form in page.root.all("form"):
-        if _listens(form):
-            continue
-        for item in filter(_surely_asked, parts_of(form)):
-            heard = _listens(item) or (shared and item.get("modal") != "true")
-            if not heard and item.get("name") not in given:
-                name = f" {item.get('name')}".rstrip()
-                yield NO_GRAMMAR.at(item.place, tag=item.tag, name=name)
+        if not _listens(form):
+            yield from filter(_surely_asked, parts_of(form))
 
 
 def _surely_asked(item: Node) -> bool:

@@ -92,10 +92,7 @@ class Sketch:
         made = [self._item(one) for one in items if _is_item(one)]
         filled = [self._filled(one) for one in node.all("filled")]
         if node.all("grammar"):  # an answer may fill any item of the form
-            inner = chain.from_iterable(
-                one.items if isinstance(one, Unit) else [one] for one in made
-            )
-            filled += [one for item in inner if isinstance(item, Field) for one in item.filled]
+            filled += _filled_in(made)
         handlers = () if node.tag == "menu" else self._handlers(node)
         form = Form(name, tuple(made), handlers, (), (), (), tuple(filled), {}, node)
         self._units |= {one.node.index: (form, one) for one in made if isinstance(one, Unit)}
@@ -254,6 +251,12 @@ class Sketch:
                 yield link.get("event") or None
         if any(one.get("name") == "universals" for one in node.all("property")):
             yield from UNIVERSAL
+
+
+def _filled_in(items: Iterable[Item]) -> Iterator[Filled]:
+    """The ``filled`` of all fields, of those in units too."""
+    inner = chain.from_iterable(one.items if isinstance(one, Unit) else [one] for one in items)
+    return chain.from_iterable(item.filled for item in inner if isinstance(item, Field))
 
 
 def text_of(pieces: Iterable[Node | str]) -> Text:

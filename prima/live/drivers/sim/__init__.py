@@ -128,7 +128,7 @@ class SimDriver(Driver):
         self._look()
         for event in self.body.corners():
             self.tell(event)
-        if values := self.body.measure():
+        if values := self.body.sensors.measure():
             self.tell(Sensed(values))
 
     def _look(self) -> None:

@@ -137,14 +137,18 @@ class Writer:
             case Repeat():
                 return self._repeat(part, inside)
             case Reference(rule=rule):
-                if rule is None or rule in inside or len(inside) > DEEP:
-                    return None
-                return self.part(rule.body, (*inside, rule))
+                return self._rule(rule, inside)
             case Special(name):
                 return None if name == "VOID" else ""
             case BuiltIn(name=name):
                 return TYPES.get(name)
         return ""  # a tag
+
+    def _rule(self, rule: Rule | None, inside: tuple[Rule, ...]) -> str | None:
+        """A rule's body; None for one that is not there, in itself, or too deep."""
+        if rule is None or rule in inside or len(inside) > DEEP:
+            return None
+        return self.part(rule.body, (*inside, rule))
 
     def _choice(self, parts: Sequence[Part], inside: tuple[Rule, ...]) -> str | None:
         made = [self.part(one, inside) for one in parts]

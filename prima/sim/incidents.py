@@ -1,0 +1,48 @@
+"""What happens in a scenario and is none of the user's doing."""
+
+from __future__ import annotations
+
+from prima.devices.senses import sensor_value
+from prima.messages import (
+    ApplicationLoaded,
+    ApplicationUnloaded,
+    Emergency,
+    Inbound,
+    Json,
+    Narrated,
+    Occurred,
+)
+from prima.sim.happenings import Doing
+from prima.sim.robot import Robot
+
+
+def happen(doing: Doing, robot: Robot, sensors: dict[str, Json], now: int) -> list[Inbound]:
+    """Let something happen at a time (ms); ``sensors`` takes what sensors are to say."""
+    values = doing.values
+    match doing.name:
+        case "note":
+            return [Narrated("environment", doing.text)]
+        case "message":
+            data = {"from": values["from"] or "", "text": doing.text}
+            return [Occurred("message", "environment", data, values["to"])]
+        case "event":
+            return [Occurred(values["name"], "environment", values["data"])]
+        case "sensor":
+            sensors[values["name"]] = sensor_value(values["value"])
+        case "fail":
+            device, hangs = values["device"], bool(values["hangs"])
+            how = "hangs" if hangs else "fails"
+            note = Narrated("environment", f"the {device} {how}")
+            return [note, *robot.broke(now, device, hangs)]
+        case "repair":
+            robot.body.broken.pop(values["device"], None)
+            return [Narrated("environment", f"the {values['device']} works again")]
+        case "emergency":
+            return [Emergency(True)]
+        case "release":
+            return [Emergency(False, bool(values["resume"]))]
+        case "unload":
+            return [ApplicationUnloaded(values["application"])]
+        case "load":
+            return [ApplicationLoaded(values["application"])]
+    return []

@@ -1,0 +1,49 @@
+"""What the simulated body's own sensors say."""
+
+from __future__ import annotations
+
+from prima.messages import Json
+from prima.sim.world import World, distance
+
+ITS_OWN = frozenset({"human", "position", "moving"})
+"""What it measures itself, by the first part of the sensors' names."""
+STANDING = (0.0, 0.0)
+"""What the wheels are told when the robot stands."""
+
+
+class OwnSensors:
+    """Measures where the robot is, how it moves, and where the person is."""
+
+    def __init__(self, world: World) -> None:
+        self.told_of: frozenset[str] | None = None
+        """Sensors that somebody looks at, by the first part of their names; None for all of them."""
+        self._world = world
+        self._around: tuple[object, ...] = ()
+        """Where robot and person were when it last measured, and how the robot moved."""
+
+    def measure(self) -> dict[str, Json]:
+        """What the sensors say, if anything around the robot has changed.
+
+        The first time that is all of them; later only what somebody looks at.
+        """
+        looked_at = ITS_OWN if self.told_of is None or not self._around else self.told_of
+        world = self._world
+        around = (world.position, world.heading, world.pan, world.person, world.drive)
+        if around == self._around or looked_at.isdisjoint(ITS_OWN):
+            return {}
+        self._around = around
+        now: dict[str, Json] = {}
+        if "human" in looked_at:
+            person = world.person
+            now["human.visible"] = world.sees_person()
+            now["human.distance"] = (
+                None if person is None else round(distance(world.position, person), 1)
+            )
+        if "position" in looked_at:
+            pose = world.pose()
+            now["position.x"] = round(pose["x"], 1)
+            now["position.y"] = round(pose["y"], 1)
+            now["position.heading"] = round(pose["heading"]) % 360
+        if "moving" in looked_at:
+            now["moving"] = world.drive != STANDING
+        return now
