@@ -21,7 +21,8 @@ from typing import Any
 import prima
 from prima.checks.codes import diagnoses
 from prima.devices import loop
-from prima.devices.vocabulary import ROBOT, SERVICES
+from prima.devices.vocabulary.robot import ROBOT
+from prima.devices.vocabulary.services import SERVICES
 from prima.errors import LONGEST_TEXT, UsageError
 from prima.grammar import builtin, chart
 from prima.grammar.answers import TYPES
@@ -36,7 +37,9 @@ from prima.interpreter import (
     transfers,
     units,
 )
-from prima.interpreter.vocabulary import CONTENT, DIALOGUE, HANDLERS, PROPERTIES, SPEAKING
+from prima.interpreter.vocabulary.dialogue import DIALOGUE
+from prima.interpreter.vocabulary.names import CONTENT, HANDLERS, SPEAKING
+from prima.interpreter.vocabulary.questions import PROPERTIES
 from prima.language.commands import LONGEST_TURN_MS, TABLE_4_2, CommandType
 from prima.language.values import KINDS, LONGEST_MS
 from prima.lsp.descriptions import VOICEXML_ATTRIBUTES
@@ -44,7 +47,9 @@ from prima.markup.limits import LIMITS
 from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
 from prima.scheduler import failures, starvation
 from prima.script import budget, evaluation, host, parse, sandbox, syntax
-from prima.sim.vocabulary import SCENARIO, USER, WORLD
+from prima.sim.vocabulary.scenario import SCENARIO
+from prima.sim.vocabulary.user import USER
+from prima.sim.vocabulary.world import WORLD
 from prima.transcript import lines
 from prima.transcript.phases import PHASES
 from prima.transcript.record import model

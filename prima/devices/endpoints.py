@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 from prima.devices.reading import RENAME, Reader
-from prima.devices.vocabulary import SERVICES
+from prima.devices.vocabulary.services import SERVICES
 from prima.errors import DocumentError, Place
 from prima.markup.tree import Node
 from prima.messages import Data, Json

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from prima.devices.goals import LISTEN, SAY
 from prima.devices.reading import Reader
 from prima.devices.settings import DriverSettings, read_driver, share_devices
-from prima.devices.vocabulary import ROBOT
+from prima.devices.vocabulary.robot import ROBOT
 from prima.errors import Place, Problem, meant, suggestion
 from prima.interpreter.events import near
 from prima.language.commands import ABSENCE_MS, DEVICES, TABLE_4_2, Argument, CommandType

@@ -15,7 +15,7 @@ from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
 from prima import api
-from prima.devices.vocabulary import ROBOT
+from prima.devices.vocabulary.robot import ROBOT
 from prima.errors import TOO_MUCH, DocumentError, PrimaError, Problem, UsageError, has_errors
 from prima.errors.visible import visible
 from prima.interpreter.elements import Document
@@ -29,7 +29,7 @@ from prima.markup.tree import Node
 from prima.messages import Json
 from prima.sim.paths import ScenarioValue, find
 from prima.sim.scenario import look_at_scenario
-from prima.sim.vocabulary import SCENARIO
+from prima.sim.vocabulary.scenario import SCENARIO
 from prima.testing.checking import Failure, check
 from prima.testing.facts import make_run
 from prima.testing.tracing import states_of

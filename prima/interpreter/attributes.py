@@ -18,7 +18,7 @@ from prima.interpreter.diagnoses import (
     SAYS_NOTHING,
     SPEAKS_TOO_LONG,
 )
-from prima.interpreter.vocabulary import DIALOGUE
+from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.language.arguments import check_argument, excluding_arguments, missing_argument
 from prima.language.commands import TABLE_4_2, CommandType, too_long
 from prima.language.values import XML_SPACE, BadValue, nearest, outside, read_value, within

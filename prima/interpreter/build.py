@@ -34,7 +34,7 @@ from prima.interpreter.elements import (
     Watch,
 )
 from prima.interpreter.units import LONGEST_UNIT_MS, Finder, unit_problem, units_of
-from prima.interpreter.vocabulary import PROPERTIES
+from prima.interpreter.vocabulary.questions import PROPERTIES
 from prima.language.commands import TABLE_4_2
 from prima.language.values import BadValue, read_value
 from prima.markup.tree import Node

@@ -37,7 +37,7 @@ from prima.interpreter.diagnoses import (
     RESERVED_NAME,
 )
 from prima.interpreter.units import LONGEST_UNIT_MS, Reached, now_inside, unit_problem
-from prima.interpreter.vocabulary import ACTING, HANDLERS
+from prima.interpreter.vocabulary.names import ACTING, HANDLERS
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.script.evaluation import SCOPES

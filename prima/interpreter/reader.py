@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from prima.errors import Problem, few_guesses, in_order
 from prima.interpreter.build import Builder
 from prima.interpreter.elements import Document
-from prima.interpreter.vocabulary import DIALOGUE
+from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.markup.limits import LIMITS
 from prima.markup.reader import read_tree
 

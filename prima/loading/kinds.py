@@ -8,7 +8,7 @@ from prima.errors import (
     DocumentError,
     UsageError,
 )
-from prima.interpreter.vocabulary import DIALOGUE
+from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.loading.files import read_file
 from prima.markup.sniff import root_of
 

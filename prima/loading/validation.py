@@ -14,7 +14,7 @@ from prima.errors import (
     listed,
 )
 from prima.interpreter.elements import Document
-from prima.interpreter.vocabulary import DIALOGUE
+from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.loading.applications import fetcher, in_folder, read_native, services_of
 from prima.loading.collecting import seldom_collected
 from prima.loading.files import path_of, read_file
@@ -110,9 +110,12 @@ def _problems_by_kind(path: str, data: bytes) -> list[Problem]:
         DocumentError: with its problems, if any is an error.
     """
     from prima.devices.profile import read_robot
-    from prima.devices.vocabulary import ROBOT, SERVICES
+    from prima.devices.vocabulary.robot import ROBOT
+    from prima.devices.vocabulary.services import SERVICES
     from prima.sim.user import read_user
-    from prima.sim.vocabulary import SCENARIO, USER, WORLD
+    from prima.sim.vocabulary.scenario import SCENARIO
+    from prima.sim.vocabulary.user import USER
+    from prima.sim.vocabulary.world import WORLD
 
     kinds = (DIALOGUE, WORLD, ROBOT, SCENARIO, USER, SERVICES)
     match check_root(parse(path, data, kinds), kinds).namespace:

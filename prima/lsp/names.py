@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from prima.interpreter.vocabulary import DIALOGUE
+from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.lsp.meanings import DEFINES, REFERS, SHARED, ReferenceUse
 from prima.lsp.scan import Attr, ScannedTag, ScannedText
 from prima.lsp.tables import is_code

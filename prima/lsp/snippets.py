@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.interpreter.vocabulary import DIALOGUE
+from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.lsp.tables import AllowedElement
 from prima.markup.vocabulary import Element, Vocabulary
 from prima.voicexml.vocabulary import ALTERNATIVES, PRIMA_NAMESPACE, VOICEXML

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from prima.devices.vocabulary import ROBOT, SERVICES
+from prima.devices.vocabulary.robot import ROBOT
+from prima.devices.vocabulary.services import SERVICES
 from prima.grammar.builtin import TYPES
-from prima.interpreter.vocabulary import DIALOGUE
+from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.lsp.descriptions import VOICEXML_ATTRIBUTES
 from prima.lsp.scan import ScannedTag, ScannedText
 from prima.markup.vocabulary import (
@@ -17,7 +18,9 @@ from prima.markup.vocabulary import (
     attributes_by_name,
 )
 from prima.scheduler.policy import BASELINES
-from prima.sim.vocabulary import SCENARIO, USER, WORLD
+from prima.sim.vocabulary.scenario import SCENARIO
+from prima.sim.vocabulary.user import USER
+from prima.sim.vocabulary.world import WORLD
 from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, HOLDING, SRGS, VALUES, VOICEXML
 

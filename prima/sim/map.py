@@ -8,7 +8,7 @@ from prima.devices.reading import RENAME, Reader
 from prima.errors import Problem
 from prima.markup.tree import Node
 from prima.sim.plan import FloorPlan
-from prima.sim.vocabulary import WORLD
+from prima.sim.vocabulary.world import WORLD
 
 Point = tuple[float, float]
 MAX_AREAS = 256

@@ -15,14 +15,14 @@ import re
 from collections.abc import Callable
 from typing import NamedTuple
 
-from prima.devices.vocabulary import ROBOT
+from prima.devices.vocabulary.robot import ROBOT
 from prima.errors import UsageError, did_you_mean, one_of
 from prima.language.distributions import MEASURED
 from prima.language.values import DRAWABLE
 from prima.markup.edits import TextEdit, set_attribute, set_text
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute, Vocabulary
-from prima.sim.vocabulary import SCENARIO
+from prima.sim.vocabulary.scenario import SCENARIO
 
 STEP = re.compile(r"(?P<name>[^\[\].]+)(?:\[(?P<which>[^\]]*)\])?")
 WHOLE = re.compile(r"[^\[\].]+(\[[^\]]*\])?(\.[^\[\].]+(\[[^\]]*\])?)*")

@@ -25,7 +25,7 @@ from prima.sim.happenings import (
 )
 from prima.sim.map import Point
 from prima.sim.user import User
-from prima.sim.vocabulary import SCENARIO
+from prima.sim.vocabulary.scenario import SCENARIO
 
 UNTIL_MS = 600_000
 """When a run ends whose scenario does not say."""

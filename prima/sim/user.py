@@ -9,7 +9,7 @@ from prima.errors import DocumentError, has_errors
 from prima.markup.tree import Node
 from prima.sim.chance import Amount, Chance, Draws
 from prima.sim.happenings import When, read_answer, read_when
-from prima.sim.vocabulary import USER
+from prima.sim.vocabulary.user import USER
 
 
 @dataclass(slots=True)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from prima.language.values import NAME
 from prima.markup.tree import Node
-from prima.sim.vocabulary import SCENARIO
+from prima.sim.vocabulary.scenario import SCENARIO
 
 HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
 MARK = "Played with prima talk."

@@ -7,14 +7,14 @@ import shlex
 from html import escape
 from pathlib import Path
 
-from prima.devices.vocabulary import ROBOT
+from prima.devices.vocabulary.robot import ROBOT
 from prima.errors import DocumentError, UsageError, has_errors
-from prima.interpreter.vocabulary import DIALOGUE
+from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.loading import is_voicexml, validate
 from prima.loading.files import read_file
 from prima.markup.reader import parse
 from prima.sim.map import read_world
-from prima.sim.vocabulary import WORLD
+from prima.sim.vocabulary.world import WORLD
 
 TEMPLATES = Path(__file__).parent
 ANSWERS = {

@@ -14,7 +14,7 @@ from prima.errors.diagnoses.structure import EMPTY, MISPLACED_ELEMENT, STRAY_TEX
 from prima.errors.diagnoses.values import BAD_VALUE
 from prima.interpreter.acts import CommandTemplate
 from prima.interpreter.units import LONGEST_UNIT_MS, Reached, now_inside, unit_problem
-from prima.interpreter.vocabulary import DIALOGUE
+from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.language.commands import TABLE_4_2
 from prima.language.values import BadValue, milliseconds, read_value
 from prima.markup.spans import attribute_span

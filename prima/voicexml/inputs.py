@@ -9,7 +9,7 @@ from prima.grammar.answers import Answers
 from prima.grammar.builtin import TYPES
 from prima.interpreter.places import source
 from prima.interpreter.transfers import Thrown
-from prima.interpreter.vocabulary import USUAL_CONFIDENCE
+from prima.interpreter.vocabulary.questions import USUAL_CONFIDENCE
 from prima.markup.tree import Node
 from prima.messages import Hypothesis, Json, Say
 from prima.script.budget import Budget

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from prima.devices.vocabulary import ROBOT
+from prima.devices.vocabulary.robot import ROBOT
 from prima.experiments.design import DESIGNS
 from prima.experiments.levels import cell
 from prima.markup.reader import read_tree

@@ -15,7 +15,7 @@ import pytest
 from prima import api
 from prima.checks.codes import diagnoses
 from prima.errors import UsageError
-from prima.interpreter.vocabulary import SPEAKING
+from prima.interpreter.vocabulary.names import SPEAKING
 from prima.markup.vocabulary import Vocabulary
 from prima.transcript.phases import PHASES
 from prima.transcript.record import FIELDS, model

@@ -10,9 +10,12 @@ from pathlib import Path
 
 from lxml import etree
 
-from prima.devices.vocabulary import ROBOT, SERVICES
-from prima.interpreter.vocabulary import DIALOGUE
-from prima.sim.vocabulary import SCENARIO, USER, WORLD
+from prima.devices.vocabulary.robot import ROBOT
+from prima.devices.vocabulary.services import SERVICES
+from prima.interpreter.vocabulary.dialogue import DIALOGUE
+from prima.sim.vocabulary.scenario import SCENARIO
+from prima.sim.vocabulary.user import USER
+from prima.sim.vocabulary.world import WORLD
 from tests import ROOT
 
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]

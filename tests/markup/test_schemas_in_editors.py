@@ -13,7 +13,7 @@ import pytest
 from lxml import etree
 
 from prima import api, loading
-from prima.interpreter.vocabulary import DIALOGUE
+from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from tests import ROOT
 from tests.helpers.here import prima
 from tools.reference import VOCABULARIES, voicexml

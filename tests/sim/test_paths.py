@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from prima.devices.vocabulary import ROBOT
+from prima.devices.vocabulary.robot import ROBOT
 from prima.errors import UsageError
 from prima.markup.edits import edited
 from prima.markup.reader import read_tree

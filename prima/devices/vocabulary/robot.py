@@ -1,13 +1,11 @@
-"""The languages of robot profiles and of services, as tables."""
+"""The language of robots: their body, devices and Commands."""
 
 from __future__ import annotations
 
+from prima.devices.vocabulary.common import ID, TITLE, VERSION
 from prima.language.commands import DEVICES
 from prima.markup.vocabulary import Element, Instead, Vocabulary, attribute
 
-VERSION = attribute("version", "text", "the language's version", "required", choices=("1.0",))
-ID = attribute("id", "id", "its name", "required")
-TITLE = attribute("title", "text", "what people call it")
 LIMITS = (
     attribute("accept", "duration", "how long the robot may take to begin", low=1),
     attribute("progress", "duration", "how long it may go on without a report", low=1),
@@ -283,113 +281,5 @@ ROBOT = Vocabulary(
         **{name: f'Write <device name="{name}"/>.' for name in DEVICES},
         **dict.fromkeys(("command", "add"), Instead("adds", 'command="..."')),
         "language": Instead("voice", 'lang="..."/'),
-    },
-)
-
-COMMON = (
-    attribute("name", "id", "as `<send>` and `service:NAME` have it", "required"),
-    attribute("url", "text", "where it is asked: http or https", "required"),
-    attribute("deadline", "duration", "how long all of an answer may take", default="3s", low=1),
-    attribute(
-        "retries",
-        "integer",
-        "how often it is asked again within the deadline, where it cannot be reached or answers"
-        " 429, 502, 503 or 504",
-        default="0",
-        low=0,
-        high=10,
-    ),
-    attribute("most", "integer", "bytes of an answer", default="100000", low=1, high=10_000_000),
-    attribute(
-        "key", "text", "the environment variable whose value is sent as `Authorization: Bearer`"
-    ),
-)
-SERVICES = Vocabulary(
-    "urn:prima:services:1",
-    "services",
-    "services",
-    (
-        Element(
-            "services",
-            "The services that a live run may ask, and no others.",
-            (VERSION,),
-            ("service", "language-model"),
-        ),
-        Element(
-            "service",
-            "A service that takes values and answers a JSON object.",
-            (
-                *COMMON,
-                attribute(
-                    "method",
-                    "text",
-                    "how it is asked: `get` has the values in the URL, the others as JSON",
-                    default="post",
-                    choices=("get", "put", "post"),
-                ),
-                attribute(
-                    "idempotent",
-                    "boolean",
-                    "whether a `post` may be asked again; `get` and `put` always may",
-                    default="false",
-                ),
-            ),
-            ("header", "slot"),
-        ),
-        Element(
-            "language-model",
-            "A language model behind the chat interface of OpenAI, which fills slots.",
-            (*COMMON, attribute("model", "text", "the model's name", "required")),
-            ("header", "prompt", "slot", "fallback"),
-        ),
-        Element(
-            "header",
-            "A header of the request.",
-            (
-                attribute("name", "text", "its name", "required"),
-                attribute("value", "text", "its value"),
-                attribute("variable", "text", "the environment variable that has its value"),
-            ),
-        ),
-        Element(
-            "prompt",
-            "A message to the model; {NAME} stands for a value that is sent.",
-            (attribute("role", "text", "whose it is", default="user", choices=("system", "user")),),
-            text=True,
-        ),
-        Element(
-            "slot",
-            "A value of the answer. Where there are slots, nothing else of an answer is taken.",
-            (
-                attribute("name", "id", "its name in the reply", "required"),
-                attribute(
-                    "kind",
-                    "text",
-                    "its type",
-                    default="text",
-                    choices=("text", "number", "boolean"),
-                ),
-                attribute("choices", "text", "the texts that it may be, separated by `|`"),
-                attribute(
-                    "field",
-                    "text",
-                    "the part of the answer, by default its name; dots lead into objects and lists",
-                ),
-                attribute("required", "boolean", "whether it is needed", default="true"),
-                attribute("doc", "text", "what it means, for the model"),
-            ),
-        ),
-        Element(
-            "fallback",
-            "A grammar that fills the slots where the model does not.",
-            (
-                attribute("grammar", "text", "the file, an SRGS grammar beside", "required"),
-                attribute("of", "id", "the value that is sent and that it reads", "required"),
-            ),
-        ),
-    ),
-    hints={
-        "param": "Values that are sent are the <param> of <send>.",
-        "llm": Instead("language-model"),
     },
 )

@@ -1,0 +1,1 @@
+"""The languages of robots and of services, as tables."""

@@ -1,0 +1,1 @@
+"""The languages of worlds, scenarios and users, as tables."""
