@@ -144,21 +144,22 @@ def _beats(text: str, lang: str, rates: dict[str, float], cues: tuple[Cue, ...])
             if cue.kind == "rate":
                 factor = float(cue.value or 1.0)
             else:
-                yield _beat(cue)
+                yield from _beat(cue)
         if index < len(text):
             yield "letter", weight(text[index], primary) / rate * 1000 / factor
             if index < len(text) - 1 and text[index] in STOPS:
                 yield "pause", SENTENCE_MS
 
 
-def _beat(cue: Cue) -> Beat:
-    """A cue that is no rate."""
+def _beat(cue: Cue) -> Iterator[Beat]:
+    """What a cue that is no rate comes to, if it takes place in the text."""
     match cue.kind:
         case "sentence":
-            return "pause", SENTENCE_MS
+            yield "pause", SENTENCE_MS
         case "mark":
-            return "mark", str(cue.value)
-    return cue.kind, float(cue.value or 0.0)
+            yield "mark", str(cue.value)
+        case "pause" | "lasts" | "end":
+            yield cue.kind, float(cue.value or 0.0)
 
 
 def _scales(beats: list[Beat]) -> list[float]:
