@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 INTERRUPTED = 130
 """The exit code after Ctrl-C."""
-FASTEST = 1000.0  # as prima.api.FASTEST, which takes long to import
+FASTEST = 1000.0  # as prima.api.live.FASTEST, which takes long to import
 
 
 @click.command()
@@ -129,14 +129,14 @@ def live(
     prima live --speed 20 documents/scenarios/follow-during-navigation.xml
     prima live --resume visit.jsonl
     """
-    from prima import api
+    from prima.api.rehearsing import fetcher
     from prima.live.prepared import check_usage, prepared
     from prima.live.visit import Chosen, LiveSettings
 
     raise_limits(limits)
     chosen = Chosen(robot or "", scenario or "", world or "", fas, eas, maps, services or "")
     check_usage(chosen, output, journal, checks)
-    web = api.fetcher(list(hosts), len(fas) + len(eas) + 1)
+    web = fetcher(list(hosts), len(fas) + len(eas) + 1)
     settings = LiveSettings(policy, bound, patience, isolate, speed, until, sync, web=web)
     settings.drivers, settings.redact = drivers, redact
     if late is not None:

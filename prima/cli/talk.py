@@ -94,7 +94,7 @@ def talk(
     prima talk --ea museum.xml --world documents/worlds/museum.xml --robot papero.xml
     printf '/back 5s\\n/touch head\\n' | prima talk documents/scenarios/touched-on-the-way.xml
     """
-    from prima.api import fetcher
+    from prima.api.rehearsing import fetcher
     from prima.talk import Conversation, Game
 
     raise_limits(limits)

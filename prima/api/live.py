@@ -1,0 +1,165 @@
+"""Runs on a robot, and runs made again from their records."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from prima.api.rehearsing import Sink, fetcher
+from prima.api.transcripts import Transcript
+from prima.errors import UsageError
+from prima.language.values import LONGEST_MS
+from prima.loading import Loaded, load_scenario
+from prima.loading.heads import check_files
+from prima.messages import Record
+
+if TYPE_CHECKING:
+    pass
+
+# Modules that only some functions need are imported there, so that short commands start quickly.
+
+MOST_MORE = 1000
+"""Records that a replay makes at most beyond those of its transcript: it differs anyway."""
+FASTEST = 1000.0
+"""How many times as fast as real time a live run may go."""
+
+
+def replay(transcript: Transcript, scenario: str | Path | Loaded | None = None) -> Transcript:
+    """Run a transcript's inbound records again, without a world; the result is the same.
+
+    Args:
+        transcript: the transcript of a rehearsal, or the journal of a live run.
+        scenario: the rehearsal's scenario; a live run needs none.
+
+    Raises:
+        UsageError: the scenario's files are not those of the transcript.
+        DocumentError: documents have errors.
+    """
+    from itertools import islice
+
+    from prima.journal import replay_records
+    from prima.transcript.lines import check_head, finished
+
+    head = transcript.records[0]
+    check_head(head, transcript.name)
+    if head["data"].get("redacted"):
+        message = "what users said was left out of this journal, so it cannot be run again."
+        raise UsageError(f"{transcript.name}: {message}")
+    if scenario is None:
+        from prima.live.visit import reloaded
+
+        loaded = reloaded(head, transcript.name)
+    else:
+        loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
+    cast = loaded.cast
+    check_files(head, loaded, transcript.name)
+    if "live" not in head["data"] and transcript.records[-1]["time"] > LONGEST_MS / 1000:
+        raise UsageError(f"{transcript.name}: the transcript ends after more than a day.")
+    robot, most = cast.robot, len(transcript.records) + MOST_MORE
+    made = replay_records(
+        transcript.records, cast.documents, robot.commands, robot.absence, transcript.name
+    )
+    again = list(islice(made, most))
+    return Transcript([finished(record) for record in again], transcript.name)
+
+
+def run_live(
+    scenario: str | Path | None = None,
+    robot: str | Path | None = None,
+    fas: Iterable[str | Path] = (),
+    eas: Iterable[str | Path] = (),
+    world: str | Path | None = None,
+    maps: Iterable[str] = (),
+    services: str | Path | None = None,
+    output: str | Path | None = None,
+    resume: str | Path | None = None,
+    policy: str | None = None,
+    bound: int | None = None,
+    patience: int | None = None,
+    isolate: str = "ea",
+    speed: float = 1.0,
+    until: int | None = None,
+    late: int | None = 250,
+    sync: bool = False,
+    redact: bool = False,
+    drivers: Iterable[str | Path] = (),
+    hosts: Iterable[str] = (),
+    sink: Sink | None = None,
+    warn: Callable[[str], None] | None = None,
+    keep: bool = True,
+) -> Transcript:
+    """Run applications on a robot, in real time, to their end (docs/live.md).
+
+    The robot is made safe at the end, however that comes: by Ctrl-C, by an exception of ``sink``.
+
+    Args:
+        scenario: a scenario, whose robot, world and user are simulated; then without ``fas``,
+            ``eas``, ``world`` and ``services``.
+        robot: the robot's document, which names its drivers.
+        fas: the FAs.
+        eas: the EAs.
+        world: the site's map, and what its areas offer.
+        maps: pairs ``URI=PATH`` for what VoiceXML documents name.
+        services: the document of the services that may be asked.
+        output: the path of the journal, which is not there yet.
+        resume: the journal of a run that was cut off, and goes on; then without all before it.
+        policy: a policy's name, as for :func:`rehearse`.
+        bound: rule E4's bound on loops of a feedback Command.
+        patience: rule E6's bound (ms).
+        isolate: which scripts run in a process of their own, as for :func:`rehearse`.
+        speed: how many times as fast as real time it runs, for simulated robots.
+        until: when it ends at the latest (ms).
+        late: how late (ms) an instant may be before ``warn`` is told; None for never.
+        sync: whether each instant is on the disk before it is carried out.
+        redact: whether what users say is left out of journal and transcript.
+        drivers: Python files that define drivers; they are run.
+        hosts: hosts from which applications may fetch, as for :func:`rehearse`.
+        sink: called with each line of the transcript before its instant is carried out.
+        warn: called with what an operator should know, as that the robot is lost.
+        keep: whether to keep the records in memory.
+
+    Raises:
+        DocumentError: documents have errors.
+        UsageError: what was given does not go together, or is not there.
+        RunError: the robot cannot be reached, or the journal cannot be written.
+        KeyboardInterrupt: Ctrl-C or a signal has ended the run; the journal can be resumed.
+    """
+    from prima.live.prepared import prepared
+    from prima.live.visit import Chosen, LiveSettings
+    from prima.transcript.lines import finished, line
+
+    def name(path: str | Path | None) -> str:
+        return "" if path is None else str(path)
+
+    def names(paths: Iterable[str | Path]) -> tuple[str, ...]:
+        return tuple(map(str, paths))
+
+    chosen = Chosen(
+        name(robot), name(scenario), name(world),
+        names(fas), names(eas), tuple(maps), name(services),
+    )  # fmt: skip
+    if not 0 < speed <= FASTEST:
+        raise UsageError(f"The speed is {speed:g}: write a number above 0, up to {FASTEST:g}.")
+    web = fetcher(list(hosts), len(chosen.fas) + len(chosen.eas) + 1)
+    settings = LiveSettings(
+        policy, bound, patience, isolate, speed, until, sync, late, redact, names(drivers), web
+    )
+    given = [None if path is None else str(path) for path in (output, resume)]
+    visit = prepared(chosen, settings, *given)
+    made = Transcript(list(visit.before) if keep else [], given[0] or given[1] or "")
+
+    def take(records: list[Record]) -> None:
+        if keep:
+            made.records += map(finished, records)
+        if sink is not None:
+            for record in records:
+                sink(line(record))
+
+    visit.run_anywhere(take, warn or (lambda _: None))
+    if visit.stopped:
+        raise KeyboardInterrupt
+    session = visit.loop.session
+    made.failures, made.defects = list(session.failures), list(session.defects)
+    made.outcome = visit.loop.outcome
+    return made

@@ -1,0 +1,176 @@
+"""Transcripts: what a run has recorded, read from files or just made."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from prima.errors import UsageError
+from prima.messages import Record
+
+if TYPE_CHECKING:
+    from prima.interpreter.bounds import ElementVisit
+    from prima.transcript.measures import Measure, Summary
+    from prima.transcript.record import Entry
+    from prima.transcript.row import Row
+    from prima.transcript.run import Run
+
+# Modules that only some functions need are imported there, so that short commands start quickly.
+
+LACKING = "a record lacks a field of its phase."
+
+
+@dataclass(slots=True)
+class Transcript:
+    """The records of a run, times in seconds, with views of them."""
+
+    records: list[Record]
+    """Empty if they were not kept."""
+    name: str = ""
+    failures: list[str] = field(default_factory=list)
+    """Applications that ended by an error, as ``NAME: ERROR``."""
+    defects: list[Exception] = field(default_factory=list)
+    """Defects of PRIMA that ended applications."""
+    outcome: str = ""
+    """How the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
+    unfinished: list[str] = field(default_factory=list)
+    """If the run was stopped at ``until``, the activity of each application still running."""
+    cut: str = ""
+    """The error in the line at which a partial transcript ends."""
+    visits: list[ElementVisit] = field(default_factory=list)
+    """The elements that applications reached in their documents, if they were kept."""
+    measure: Measure | None = None
+    """Counts made during the run."""
+
+    made: list[Row] | None = None
+    """The rows, if the records were not kept."""
+    _run: Run | None = field(default=None, repr=False, compare=False)
+
+    def rows(self) -> list[Row]:
+        """The rows of the table."""
+        return rows_of(self.name, self.run().entries) if self.made is None else self.made
+
+    def run(self) -> Run:
+        """The run as folded from its records, once.
+
+        Raises:
+            UsageError: a record lacks a field of its phase.
+        """
+        from prima.transcript.run import run_of
+
+        if self._run is None or len(self._run.entries) != len(self.records):
+            self._run = run_of(self.records, self.name)
+        return self._run
+
+    def table(self, why: bool = False, columns: int = 80) -> str:
+        """The table as text, at most this wide if the names of applications allow it.
+
+        With ``why``, each row has the rule that put it there.
+        """
+        from prima.transcript.table import format_rows
+
+        return format_rows(self.rows(), why, columns)
+
+    def summary(self) -> Summary:
+        """The counts and measures of the run.
+
+        Raises:
+            UsageError: a record lacks a field of its phase.
+        """
+        from prima.transcript.measures import summarize
+
+        return self.measure.summary() if self.measure else summarize(self.run())
+
+    @property
+    def early(self) -> str:
+        """A message that the records end before their run did; empty if they do not."""
+        if self.cut or not self.records or self.records[0]["phase"] != "run":
+            return ""
+        last = self.records[-1]
+        return "" if last["phase"] == "over" else ends_early(self.name, last["time"])
+
+    def dumps(self) -> str:
+        """The transcript as JSON lines."""
+        from prima.transcript.lines import line
+
+        made = ({**record, "time": record["time"] * 1000} for record in self.records)
+        return "".join(line(record) for record in made)
+
+
+def rows_of(name: str, entries: Iterable[Entry]) -> list[Row]:
+    """The rows of a transcript.
+
+    Raises:
+        UsageError: a record lacks a field of its phase.
+    """
+    from prima.transcript.rows import make_rows
+
+    try:
+        return make_rows(entries)
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise UsageError(f"{name}: {LACKING}") from None
+
+
+def ends_early(name: str, seconds: float) -> str:
+    """The message for a transcript whose last record is not the end of its run."""
+    return f"{name}: the transcript ends at {seconds:.3f} s, before its run did."
+
+
+def read(path: str | Path, partial: bool = False) -> Transcript:
+    """Read a transcript; with ``partial``, up to its first unreadable line.
+
+    Raises:
+        UsageError: it cannot be read, or is none; the line is named.
+    """
+    cut: list[str] | None = [] if partial else None
+    records = list(records_of(path, cut))
+    return Transcript(records, str(path), cut=" ".join(cut or ()))
+
+
+def skim(path: str | Path) -> Transcript:
+    """Read a transcript up to its first unreadable line; keep only its rows and counts.
+
+    Only the first and last records are kept, so that a long transcript takes much less memory
+    than with :func:`read`.
+
+    Raises:
+        UsageError: it cannot be read, or is none; the line is named.
+    """
+    from prima.transcript.measures import Measure
+    from prima.transcript.record import Entry
+
+    cut: list[str] = []
+    kept: list[Record] = []
+    measure = Measure()
+
+    def entries() -> Iterator[Entry]:
+        for record in records_of(path, cut):
+            kept[1:] = [record]
+            entry = Entry(record)
+            measure.add(entry)
+            yield entry
+
+    rows = rows_of(str(path), entries())
+    return Transcript(kept, str(path), cut=" ".join(cut), measure=measure, made=rows)
+
+
+def records_of(path: str | Path, cut: list[str] | None) -> Iterator[Record]:
+    """A transcript's records one by one; see :func:`read`."""
+    from prima.transcript.lines import MAX_LINE, read_lines
+
+    count = 0
+    try:
+        with Path(path).open(encoding="utf-8-sig") as stream:
+            lines = iter(lambda: stream.readline(MAX_LINE + 2), "")
+            for record in read_lines(str(path), lines, cut):
+                count += 1
+                yield record
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
+    except UnicodeDecodeError as error:
+        if cut is None or count == 0 or error.reason != "unexpected end of data":
+            raise UsageError(f"{path}: not a transcript: it is not UTF-8.") from None
+        message = "the record is cut off within a character; the transcript is incomplete."
+        cut.append(f"{path}:{count + 1}: {message}")

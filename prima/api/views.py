@@ -1,0 +1,117 @@
+"""What is said of transcripts and of codes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import IO, TYPE_CHECKING
+
+from prima.api.transcripts import Transcript, ends_early, read, records_of
+from prima.errors import UsageError, did_you_mean
+from prima.loading.heads import VERSION
+from prima.messages import Record
+
+if TYPE_CHECKING:
+    from prima.exports import Exported
+    from prima.transcript.diff import Difference
+
+# Modules that only some functions need are imported there, so that short commands start quickly.
+
+
+def export(
+    transcript: Transcript | str | Path,
+    to: str,
+    output: str | Path | IO[bytes],
+    languages: Mapping[str, str] | None = None,
+) -> Exported:
+    """Write a transcript in another tool's format (docs/exports.md).
+
+    Args:
+        transcript: a transcript, or the path of one, which is read in pieces up to its first
+            unreadable line.
+        to: the format's name, such as ``eaf``; docs/exports.md lists all.
+        output: the path of the file to write, or a binary stream.
+        languages: language tags (BCP 47) by application; the empty name stands for the
+            user and all other applications.
+
+    Raises:
+        UsageError: a format, tag or application is unknown, or a file is unreadable or
+            unwritable.
+    """
+    from prima.exports import Exported, checked, timeline, write
+
+    tags = checked(to, languages or {})
+    held = transcript if isinstance(transcript, Transcript) else None
+    if not isinstance(transcript, Transcript) and not Path(transcript).is_file():
+        held = read(transcript, partial=True)  # a pipe can be read only once
+    name = str(transcript) if held is None else held.name
+    cut = [held.cut] if held and held.cut else []
+
+    def records(cuts: list[str]) -> Iterable[Record]:
+        return records_of(name, cuts) if held is None else held.records
+
+    made = timeline(name, records(cut))
+    made.check_names(tags)
+    if isinstance(output, str | Path):
+        made.parts()  # may raise, before a file is overwritten
+        with _output(Path(output), name) as stream:
+            write(to, made, records([]), tags, VERSION, stream)
+    else:
+        write(to, made, records([]), tags, VERSION, output)
+    early = ends_early(name, made.end / 1000) if made.head and not made.over and not cut else ""
+    return Exported(len(made.tiers), made.marks, made.end / 1000, " ".join(cut), early)
+
+
+def _output(path: Path, transcript: str) -> AbstractContextManager[IO[bytes]]:
+    """A file to write an export to.
+
+    Raises:
+        UsageError: it is the transcript.
+    """
+    from prima.loading.writing import whole
+
+    if path.exists() and Path(transcript).exists() and path.samefile(transcript):
+        raise UsageError(f"{path}: this is the transcript itself: name another file.")
+    return whole(path)
+
+
+def diff(before: Transcript, after: Transcript) -> Difference:
+    """Compare two transcripts by behaviour."""
+    from prima.transcript.diff import compare
+
+    difference = compare(before.rows(), after.rows())
+    difference.before, difference.after = before.summary(), after.summary()
+    return difference
+
+
+def explain(code: str) -> str:
+    """The meaning of a problem's code.
+
+    Raises:
+        UsageError: the code is unknown.
+    """
+    from prima.checks.codes import diagnoses
+
+    found = diagnoses()
+    if code not in found:
+        raise UsageError(f'There is no code "{code}". {did_you_mean(code, found)}'.rstrip())
+    return found[code].meaning
+
+
+def explain_row(transcript: Transcript, number: int) -> str:
+    """The reasons for the time of a row of a transcript's table.
+
+    Raises:
+        UsageError: there is no such row.
+    """
+    from prima.transcript.why import explained
+
+    rows = transcript.rows()
+    if not rows:
+        message = f"{transcript.name}: the transcript has no rows."
+        raise UsageError(f"{message} {transcript.cut or transcript.early}".rstrip())
+    if not 0 <= number < len(rows):
+        message = f"There is no row {number}; the rows are 0 to {len(rows) - 1}."
+        raise UsageError(f"{message} {transcript.cut or transcript.early}".rstrip())
+    return "\n".join(explained(transcript.run(), rows[number]))
