@@ -1,0 +1,108 @@
+"""What applications ask the robot for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final, Literal
+
+Json = Any
+Data = Mapping[str, Json]
+Record = dict[str, Json]
+"""One line of the transcript while it is still being made: field name to value."""
+Fate = Literal["ended", "done", "cancelled", "expired", "failed", "interrupted", "unit-timeout"]
+"""What an application may be told of its Commands; ``expired``: a part of a run came too late (X8)."""
+Verb = Literal["start", "abort", "interrupt", "stop", "send"]
+"""What devices may be told to do."""
+PROMOTED = -1
+"""As a request's cause: the event that was promoted last."""
+NO_DEVICES: frozenset[str] = frozenset()
+
+
+def line_of(source: str) -> str | None:
+    """The ``FILE:LINE`` of who asked, for a record, of a place with its column; none of nothing."""
+    line = source.rpartition(":")[0]
+    return line if line.rpartition(":")[2].isdigit() else source or None
+
+
+BEEP: Final = "[beep]"
+"""The signal before a recording, as it stands in a text."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cue:
+    """Something that goes with a text besides its words, for the device that says it.
+
+    A device may leave cues alone, and simply speak. Those of one text stand in the order in
+    which they come to pass; ``lasts`` and ``end`` enclose each other properly.
+    """
+
+    at: int
+    """How many characters of the text stand before it."""
+    kind: Literal[
+        "pause",
+        "sentence",
+        "rate",
+        "lasts",
+        "end",
+        "mark",
+        "earlier",
+        "hotword",
+        "record",
+        "finalsilence",
+        "longest",
+        "sound",
+    ]
+    """``pause``: silence of ``value`` ms. ``sentence``: the pause that a full stop makes.
+    ``sound``: what stands before the next ``end`` is the sound ``value``, the signal ``[beep]`` or
+    a recording that the device has made. ``rate``: from here on ``value`` times the usual rate. ``lasts``: what stands before its
+    ``end`` takes ``value`` ms. ``mark``: a place named ``value``, to be told as passed.
+    ``earlier``: marks of what the application said just before count for this question.
+    ``hotword``: what the user says breaks off this question only if it is understood.
+    ``record``: the answer is a recording, of which the device tells how long it is; one of
+    ``value`` ms is the longest, and 0 is without end. ``finalsilence``: it is over after so many
+    ms of silence. ``longest``: the device listens no longer than ``value`` ms to what the user
+    says, and tells that it was too long."""
+    value: float | str | None = None
+
+
+@dataclass(slots=True)
+class Command:
+    """What an application asks for (thesis 4.1, Table 4.1)."""
+
+    type: str
+    args: dict[str, Json] = field(default_factory=dict)
+    text: str | None = None
+    now: bool = False
+    extra: dict[str, Json] = field(default_factory=dict)
+    lang: str = ""
+    source: str = ""
+    """Where the document asks for it: ``FILE:LINE:COLUMN``, as all such places here."""
+    restartable: bool = False
+    """Whether it gives way to a reaction and starts again afterwards (rule X2)."""
+    cues: tuple[Cue, ...] = ()
+    """Pauses, rates and marks of its text."""
+    hook: Any = None
+    """What the application keeps with the Command; nobody else looks at it."""
+
+    def cued(self, *kinds: str) -> bool:
+        """Whether its text has a cue of one of these kinds."""
+        return any(cue.kind in kinds for cue in self.cues)
+
+
+@dataclass(slots=True)
+class Group:
+    """Commands marked as one unit: one Atomic Behavior (rule U4)."""
+
+    steps: list[Step]
+    longest: int | None = None
+    source: str = ""
+    restartable: bool = False
+
+
+@dataclass(slots=True)
+class Step:
+    """A node of a requested tree; ``after`` are indices of steps it waits for."""
+
+    what: Command | Group
+    after: tuple[int, ...] = ()
