@@ -13,9 +13,10 @@ from prima.messages import Json, Say
 from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
 from prima.voicexml.dom import DOM, plain_tree
 from prima.voicexml.elements import INPUTS
-from prima.voicexml.fetching import decoded
+from prima.voicexml.fetching import decoded, fetch
 from prima.voicexml.owner import MachineOwner
 from prima.voicexml.prompts import Speaker
+from prima.voicexml.settings import form_items
 from prima.voicexml.speech import Speech
 from prima.voicexml.state import SCOPES, Context, Flow, GoDialog, HungUp, UriRequest
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
@@ -50,8 +51,8 @@ class Content(Speaker):
                 self.read(item, context, local, speech)
                 continue
             self.flush(speech)
-            self.owner.note_bargein(context)
-            self.owner.count_step(item)
+            self.note_bargein(context)
+            self.owner.app.count_step(item)
             if item.namespace == PRIMA_NAMESPACE:
                 self.enqueue(item, context, local)
             elif item.tag == "prompt":
@@ -59,7 +60,7 @@ class Content(Speaker):
             else:
                 yield from self.act(item, context, local)
         self.flush(speech)
-        self.owner.note_bargein(context)
+        self.note_bargein(context)
 
     def act(self, node: Node, context: Context, local: Scope) -> Flow:
         """One element that is not said."""
@@ -137,9 +138,9 @@ class Content(Speaker):
 
     def clear(self, node: Node, context: Context, local: Scope) -> None:
         """Undefine variables, and reset what counts visits of form items (5.3.3)."""
-        items = self.owner.items(context)
+        items = form_items(context)
         names = node.get("namelist").split()
-        self.owner.count_step(node, len(names) or len(items))
+        self.owner.app.count_step(node, len(names) or len(items))
         named = defaultdict(list)
         for item in items:
             named[item.get("name")].append(item)
@@ -187,7 +188,7 @@ class Content(Speaker):
                 found[name] = self.engine.value(name, context.scopes(local))
             except ScriptError as error:
                 raise self.failure(error, node, "namelist") from None
-            self.owner.count_value(found[name], node)
+            self.owner.app.count_value(found[name], node)
         return found
 
     # Control ----------------------------------------------------------------------------
@@ -209,7 +210,7 @@ class Content(Speaker):
         """Leave for an item, a dialog or a document (5.3.7)."""
         item = self.word(node, "nextitem", context, local)
         if item:
-            if all(one.get("name") != item for one in self.owner.items(context)):
+            if all(one.get("name") != item for one in form_items(context)):
                 context.item = None  # it is handled in the dialog's scope
                 raise no_item(node, item)
             raise GoItem(item)
@@ -217,7 +218,7 @@ class Content(Speaker):
 
     def submit(self, node: Node, context: Context, local: Scope) -> Flow:
         """Leave for what values are answered with, or send them and go on (5.3.8)."""
-        inputs = [one.get("name") for one in self.owner.items(context) if one.tag in INPUTS]
+        inputs = [one.get("name") for one in form_items(context) if one.tag in INPUTS]
         names = node.get("namelist").split() if "namelist" in node.attributes else inputs
         values = self.values(node, [name for name in names if name], context, local)
         uri = self.word(node, "next", context, local)
@@ -228,7 +229,7 @@ class Content(Speaker):
             return
         if context.page.dialog(dialog) is None:
             raise Thrown.at(node, "error.badfetch", f'there is no dialog "{dialog}"')
-        self.owner.send(service, values, node)
+        self.owner.app.send(service, {"params": values}, source(node))
         raise GoDialog(None, dialog)
 
     def give_back(self, node: Node, context: Context, local: Scope) -> None:
@@ -238,7 +239,7 @@ class Content(Speaker):
         values = self.engine.scope()
         for name in node.get("namelist").split():
             try:
-                self.owner.count_step(node)
+                self.owner.app.count_step(node)
                 self.engine.assign(values, name, name, context.scopes(local))
                 self.engine.detach(values, name)
             except ScriptError as error:
@@ -253,7 +254,7 @@ class Content(Speaker):
         code, attribute = node.own_text, ""
         uri = self.word(node, "src", context, local)
         if uri:
-            data = yield from self.owner.fetch(context.page.resolve(uri, node), node)
+            data = yield from fetch(self.owner, context.page.resolve(uri, node), node)
             code = decoded(data, node.get("charset"))
             attribute = "src" if "src" in node.attributes else "srcexpr"
         try:
@@ -268,11 +269,11 @@ class Content(Speaker):
         self.check_name(node)
         request = UriRequest(node.get("method"), self.named(node, context, local))
         uri = context.page.resolve(self.word(node, "src", context, local), node)
-        content = yield from self.owner.fetch(uri, node, request)
+        content = yield from fetch(self.owner, uri, node, request)
         if not node.get("name"):
             return
         for _ in range(content.count(b"<") // STEP_TAGS):
-            self.owner.count_step(node)
+            self.owner.app.count_step(node)
         held = self.engine.scope(tree=plain_tree(uri, content, source(node)))
         blank = self.engine.scope()
         try:
@@ -314,5 +315,5 @@ class Content(Speaker):
     def write(self, text: str, node: Node) -> None:
         """Write a line into the transcript."""
         said = text[:RESULT_LIMIT]
-        self.owner.count_output(len(said), node)
-        self.owner.actions.append(Say("log", said, source(node)))
+        self.owner.app.count_output(len(said), node)
+        self.owner.app.actions.append(Say("log", said, source(node)))

@@ -49,7 +49,7 @@ class Events:
             yield from self._run(context, handler, thrown)
         except (Thrown, ScriptError) as error:
             again = thrown_of(error)
-            self.owner.count_step(self.owner.document.node)
+            self.owner.app.count_step(self.owner.document.node)
             if depth > MAX_DEPTH:
                 message = f"error.semantic: {again.source}: its handlers throw without end"
                 raise GoOut(message, True) from None

@@ -18,6 +18,7 @@ from prima.messages import Command, Data, Fetched
 from prima.voicexml.document import FetchError, Page, broken, of_web
 from prima.voicexml.owner import MachineOwner
 from prima.voicexml.reading import read_page
+from prima.voicexml.settings import setting
 from prima.voicexml.state import Flow, Resume, UriRequest
 
 STEP_BYTES = 200
@@ -102,7 +103,7 @@ def fetch(
 def _weighed(owner: MachineOwner, data: bytes, node: Node) -> bytes:
     """Count what is to be read as steps: to read much, again and again, is a loop as well."""
     for _ in range(len(data) // STEP_BYTES):
-        owner.count_step(node)
+        owner.app.count_step(node)
     return data
 
 
@@ -135,7 +136,7 @@ def _check_reach(where: str, uri: str, node: Node) -> None:
 def _setting(owner: MachineOwner, node: Node, name: str) -> str:
     """A fetch's setting: the element's own, or the property of that name (6.3.5)."""
     own = node.get(name)
-    return own or (owner.setting(owner.context, name) if owner.context is not None else "")
+    return own or (setting(owner.context, name) if owner.context is not None else "")
 
 
 def _file(owner: MachineOwner, uri: str, node: Node) -> bytes:
@@ -186,7 +187,7 @@ def gathered(owner: MachineOwner, use: Callable[[], object]) -> Flow:
             use()
             return
         except Missing as missing:
-            owner.count_step(missing.node)
+            owner.app.count_step(missing.node)
             try:
                 owner.resources[missing.uri] = yield from fetch(owner, missing.uri, missing.node)
             except Thrown as thrown:

@@ -17,6 +17,7 @@ from prima.voicexml.document import Page
 from prima.voicexml.fetching import held, refusal
 from prima.voicexml.matching import GrammarMatch, Listener, keys, listener, phrase, ways
 from prima.voicexml.owner import MachineOwner
+from prima.voicexml.settings import number, setting
 from prima.voicexml.state import Context, TakenUtterance
 
 UNIVERSALS = {"help": "help", "cancel": "cancel", "exit": "exit"}
@@ -82,7 +83,7 @@ class Inputs:
         are of the others (5.1.5).
         """
         most = self.most_results(context)
-        self._budget = self.owner.utterance()
+        self._budget = self.owner.app.utterance()
         first: Active | None = None
         results: list[GrammarMatch] = []
         for text, sure in said:
@@ -105,7 +106,7 @@ class Inputs:
 
     def most_results(self, context: Context) -> int:
         """How many results are wanted at most (6.3.2)."""
-        wanted = self.owner.number(context, "maxnbest", 1)
+        wanted = number(context, "maxnbest", 1)
         return int(wanted) if 1 <= wanted <= MOST_RESULTS else 1
 
     def noted(self, context: Context, text: str) -> tuple[str, str] | None:
@@ -116,12 +117,12 @@ class Inputs:
 
     def modes(self, context: Context) -> list[str]:
         """The kinds of input that the application takes (6.3.6)."""
-        return self.owner.setting(context, "inputmodes").split() or ["dtmf", "voice"]
+        return setting(context, "inputmodes").split() or ["dtmf", "voice"]
 
     def _ways(self, context: Context, text: str) -> Iterator[tuple[str, str]]:
         """An utterance as keys and as speech, as far as the application takes such input."""
         modes = self.modes(context)
-        for said, mode in ways(text, self.owner.setting(context, "termchar")):
+        for said, mode in ways(text, setting(context, "termchar")):
             if mode in modes:
                 yield said, mode
 
@@ -130,7 +131,7 @@ class Inputs:
     ) -> tuple[Active | None, list[GrammarMatch]]:
         """What grammars of one scope take: of ``first``'s, or the first that takes anything."""
         most = self.most_results(context)
-        least = self.owner.number(context, "confidencelevel", USUAL_CONFIDENCE)
+        least = number(context, "confidencelevel", USUAL_CONFIDENCE)
         least = least if 0 <= least <= 1 else USUAL_CONFIDENCE
         results: list[GrammarMatch] = []
         for active in self._active:
@@ -178,7 +179,7 @@ class Inputs:
                 yield self._grammar(context, grammar, dialog, page, page.root)
 
     def _universals(self, context: Context) -> Iterator[Active]:
-        names = self.owner.setting(context, "universals").split()
+        names = setting(context, "universals").split()
         root = context.page.root
         for name, event in UNIVERSALS.items():
             if name in names or names == ["all"]:
@@ -258,7 +259,7 @@ class Inputs:
 
     def _failed(self, node: Node, message: str) -> None:
         """A tag failed while the user was being understood: the grammar takes it not."""
-        self.owner.actions.append(Say("log", f"no match: {message}", source(node)))
+        self.owner.app.actions.append(Say("log", f"no match: {message}", source(node)))
 
 
 def numbered(node: Node) -> dict[int, str]:

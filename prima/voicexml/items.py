@@ -16,6 +16,7 @@ from prima.voicexml.elements import INPUTS
 from prima.voicexml.owner import MachineOwner
 from prima.voicexml.recorder import RecordItems
 from prima.voicexml.results import RESULTS, shadow
+from prima.voicexml.settings import form_items, setting
 from prima.voicexml.state import Context, Flow, GoDialog, Params, TakenUtterance, UriRequest
 
 ABSENT = object()
@@ -47,7 +48,7 @@ class Items:
         filled = self._fill(context, heard)
         if not filled:
             return  # the algorithm just goes on (C)
-        for item in self.owner.items(context):
+        for item in form_items(context):
             if item.tag == "initial":
                 self.mark(context, item)
         yield from self.run_filled(context, filled)
@@ -69,7 +70,7 @@ class Items:
 
         Of what is heard with ``recordutterance`` the words are the recording (2.1, 7.2).
         """
-        if heard.mode == "voice" and self.owner.setting(context, "recordutterance") == "true":
+        if heard.mode == "voice" and setting(context, "recordutterance") == "true":
             heard.recorded = self.recorder.keep(heard.utterance)
         results = [shadow(heard)]
         for utterance, interpretation, confidence in heard.others:
@@ -88,7 +89,7 @@ class Items:
             self._give(context, owner, slot_of(found, _slot(owner), found), heard)
             return [owner]
         filled = []
-        for item in self.owner.items(context):
+        for item in form_items(context):
             value = slot_of(found, _slot(item), ABSENT) if item.tag in INPUTS else ABSENT
             if value is not ABSENT and item.get("name"):
                 self._give(context, item, value, heard)
@@ -128,12 +129,14 @@ class Items:
 
     def _satisfied(self, context: Context, node: Node, filled: list[Node]) -> bool:
         """Whether a form's filled is to run: for any, or all, of its items (2.4)."""
-        items = [item for item in self.owner.items(context) if item.tag in INPUTS]
+        items = [item for item in form_items(context) if item.tag in INPUTS]
         names = node.get("namelist").split()
         if names:
             items = [item for item in items if item.get("name") in names]
         mode = node.get("mode")
-        return satisfied(mode, items, filled, lambda item: self.owner.guarded(context, item))
+        return satisfied(
+            mode, items, filled, lambda item: self.owner.selection.guarded(context, item)
+        )
 
     # Items with results of their own --------------------------------------------------
 

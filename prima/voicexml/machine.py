@@ -5,19 +5,17 @@ from __future__ import annotations
 from collections.abc import Generator, Sequence
 
 from prima.interpreter.bounds import ElementVisit
-from prima.interpreter.places import source
-from prima.interpreter.selection import Counters, select_item, select_prompts
+from prima.interpreter.selection import Counters
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, thrown_of
 from prima.markup.tree import Node
-from prima.messages import Action, Command, Json
-from prima.script.budget import Budget
+from prima.messages import Command
 from prima.script.evaluation import Scope, ScriptError
 from prima.voicexml.arranging import Queued, holds, is_unit, parts_of
+from prima.voicexml.choosing import ItemSelection
 from prima.voicexml.content import Content
 from prima.voicexml.document import Page
-from prima.voicexml.elements import ITEMS, handler_number
+from prima.voicexml.elements import ITEMS
 from prima.voicexml.events import Events
-from prima.voicexml.fetching import fetch
 from prima.voicexml.inputs import Inputs, numbered, words_of
 from prima.voicexml.items import Items
 from prima.voicexml.owner import VoiceApplication
@@ -41,7 +39,6 @@ DIALOG_STEPS = 100
 """As many pieces of content is the work of beginning a dialog."""
 ITEM_STEPS = 10
 """As many is the work of selecting an item."""
-DEFAULTS = {"timeout": "5s", "bargein": "true", "maxnbest": "1", "termchar": "#"}
 
 
 class Machine:
@@ -70,42 +67,12 @@ class Machine:
         self.questions = Questions(self)
         self.events = Events(self)
         self.units = Units(self)
+        self.selection = ItemSelection(self)
         self.context: Context | None = None
         self.state = ""
         """The dialog that is active, by its name."""
 
     # What content needs -------------------------------------------------------------
-
-    @property
-    def actions(self) -> list[Action]:
-        """What the application wants."""
-        return self.app.actions
-
-    def count_step(self, node: Node, steps: int = 1) -> None:
-        """Bound what is done in one instant."""
-        self.app.count_step(node, steps)
-
-    def utterance(self) -> Budget:
-        """See :meth:`Bounds.utterance`."""
-        return self.app.utterance()
-
-    def count_output(self, characters: int, node: Node) -> None:
-        """Bound what comes out in one instant."""
-        self.app.count_output(characters, node)
-
-    def count_value(self, value: Json, node: Node) -> None:
-        """Count a value that leaves its variables, before another is made."""
-        self.app.count_value(value, node)
-
-    def fetch(
-        self, uri: str, node: Node, request: UriRequest | None = None
-    ) -> Generator[None, Resume, bytes]:
-        """A resource's bytes, or ``error.badfetch``."""
-        return fetch(self, uri, node, request)
-
-    def send(self, service: str, values: Json, node: Node) -> None:
-        """Send values to a service, without waiting for its answer."""
-        self.app.send(service, {"params": values}, source(node))
 
     def go(
         self,
@@ -126,49 +93,14 @@ class Machine:
             self.app.count_output(len(text), self.document.node)
             self.queue.append(Command("speak", text=text, lang=lang, source=place))
 
-    def note_bargein(self, context: Context, own: str = "") -> None:
-        """Note whether the user may break in on what has just been queued (4.1.5, 6.3.2).
-
-        A Command is no prompt: it is always done. ``own`` is the prompt's attribute.
-        """
-        for command in self.queue:
-            if command.hook is None:
-                said = command.type == "speak"
-                command.hook = said and (own or self.setting(context, "bargein")) != "false"
-
     def unqueue(self) -> list[Queued]:
         """What is queued, to be said in a wait that no question is part of."""
         queue, self.queue, self.asking = self.queue, [], None
         return queue
 
-    def items(self, context: Context) -> list[Node]:
-        """The form items of the active dialog: units, and behind each what it holds."""
-        form = context.form
-        if form is None:
-            return []
-        if form.tag == "menu":
-            return [form]
-        return [one for one in parts_of(form) if one.tag in ITEMS or is_unit(one)]
-
     def local(self) -> Scope:
         """A new anonymous scope."""
         return self.engine.scope()
-
-    def setting(self, context: Context, name: str) -> str:
-        """A property's value, innermost first (6.3)."""
-        page_roots = [context.page.root, context.root.root if context.root else None]
-        for node in (context.item, context.form, *page_roots):
-            for child in reversed(node.all("property") if node is not None else []):
-                if child.get("name") == name:
-                    return child.get("value")
-        return DEFAULTS.get(name, "")
-
-    def number(self, context: Context, name: str, default: float) -> float:
-        """A property as a number."""
-        try:
-            return float(self.setting(context, name))
-        except ValueError:
-            return default
 
     def enumeration(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
         """Read what enumerate says: each choice, in its own words (2.2.4)."""
@@ -274,7 +206,7 @@ class Machine:
         except (Thrown, ScriptError) as error:
             wanted = yield from self._handled(context, error)
         if heard is not None:
-            self.count_step(form)
+            self.app.count_step(form)
             context.item = form if form.tag == "menu" else None
             try:
                 yield from self.items_of.process(context, heard)
@@ -313,7 +245,7 @@ class Machine:
 
     def _visit_next(self, context: Context, wanted: str) -> Generator[None, Resume, bool]:
         """Visit the next item; gives whether anything was left to do."""
-        item = self.select(context, wanted)
+        item = self.selection.select(context, wanted)
         if item is not None:
             context.item = item
             yield from self.visit(context, item, wanted)
@@ -345,48 +277,10 @@ class Machine:
             elif node.tag in ("var", "script", "data"):
                 yield from self.documents.declare(node, context.dialog, context)
             elif node.tag in ITEMS or is_unit(node):
-                self._declare_item(context, node)
+                self.selection.declare(context, node)
         for name in params.names:
             message = f'no variable of the form is the parameter "{name}"'
             raise Unasked.at(form, "error.semantic", message)
-
-    def _declare_item(self, context: Context, item: Node) -> None:
-        """Give an item's variable its first value; one without a name is but visited or not."""
-        if item.get("name"):
-            self.content.declare(item, context.dialog, context, self.local())
-            return
-        if "expr" in item.attributes:
-            guard, name = self.local(), "guard"
-            self.content.put(guard, name, item, "expr", context, self.local())
-            if self.engine.defined(guard, name):  # null is a value, too
-                context.visited.add(item.index)
-
-    def select(self, context: Context, wanted: str) -> Node | None:
-        """The item that a goto names, or its unit; else the first unfilled one whose condition holds."""
-        items = self._next_to(context)
-        return select_item(items, wanted, holds, lambda one: self._is_open(context, one))
-
-    def _is_open(self, context: Context, item: Node) -> bool:
-        """Whether an item's guard is not set and its condition holds; a menu always is."""
-        if item.tag == "menu":
-            return True
-        return not self.guarded(context, item) and self._holds(context, item)
-
-    def _next_to(self, context: Context) -> list[Node]:
-        """The items that may be visited next: of the unit, or of the dialog with its units."""
-        if context.unit is not None:
-            return [one for one in context.unit.nodes if one.tag in ITEMS]
-        form = context.form
-        if form is None or form.tag == "menu":
-            return self.items(context)
-        return [one for one in form.nodes if one.tag in ITEMS or is_unit(one)]
-
-    def guarded(self, context: Context, item: Node) -> bool:
-        """Whether an item's variable is defined, so that it is not visited."""
-        name = item.get("name")
-        if name:
-            return self.engine.defined(context.dialog, name)
-        return item.index in context.visited
 
     def visit(self, context: Context, item: Node, wanted: str = "") -> Flow:
         """Collect: prompts, then what the item waits for; in a unit perhaps an item that is wanted."""
@@ -418,13 +312,8 @@ class Machine:
     def _prompt(self, context: Context, item: Node) -> Flow:
         """Queue the prompts of an item that its counter has reached (4.1.6)."""
         context.counters = context.counters.asked(item.index)
-        pieces = select_prompts(
-            ((_least(piece), piece) for piece in item.content if _is_spoken(piece)),
-            context.counters.prompts[item.index],
-            lambda piece: self._holds(context, piece),
-        )
         bare: list[Node | str] = []
-        for piece in pieces:
+        for piece in self.selection.prompts(context, item):
             if isinstance(piece, str) or piece.tag != "prompt":
                 bare.append(piece)
                 continue
@@ -432,9 +321,6 @@ class Machine:
             bare = []
             self.content.utter(piece, context, self.local())
         yield from self.content.run_all(bare, context, self.local())
-
-    def _holds(self, context: Context, piece: Node | str) -> bool:
-        return isinstance(piece, str) or self.content.holds(piece, context, self.local())
 
     # Waiting --------------------------------------------------------------------------
 
@@ -455,14 +341,5 @@ class Machine:
         return (yield from self.app.wait(commands, open_to_answers))
 
 
-def _is_spoken(piece: Node | str) -> bool:
-    return isinstance(piece, str) or piece.tag in ("prompt", "audio", "value", "enumerate")
-
-
 def _holds_enumerate(node: Node) -> bool:
     return any(one.tag == "enumerate" or _holds_enumerate(one) for one in node.nodes)
-
-
-def _least(piece: Node | str) -> int:
-    """The count of a prompt; bare text is a prompt without attributes (4.1.2)."""
-    return 1 if isinstance(piece, str) else handler_number(piece)

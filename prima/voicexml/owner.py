@@ -231,6 +231,13 @@ class Filling(Protocol):
         """Run the ``filled`` elements of items that have just been filled."""
 
 
+class Selecting(Protocol):
+    """Selects the form items."""
+
+    def guarded(self, context: Context, item: Node) -> bool:
+        """Whether an item's variable is defined, so that it is not visited."""
+
+
 class Catching(Protocol):
     """Handles events."""
 
@@ -271,10 +278,6 @@ class MachineOwner(Protocol):
         """What it runs."""
 
     @property
-    def actions(self) -> list[Action]:
-        """What the application wants."""
-
-    @property
     def content(self) -> VoiceContentRunner:
         """Runs its content."""
 
@@ -287,6 +290,10 @@ class MachineOwner(Protocol):
         """Enters its documents."""
 
     @property
+    def selection(self) -> Selecting:
+        """Selects its items."""
+
+    @property
     def items_of(self) -> Filling:
         """Fills its items."""
 
@@ -294,27 +301,10 @@ class MachineOwner(Protocol):
     def events(self) -> Catching:
         """Handles its events."""
 
-    # Bounds:
-
-    def count_step(self, node: Node, steps: int = 1) -> None:
-        """Bound what is done in one instant."""
-
-    def utterance(self) -> Budget:
-        """What matching one more utterance may take."""
-
-    def count_output(self, characters: int, node: Node) -> None:
-        """Bound what comes out in one instant."""
-
-    def count_value(self, value: Json, node: Node) -> None:
-        """Count a value that leaves its variables."""
-
     # What is queued and waited for:
 
     def say(self, text: str, lang: str, place: str, prompt: Node | None = None) -> None:
         """Queue something to be said."""
-
-    def note_bargein(self, context: Context, own: str = "") -> None:
-        """Note whether the user may break in on what has just been queued."""
 
     def unqueue(self) -> list[Queued]:
         """What is queued, to be said in a wait that no question is part of."""
@@ -330,30 +320,10 @@ class MachineOwner(Protocol):
     ) -> Generator[None, Resume, Resume]:
         """Wait for the end of Commands."""
 
-    def fetch(
-        self, uri: str, node: Node, request: UriRequest | None = None
-    ) -> Generator[None, Resume, bytes]:
-        """A resource's bytes, or ``error.badfetch``."""
-
-    def send(self, service: str, values: Json, node: Node) -> None:
-        """Send values to a service, without waiting for its answer."""
-
     # The dialog:
 
     def local(self) -> Scope:
         """A new anonymous scope."""
-
-    def setting(self, context: Context, name: str) -> str:
-        """A property's value, innermost first (6.3)."""
-
-    def number(self, context: Context, name: str, default: float) -> float:
-        """A property as a number."""
-
-    def items(self, context: Context) -> list[Node]:
-        """The form items of the active dialog."""
-
-    def guarded(self, context: Context, item: Node) -> bool:
-        """Whether an item's variable is defined, so that it is not visited."""
 
     def visit_all(self, context: Context, wanted: str = "") -> Flow:
         """Visit the items of the dialog, or of the unit that it is in, until none is left."""

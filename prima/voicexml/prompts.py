@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from urllib.parse import urldefrag
 
-from prima.interpreter.content import MAX_REPEATS
-from prima.interpreter.places import short, source
-from prima.interpreter.transfers import Thrown, failure
+from prima.interpreter.places import source
 from prima.language.commands import TABLE_4_2
 from prima.language.values import shown
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Step
-from prima.script.evaluation import Scope, ScriptError, statement_place
+from prima.script.evaluation import Scope
 from prima.voicexml.arranging import ARRANGING, Arranged, Queued, arrange, longest_of, said_last
 from prima.voicexml.cues import (
     MAX_CUES,
@@ -24,24 +22,14 @@ from prima.voicexml.cues import (
 )
 from prima.voicexml.document import FetchError, Page, of_web
 from prima.voicexml.elements import SILENT
+from prima.voicexml.evaluating import VoiceEvaluator
 from prima.voicexml.owner import MachineOwner
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
+from prima.voicexml.settings import setting
 from prima.voicexml.speech import Speech
 from prima.voicexml.state import Context
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
-SHOWN = """function (v) { return v === undefined ? 'undefined'
-  : v === null || typeof v !== 'object' ? v : v.nodeType !== undefined ? v.textContent
-  : typeof v.toString === 'function' && v.toString !== Object.prototype.toString ? String(v)
-  : v; }""".replace("\n", "")
-"""What is said of a value in the engine: of a node of ``data`` its text, and of what has words of
-its own, as an array, these."""
-WORD = "function (v) { return v === void 0 ? null : `${v}`; }"
-"""What an attribute says by a value in the engine: nothing where it is undefined (5.1)."""
-NAME = "function (v) { return v === void 0 || v === null ? null : `${v}`; }"
-"""The same where it names something: null is no name, and no URI."""
-TOLD = frozenset(["message", "aai"])
-"""Attributes that name nothing: what they say is only told."""
 APART = frozenset(["p", "s", "paragraph", "sentence"])
 SENTENCE = Cue(0, "sentence")
 UNKNOWN_MS = 1000
@@ -54,105 +42,16 @@ Maker = Callable[[Node], Command]
 """Makes a Command of its element."""
 
 
-class Speaker:
-    """Evaluates expressions, and reads prompts for their words."""
+class Speaker(VoiceEvaluator):
+    """Reads prompts for their words."""
 
     def __init__(self, owner: MachineOwner) -> None:
-        self.owner = owner
-        self.engine = owner.engine
+        super().__init__(owner)
         self.mark: str | None = None
         """The last mark of what is queued, for devices that tell of none (VoiceXML 2.1, 4)."""
         self.ahead: tuple[Cue, ...] = ()
         """Pauses and marks behind which nothing has been said yet."""
         self._known: dict[str, int | None] = {}
-
-    # Expressions ------------------------------------------------------------------
-
-    def failure(self, error: ScriptError, node: Node, attribute: str) -> Thrown:
-        """``error.semantic`` with the place of what failed (5.2.6).
-
-        Raises:
-            GoOut: the engine is lost.
-        """
-        line, column = error.line, error.column
-        if (
-            attribute not in ("", "cond")
-            and not self.engine.lost
-            and self.engine.lenient(node.get(attribute)) != node.get(attribute)
-        ):
-            line, column = statement_place(error)
-        code = node.get(attribute) if attribute else node.tag
-        return failure(error, code, short(node.code_place(attribute, line, column)))
-
-    def code(self, node: Node, attribute: str) -> str:
-        """An attribute's expression; several statements, as other platforms take them, give one."""
-        return self.engine.lenient(node.get(attribute))
-
-    def value(self, node: Node, attribute: str, context: Context, local: Scope) -> Json:
-        """An attribute's expression as plain data."""
-        try:
-            return self.engine.value(self.code(node, attribute), context.scopes(local))
-        except ScriptError as error:
-            raise self.failure(error, node, attribute) from None
-
-    def holds(self, node: Node, context: Context, local: Scope) -> bool:
-        """An element's condition; one without holds."""
-        if "cond" not in node.attributes:
-            return True
-        try:
-            found = self.engine.condition(node.get("cond"), context.scopes(local))
-        except ScriptError as error:
-            raise self.failure(error, node, "cond") from None
-        self.owner.app.note(node, "true" if found else "false")
-        return found
-
-    def word(self, node: Node, name: str, context: Context, local: Scope) -> str:
-        """An attribute, or its ``expr`` form, as a word.
-
-        Raises:
-            Thrown: ``error.semantic`` where the expression fails or gives none.
-        """
-        dynamic = {"next": "expr", "nextitem": "expritem"}.get(name, f"{name}expr")
-        if name in node.attributes:
-            return node.get(name)
-        if dynamic not in node.attributes:
-            return ""
-        found = self._said(node, dynamic, WORD if name in TOLD else NAME, context, local)
-        if found is None:
-            raise self.failure(ScriptError("it has no value"), node, dynamic)
-        return str(found)
-
-    def _said(self, node: Node, attribute: str, how: str, context: Context, local: Scope) -> Json:
-        """What a function of the engine makes of the value of an attribute's expression."""
-        code = self.code(node, attribute)
-        try:
-            self.engine.compile(code)  # what does not compile is told by its own place
-            return self.engine.value(f"({how})(({code}\n))", context.scopes(local))
-        except ScriptError as error:
-            raise self.failure(error, node, attribute) from None
-
-    def elements(self, node: Node, context: Context, local: Scope) -> list[Json]:
-        """The elements of a foreach's array, as the engine's values."""
-        self.check_name(node, "item")
-        try:
-            found = self.engine.elements(
-                self.code(node, "array"), context.scopes(local), MAX_REPEATS
-            )
-        except ScriptError as error:
-            raise self.failure(error, node, "array") from None
-        for _ in found:
-            self.owner.count_step(node)
-        return found
-
-    @staticmethod
-    def check_name(node: Node, attribute: str = "name") -> None:
-        """Refuse to declare a variable by a name that says its scope."""
-        name = node.get(attribute)
-        if "." in name:
-            message = f'"{name}" names a scope; declare it there'
-            raise Thrown.at(node, "error.semantic", message)
-
-    # Prompts ------------------------------------------------------------------------
 
     def prompt(self, node: Node, context: Context, local: Scope) -> None:
         """Queue a prompt in executable content (4.1)."""
@@ -165,7 +64,17 @@ class Speaker:
         text, cues = speech.take()
         self.owner.say(text, speech.lang, speech.place, node)
         self.add(text, cues)
-        self.owner.note_bargein(context, node.get("bargein"))
+        self.note_bargein(context, node.get("bargein"))
+
+    def note_bargein(self, context: Context, own: str = "") -> None:
+        """Note whether the user may break in on what has just been queued (4.1.5, 6.3.2).
+
+        A Command is no prompt: it is always done. ``own`` is the prompt's attribute.
+        """
+        for command in self.owner.queue:
+            if command.hook is None:
+                said = command.type == "speak"
+                command.hook = said and (own or setting(context, "bargein")) != "false"
 
     def add(self, text: str, cues: tuple[Cue, ...]) -> None:
         """Give a text that has just been queued its cues.
@@ -227,7 +136,7 @@ class Speaker:
         if isinstance(item, str):
             speech.parts.append(item)
             return
-        self.owner.count_step(item)
+        self.owner.app.count_step(item)
         lang = item.get("xml:lang")
         if item.namespace == PRIMA_NAMESPACE:
             self.flush(speech)
@@ -246,7 +155,7 @@ class Speaker:
         match node.tag:
             case "value":
                 text = self.text(node, context, local)
-                self.owner.count_output(len(text), node)
+                self.owner.app.count_output(len(text), node)
                 speech.parts.append(text)
             case "audio":
                 self.audio(node, context, local, speech)
@@ -279,19 +188,10 @@ class Speaker:
             speech.parts.append(" ")
             self.read_all(node, context, local, speech)
 
-    def text(self, node: Node, context: Context, local: Scope) -> str:
-        """What a value says (4.1.4)."""
-        code, scopes = self.code(node, "expr"), context.scopes(local)
-        try:
-            self.engine.compile(code)  # what does not compile is told by its own place
-            return self.engine.text(f"({SHOWN})({code}\n)", scopes)
-        except ScriptError as error:
-            raise self.failure(error, node, "expr") from None
-
     def mark_here(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
         """A place that is told as passed (VoiceXML 2.1, 4)."""
         name = self.word(node, "name", context, local)[:MAX_NAME]
-        self.owner.count_output(len(name), node)
+        self.owner.app.count_output(len(name), node)
         speech.parts.append(" ")
         if not speech.silent:
             self.mark = name
@@ -378,7 +278,7 @@ class Speaker:
         made = arrange(
             nodes,
             lambda one: self.unit(one, make) if one.tag == "iu" else make(one),
-            self.owner.count_step,
+            self.owner.app.count_step,
         )
         return [Step(what, after) for what, after in made]
 
@@ -405,7 +305,7 @@ class Speaker:
         speech = Speech(self.lang(node, context), source(node))
         self.read_all(node, context, local, speech)
         said, cues = speech.take()
-        self.owner.count_output(len(said), node)
+        self.owner.app.count_output(len(said), node)
         made = Command(name, args, said or None, lang=lang or context.page.lang)
         made.source = source(node)
         if said:

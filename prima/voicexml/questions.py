@@ -11,6 +11,7 @@ from prima.messages import Heard as Spoken
 from prima.voicexml.arranging import Arranged, Queued, take_last_said
 from prima.voicexml.fetching import gathered
 from prima.voicexml.owner import MachineOwner
+from prima.voicexml.settings import setting
 from prima.voicexml.state import Context, Flow, Resume, TakenUtterance, thrown_outside
 
 
@@ -40,14 +41,14 @@ class Questions:
         """The question that an item's last prompt is (4.1.5, 4.1.7)."""
         prompt, self.owner.asking = self.owner.asking, None
 
-        def setting(name: str) -> str:
+        def wanted(name: str) -> str:
             own = prompt.get(name) if prompt is not None else ""
-            return own or self.owner.setting(context, name)
+            return own or setting(context, name)
 
-        timeout, bargein = milliseconds(setting("timeout"), 5000), setting("bargein") != "false"
-        hotword = bargein and setting("bargeintype") == "hotword"
+        timeout, bargein = milliseconds(wanted("timeout"), 5000), wanted("bargein") != "false"
+        hotword = bargein and wanted("bargeintype") == "hotword"
         cues = self.owner.content.question_cues(asked, self.owner.queue, hotword)
-        longest = milliseconds(self.owner.setting(context, "maxspeechtimeout"), 0)
+        longest = milliseconds(setting(context, "maxspeechtimeout"), 0)
         spoken = item.tag != "record" and "voice" in self.owner.inputs.modes(context)
         if longest and spoken:  # a recording has its own maxtime
             cues = (Cue(0, "longest", longest), *cues)

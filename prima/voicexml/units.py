@@ -72,7 +72,7 @@ class Units:
             return False
         if not isinstance(error, HungUp) and self._takes(context, unit, error):
             return False
-        if any(not self.owner.guarded(context, one) for one in unit.all(*ITEMS)):
+        if any(not self.owner.selection.guarded(context, one) for one in unit.all(*ITEMS)):
             self._unmark(context, unit)
         return True
 

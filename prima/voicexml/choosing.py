@@ -1,0 +1,77 @@
+"""Which form item is visited next, and what it says (2.1.6.1, 4.1.6)."""
+
+from __future__ import annotations
+
+from prima.interpreter.selection import select_item, select_prompts
+from prima.markup.tree import Node
+from prima.voicexml.arranging import holds, is_unit
+from prima.voicexml.elements import ITEMS, handler_number
+from prima.voicexml.owner import MachineOwner
+from prima.voicexml.settings import form_items
+from prima.voicexml.state import Context
+
+
+class ItemSelection:
+    """Declares the variables of form items, and selects by them; selects prompts by their counts."""
+
+    def __init__(self, owner: MachineOwner) -> None:
+        self._owner = owner
+
+    def declare(self, context: Context, item: Node) -> None:
+        """Give an item's variable its first value; one without a name is but visited or not."""
+        if item.get("name"):
+            self._owner.content.declare(item, context.dialog, context, self._owner.local())
+            return
+        if "expr" in item.attributes:
+            guard, name = self._owner.local(), "guard"
+            self._owner.content.put(guard, name, item, "expr", context, self._owner.local())
+            if self._owner.engine.defined(guard, name):  # null is a value, too
+                context.visited.add(item.index)
+
+    def select(self, context: Context, wanted: str) -> Node | None:
+        """The item that a goto names, or its unit; else the first unfilled one whose condition holds."""
+        items = self._next_to(context)
+        return select_item(items, wanted, holds, lambda one: self._is_open(context, one))
+
+    def _is_open(self, context: Context, item: Node) -> bool:
+        """Whether an item's guard is not set and its condition holds; a menu always is."""
+        if item.tag == "menu":
+            return True
+        if self.guarded(context, item):
+            return False
+        return self._owner.content.holds(item, context, self._owner.local())
+
+    def _next_to(self, context: Context) -> list[Node]:
+        """The items that may be visited next: of the unit, or of the dialog with its units."""
+        if context.unit is not None:
+            return [one for one in context.unit.nodes if one.tag in ITEMS]
+        form = context.form
+        if form is None or form.tag == "menu":
+            return form_items(context)
+        return [one for one in form.nodes if one.tag in ITEMS or is_unit(one)]
+
+    def guarded(self, context: Context, item: Node) -> bool:
+        """Whether an item's variable is defined, so that it is not visited."""
+        name = item.get("name")
+        if name:
+            return self._owner.engine.defined(context.dialog, name)
+        return item.index in context.visited
+
+    def prompts(self, context: Context, item: Node) -> list[Node | str]:
+        """The prompts of an item that its counter has reached (4.1.6)."""
+        content, local = self._owner.content, self._owner.local
+
+        def spoken(piece: Node | str) -> bool:
+            return isinstance(piece, str) or content.holds(piece, context, local())
+
+        pieces = ((_least(piece), piece) for piece in item.content if _is_spoken(piece))
+        return select_prompts(pieces, context.counters.prompts[item.index], spoken)
+
+
+def _is_spoken(piece: Node | str) -> bool:
+    return isinstance(piece, str) or piece.tag in ("prompt", "audio", "value", "enumerate")
+
+
+def _least(piece: Node | str) -> int:
+    """The count of a prompt; bare text is a prompt without attributes (4.1.2)."""
+    return 1 if isinstance(piece, str) else handler_number(piece)

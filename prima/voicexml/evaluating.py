@@ -1,0 +1,126 @@
+"""Evaluates expressions of VoiceXML documents."""
+
+from __future__ import annotations
+
+from prima.interpreter.content import MAX_REPEATS
+from prima.interpreter.places import short
+from prima.interpreter.transfers import Thrown, failure
+from prima.markup.tree import Node
+from prima.messages import Json
+from prima.script.evaluation import Scope, ScriptError, statement_place
+from prima.voicexml.owner import MachineOwner
+from prima.voicexml.state import Context
+
+SHOWN = """function (v) { return v === undefined ? 'undefined'
+  : v === null || typeof v !== 'object' ? v : v.nodeType !== undefined ? v.textContent
+  : typeof v.toString === 'function' && v.toString !== Object.prototype.toString ? String(v)
+  : v; }""".replace("\n", "")
+"""What is said of a value in the engine: of a node of ``data`` its text, and of what has words of
+its own, as an array, these."""
+WORD = "function (v) { return v === void 0 ? null : `${v}`; }"
+"""What an attribute says by a value in the engine: nothing where it is undefined (5.1)."""
+NAME = "function (v) { return v === void 0 || v === null ? null : `${v}`; }"
+"""The same where it names something: null is no name, and no URI."""
+TOLD = frozenset(["message", "aai"])
+"""Attributes that name nothing: what they say is only told."""
+
+
+class VoiceEvaluator:
+    """Evaluates what attributes hold, with the places of what fails."""
+
+    def __init__(self, owner: MachineOwner) -> None:
+        self.owner = owner
+        self.engine = owner.engine
+
+    def failure(self, error: ScriptError, node: Node, attribute: str) -> Thrown:
+        """``error.semantic`` with the place of what failed (5.2.6).
+
+        Raises:
+            GoOut: the engine is lost.
+        """
+        line, column = error.line, error.column
+        if (
+            attribute not in ("", "cond")
+            and not self.engine.lost
+            and self.engine.lenient(node.get(attribute)) != node.get(attribute)
+        ):
+            line, column = statement_place(error)
+        code = node.get(attribute) if attribute else node.tag
+        return failure(error, code, short(node.code_place(attribute, line, column)))
+
+    def code(self, node: Node, attribute: str) -> str:
+        """An attribute's expression; several statements, as other platforms take them, give one."""
+        return self.engine.lenient(node.get(attribute))
+
+    def value(self, node: Node, attribute: str, context: Context, local: Scope) -> Json:
+        """An attribute's expression as plain data."""
+        try:
+            return self.engine.value(self.code(node, attribute), context.scopes(local))
+        except ScriptError as error:
+            raise self.failure(error, node, attribute) from None
+
+    def holds(self, node: Node, context: Context, local: Scope) -> bool:
+        """An element's condition; one without holds."""
+        if "cond" not in node.attributes:
+            return True
+        try:
+            found = self.engine.condition(node.get("cond"), context.scopes(local))
+        except ScriptError as error:
+            raise self.failure(error, node, "cond") from None
+        self.owner.app.note(node, "true" if found else "false")
+        return found
+
+    def word(self, node: Node, name: str, context: Context, local: Scope) -> str:
+        """An attribute, or its ``expr`` form, as a word.
+
+        Raises:
+            Thrown: ``error.semantic`` where the expression fails or gives none.
+        """
+        dynamic = {"next": "expr", "nextitem": "expritem"}.get(name, f"{name}expr")
+        if name in node.attributes:
+            return node.get(name)
+        if dynamic not in node.attributes:
+            return ""
+        found = self._said(node, dynamic, WORD if name in TOLD else NAME, context, local)
+        if found is None:
+            raise self.failure(ScriptError("it has no value"), node, dynamic)
+        return str(found)
+
+    def _said(self, node: Node, attribute: str, how: str, context: Context, local: Scope) -> Json:
+        """What a function of the engine makes of the value of an attribute's expression."""
+        code = self.code(node, attribute)
+        try:
+            self.engine.compile(code)  # what does not compile is told by its own place
+            return self.engine.value(f"({how})(({code}\n))", context.scopes(local))
+        except ScriptError as error:
+            raise self.failure(error, node, attribute) from None
+
+    def elements(self, node: Node, context: Context, local: Scope) -> list[Json]:
+        """The elements of a foreach's array, as the engine's values."""
+        self.check_name(node, "item")
+        try:
+            found = self.engine.elements(
+                self.code(node, "array"), context.scopes(local), MAX_REPEATS
+            )
+        except ScriptError as error:
+            raise self.failure(error, node, "array") from None
+        for _ in found:
+            self.owner.app.count_step(node)
+        return found
+
+    @staticmethod
+    def check_name(node: Node, attribute: str = "name") -> None:
+        """Refuse to declare a variable by a name that says its scope."""
+        name = node.get(attribute)
+        if "." in name:
+            message = f'"{name}" names a scope; declare it there'
+            raise Thrown.at(node, "error.semantic", message)
+
+    def text(self, node: Node, context: Context, local: Scope) -> str:
+        """What a value says (4.1.4)."""
+        code, scopes = self.code(node, "expr"), context.scopes(local)
+        try:
+            self.engine.compile(code)  # what does not compile is told by its own place
+            return self.engine.text(f"({SHOWN})({code}\n)", scopes)
+        except ScriptError as error:
+            raise self.failure(error, node, "expr") from None
