@@ -7,13 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from prima.cli.common import (
-    clean,
-    coloured,
-    columns,
-    put,
-    tell,
-)
+from prima.cli.common import clean, coloured, columns, put, tell
 from prima.cli.terminal import Typist
 
 if TYPE_CHECKING:

@@ -10,12 +10,9 @@ still stopping is held back, and nothing is ever told to do two things at once.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 
-from prima.devices.ear import Ear, bounds_of
+from prima.devices.ear import Ear
 from prima.devices.goals import (
-    LISTEN,
-    RECORD,
     SAY,
     Accepted,
     Again,
@@ -23,11 +20,9 @@ from prima.devices.goals import (
     Begin,
     Broke,
     Call,
-    Cancel,
     Done,
     Lost,
     Progress,
-    RecordingBounds,
     Report,
     Safe,
     Stand,
@@ -37,93 +32,13 @@ from prima.devices.profile import Profile
 from prima.devices.senses import Sensors, Sight
 from prima.devices.settings import FOREVER, DriverLimits
 from prima.devices.speech import SpeechMarks, Utterance
-from prima.messages import (
-    Command,
-    Data,
-    Delayed,
-    Ended,
-    Failed,
-    Halted,
-    Inbound,
-    Json,
-    Listening,
-    Order,
-    Presence,
-)
+from prima.devices.tasks import Goal, OpenGoals, Task
+from prima.messages import Command, Data, Ended, Failed, Inbound, Json, Listening, Order
 
 NO_RESOURCE = "error.noresource"
 """The end of a question whose answer cannot be recorded (VoiceXML 2.0, 5.2.6)."""
 SEARCH = "active-sensing-human"
 """The Command that reports by itself whom it finds."""
-
-
-@dataclass(slots=True, eq=False)
-class Goal:
-    """Something that a driver does, or has still to begin."""
-
-    begin: Begin
-    task: Task
-    begun: bool = False
-    """Whether the driver has been told."""
-    accepted: bool = False
-    cancelled: bool = False
-    """Whether it was told to stop."""
-    since: int = 0
-    """When the driver was told something, or reported, last (ms)."""
-    held: tuple[int, str] | None = None
-    """Since when (ms) it is held back, and by which device that is still stopping."""
-
-    def late(self, limits: DriverLimits) -> int | None:
-        """When it will have taken too long (ms), if ever."""
-        limit = limits.cancel if self.cancelled else limits.progress
-        if not self.cancelled and not self.accepted:
-            limit = limits.accept
-        return None if limit is None or not self.begun else self.since + limit
-
-
-@dataclass(slots=True, eq=False)
-class Task:
-    """An AB that the devices carry out. Times are ms."""
-
-    order: Order
-    command: Command
-    began: int
-    goals: list[Goal] = field(default_factory=list)
-    """Those that have not ended."""
-    said: Utterance | None = None
-    """What it says, as far as that can be told without a report."""
-    ends: int | None = None
-    """When a loop ends, a pause is over, or a question without a text has been asked."""
-    asks: bool = False
-    """Whether it is a question that has still to be asked to its end."""
-    data: dict[str, Json] = field(default_factory=dict)
-    """What the device told at the end."""
-    failed: tuple[str, str] | None = None
-    """Which device did not do it, and why."""
-    lacks: bool = False
-    """Whether its devices work, and the robot cannot do just this."""
-    halting: bool = False
-    """Whether it was interrupted, and its devices have still to say how much was done (X2)."""
-    shares: list[float] = field(default_factory=list)
-    """How much of its goals had been done then."""
-    timed: float | None = None
-    """How much of it had been done then by its times, if these tell."""
-    heard: int | None = None
-    """How many characters had been said of what was left of its text, if the device tells."""
-
-    @property
-    def id(self) -> str:
-        """The AB's name."""
-        return self.order.behavior
-
-    @property
-    def name(self) -> str:
-        """The same without the number of its loop."""
-        return self.id.partition(".")[0]
-
-    def has(self, *kinds: str) -> bool:
-        """Whether a goal of one of these kinds is under way."""
-        return any(goal.begin.kind in kinds for goal in self.goals)
 
 
 class Conductor:
@@ -155,16 +70,11 @@ class Conductor:
         self._limits = limits
         self._exclusive = exclusive
         self._marks = SpeechMarks()
-        self._calls: list[Call] = []
         self._inbound: list[Inbound] = []
         """What has still to be told."""
-        self._goals: dict[str, Goal] = {}
-        """Those that have not ended, by their keys."""
+        self._goals = OpenGoals(self._inbound)
         self._looped: dict[str, Task] = {}
         """Feedback Commands whose loop has ended at this instant: another may follow (U2)."""
-        self._missing: dict[str, str] = {}
-        """Devices that are lost, and why."""
-        self._serial = 0
         self._now = start
 
     def drain(self) -> list[Call]:
@@ -172,11 +82,7 @@ class Conductor:
 
         What was held back begins here, if its devices are free by now.
         """
-        for goal in list(self._goals.values()):
-            if not goal.begun:
-                self._try(goal)
-        calls, self._calls = self._calls, []
-        return calls
+        return self._goals.drain(self._now)
 
     # Orders -------------------------------------------------------------------------
 
@@ -187,12 +93,13 @@ class Conductor:
             self._start(order)
         elif order.verb == "stop":
             self.end_loops()
-            self._calls.append(Stand())
+            self._goals.calls.append(Stand())
         elif (task := self.tasks.get(order.behavior)) is not None:
             task.halting = order.verb == "interrupt"
-            self._note_share(task)
+            question = self.ear.questions.get(task.id)
+            task.note_share(now, question.until if question else None)
             self._drop(task)
-            self._cancel(task)
+            self._goals.cancel(self._now, task)
             if not task.goals:
                 self._tell_halted(task)
 
@@ -212,9 +119,9 @@ class Conductor:
             task.goals = before.goals
             for goal in task.goals:
                 goal.task = task
-                self._calls.append(Again(goal.begin.key))
+                self._goals.calls.append(Again(goal.begin.key))
         else:
-            self._cancel(before)
+            self._goals.cancel(self._now, before)
             self._begin(task)
 
     def _loop(self, command: Command) -> int:
@@ -223,79 +130,19 @@ class Conductor:
 
     def _begin(self, task: Task) -> None:
         """Make the goals of an AB: its motion, what it says, and what it listens for."""
-        kind, devices = task.command.type, task.order.devices
-        lost = sorted(devices & self._missing.keys())
+        kind, lost = task.command.type, sorted(task.order.devices & self._goals.missing.keys())
         if lost:
-            task.failed = lost[0], self._missing[lost[0]]
+            task.failed = lost[0], self._goals.missing[lost[0]]
             return
         if kind == "q-and-a":
             self.ear.ask(task.id, task.command)
             task.asks = True
         if kind == "pause":
             task.ends = self._now + int(task.command.args["time"])
-        elif kind not in ("speak", "q-and-a"):
-            self._goal(task, kind, devices - {"speaker"} if task.said is not None else devices)
-        if task.said is not None:
-            self._goal(task, SAY, devices & {"speaker"})
-        elif kind in ("speak", "q-and-a"):
+        elif kind in ("speak", "q-and-a") and task.said is None:
             task.ends = self._now + 1
-        if kind == "q-and-a":
-            records = task.command.cued("record")
-            self._goal(task, RECORD if records else LISTEN, devices - {"speaker"})
-
-    def _goal(self, task: Task, kind: str, devices: frozenset[str]) -> None:
-        self._serial += 1
-        spoken = task.said.ends if task.said is not None else 0
-        says = task.said if kind == SAY else None
-        begin = Begin(
-            f"{task.name}/{self._serial}",
-            kind,
-            task.command if says is None else says.left(),
-            devices,
-            spoken,
-            task.ends,
-            self._loop(task.command),
-            task.order.beside,
-            (bounds_of(task.command) if kind == RECORD else None) or RecordingBounds(),
-        )
-        goal = Goal(begin, task)
-        task.goals.append(goal)
-        self._goals[begin.key] = goal
-        self._try(goal)
-
-    def _try(self, goal: Goal) -> None:
-        """Tell the driver, unless one of the devices is still stopping, or lost."""
-        devices = goal.begin.devices
-        if devices & self._missing.keys():
-            return
-        stopping = {
-            name
-            for one in self._goals.values()
-            if one.cancelled
-            for name in one.begin.devices & devices
-        }
-        if stopping:
-            goal.held = goal.held or (self._now, min(stopping))
-            return
-        if goal.held is not None and goal.held[0] < self._now:
-            since, device = goal.held
-            self._inbound.append(Delayed(goal.task.id, device, self._now - since))
-        goal.begun, goal.since = True, self._now
-        self._calls.append(goal.begin)
-
-    def _cancel(self, task: Task) -> None:
-        """Let the goals of an AB end as soon as they can."""
-        for goal in list(task.goals):
-            self._cancel_goal(goal)
-
-    def _cancel_goal(self, goal: Goal) -> None:
-        if not goal.begun:
-            if goal.begin.kind == SAY:
-                goal.task.heard = 0
-            self._over(goal)
-        elif not goal.cancelled:
-            goal.cancelled, goal.since = True, self._now
-            self._calls.append(Cancel(goal.begin.key))
+        for part, on in task.parts():
+            self._goals.add(self._now, task, part, on, self._loop(task.command))
 
     def _drop(self, task: Task) -> None:
         """An AB is no longer carried out; its goals may still have to stop."""
@@ -306,13 +153,13 @@ class Conductor:
         """Something else begins on devices of a feedback Command, which so makes no other loop."""
         for other in list(self._looped.values()):
             if other.order.devices & devices:
-                self._cancel(self._looped.pop(other.name))
+                self._goals.cancel(self._now, self._looped.pop(other.name))
 
     def end_loops(self) -> None:
         """F5: feedback Commands that were not ordered to go on are over."""
         looped, self._looped = self._looped, {}
         for task in looped.values():
-            self._cancel(task)
+            self._goals.cancel(self._now, task)
 
     # Reports ------------------------------------------------------------------------
 
@@ -323,10 +170,8 @@ class Conductor:
             case Lost():
                 self._lose(report)
             case Back():
-                for device in sorted(report.devices & self._missing.keys()):
-                    del self._missing[device]
-                    self._inbound.append(Presence(device, True))
-            case _ if (goal := self._goals.get(report.key)) is not None and goal.begun:
+                self._goals.bring_back(report.devices)
+            case _ if (goal := self._goals.open.get(report.key)) is not None and goal.begun:
                 self._hear(goal, report)
 
     def _hear(self, goal: Goal, report: Accepted | Progress | Done | Stopped | Broke) -> None:
@@ -335,9 +180,9 @@ class Conductor:
             goal.accepted = True
             goal.since = goal.since if goal.cancelled else self._now
             return
-        self._over(goal)
+        self._goals.over(goal)
         if goal.cancelled:  # however it has ended
-            self._note_end(task, goal.begin, report)
+            task.note_end(goal.begin, report)
             if self.tasks.get(task.id) is not task and not task.goals:
                 self._tell_halted(task)
         elif isinstance(report, Done):
@@ -348,61 +193,25 @@ class Conductor:
             task.lacks = report.lacks
             self._fail(task, report.device, report.reason)
 
-    def _over(self, goal: Goal) -> None:
-        """A goal has ended: its devices are free."""
-        del self._goals[goal.begin.key]
-        goal.task.goals.remove(goal)
-
     def _fail(self, task: Task, device: str, reason: str) -> None:
         """E1: an AB fails as a whole."""
         if self.tasks.get(task.id) is task:
             task.failed = device, reason
-            self._cancel(task)
+            self._goals.cancel(self._now, task)
 
     def _lose(self, lost: Lost) -> None:
         """Devices are gone: what ran on them fails, what was stopping has stopped."""
-        for device in sorted(lost.devices - self._missing.keys()):
-            self._missing[device] = lost.reason
-            self._inbound.append(Presence(device, False, lost.reason))
-        for goal in list(self._goals.values()):
+        self._goals.lose(lost.devices, lost.reason)
+        for goal in list(self._goals.open.values()):
             gone = sorted(goal.begin.devices & lost.devices)
-            if gone and goal.begin.key in self._goals:
+            if gone and goal.begin.key in self._goals.open:
                 report = Broke(goal.begin.key, gone[0], lost.reason)
                 goal.begun = True
                 self._hear(goal, report)
 
-    def _note_share(self, task: Task) -> None:
-        """X2: how much of an AB had been done, as far as its times tell."""
-        question, said = self.ear.questions.get(task.id), task.said
-        known = (task.ends, question.until if question else None, said.ends if said else None)
-        ends = max((time for time in known if time is not None), default=0)
-        began = task.began - (said.skipped if said is not None else 0)
-        if ends > task.began:
-            task.timed = (self._now - began) / (ends - began)
-
-    @staticmethod
-    def _note_end(task: Task, goal: Begin, report: Done | Stopped | Broke) -> None:
-        """X2: how much of a goal had been done that was to stop, as its driver tells."""
-        if isinstance(report, Stopped) and report.share is not None:
-            task.shares.append(report.share)
-        if goal.kind == SAY and isinstance(report, Done):
-            task.heard = len(goal.command.text or "")
-        elif goal.kind == SAY and isinstance(report, Stopped):
-            task.heard = report.said
-
     def _tell_halted(self, task: Task) -> None:
-        """X2: say how much had been done of an AB that was interrupted."""
-        if not task.halting:
-            return
-        said = task.said
-        timed = task.timed if said is None or task.heard is None else said.share(task.heard)
-        shares = [*task.shares, *([] if timed is None else [timed])]
-        data: dict[str, Json] = {"done": round(min(max(min(shares, default=0.0), 0.0), 1.0), 3)}
-        if said is not None:
-            data |= said.heard(self._now, task.heard)
-        elif task.command.text:
-            data["heard"] = task.command.text.strip()
-        self._inbound.append(Halted(task.id, data))
+        if task.halting:
+            self._inbound.append(task.halted(self._now))
 
     # Time ---------------------------------------------------------------------------
 
@@ -410,7 +219,7 @@ class Conductor:
         """The next instant at which something is to be reported, if one is known (ms)."""
         now = self._now
         due = [task.ends for task in self.tasks.values() if task.ends and task.ends > now]
-        late = (goal.late(self._limits(goal.begin)) for goal in self._goals.values())
+        late = (goal.late(self._limits(goal.begin)) for goal in self._goals.open.values())
         times = (self.sight.due(now, visible), self.ear.due(), *late)
         due += [time for time in times if time is not None]
         if self._inbound or any(task.failed for task in self.tasks.values()):
@@ -428,7 +237,8 @@ class Conductor:
         self._now = now
         self.end_loops()
         self._give_up_late()
-        reports, self._inbound = self._inbound, []
+        reports = list(self._inbound)
+        self._inbound.clear()
         for task in self._in_order():
             reports += self._report(task, where)
         searching = any(one.command.type == SEARCH for one in self.tasks.values())
@@ -489,18 +299,18 @@ class Conductor:
     def _leave(self, task: Task) -> None:
         """An AB has come to its end."""
         self._drop(task)
-        self._cancel(task)
+        self._goals.cancel(self._now, task)
         self._marks.end(self._now, task.order.app, task.said)
 
     def _give_up_late(self) -> None:
         """Give up goals whose drivers take too long; one that does not stop is not safe."""
-        for goal in list(self._goals.values()):
+        for goal in list(self._goals.open.values()):
             late = goal.late(self._limits(goal.begin))
-            if late is None or late > self._now or goal.begin.key not in self._goals:
+            if late is None or late > self._now or goal.begin.key not in self._goals.open:
                 continue
             if goal.cancelled:
                 reason = "the device does not stop"
-                self._calls.append(Safe(reason))
+                self._goals.calls.append(Safe(reason))
                 self._lose(Lost(goal.begin.devices, reason))
             else:
                 what = "answer" if goal.accepted else "accept it"
@@ -519,7 +329,7 @@ class Conductor:
         if task.said is not None:
             task.said.ends = now
         for goal in [one for one in task.goals if one.begin.kind == SAY]:
-            self._cancel_goal(goal)
+            self._goals.cancel_goal(self._now, goal)
 
     def longest_answer(self) -> int:
         """How long the user may speak (ms); 0 without end (VoiceXML 2.0, 6.3.2)."""

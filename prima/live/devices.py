@@ -40,15 +40,7 @@ from prima.live.carried import lacking, route
 from prima.live.deadlines import within
 from prima.live.driver import Driver
 from prima.live.journal import KnownAtCut
-from prima.messages import (
-    ApplicationLoaded,
-    Emergency,
-    Heard,
-    Inbound,
-    Order,
-    Record,
-    Sensed,
-)
+from prima.messages import ApplicationLoaded, Emergency, Heard, Inbound, Order, Record, Sensed
 from prima.sim.entrances import Entrances
 
 T = TypeVar("T")

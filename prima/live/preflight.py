@@ -9,17 +9,7 @@ from statistics import median
 from time import monotonic
 from typing import Any
 
-from prima.devices.goals import (
-    LISTEN,
-    SAY,
-    Begin,
-    Broke,
-    Done,
-    Lost,
-    News,
-    Report,
-    Stopped,
-)
+from prima.devices.goals import LISTEN, SAY, Begin, Broke, Done, Lost, News, Report, Stopped
 from prima.devices.profile import Profile, read_robot
 from prima.devices.settings import DriverLimits
 from prima.errors import UsageError

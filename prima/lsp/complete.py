@@ -16,14 +16,7 @@ from prima.lsp.meanings import DEFINES, FILES, REFERS, ReferenceUse
 from prima.lsp.names import dialect
 from prima.lsp.scan import Attr, ScannedTag, ScannedText
 from prima.lsp.snippets import opening, snippet
-from prima.lsp.tables import (
-    BY_NAMESPACE,
-    attributes,
-    children,
-    is_code,
-    roots,
-    values,
-)
+from prima.lsp.tables import BY_NAMESPACE, attributes, children, is_code, roots, values
 from prima.lsp.workspace import FoundName, Text, Workspace
 
 MOST = 500

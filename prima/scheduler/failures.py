@@ -6,14 +6,7 @@ from typing import Final
 
 from prima.messages import Command, Notice
 from prima.scheduler.behavior import RUNNING, Behavior
-from prima.scheduler.endings import (
-    close_unit,
-    delete,
-    delete_rest,
-    note_rolling,
-    remove,
-    silence,
-)
+from prima.scheduler.endings import close_unit, delete, delete_rest, note_rolling, remove, silence
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.memory import WorkingMemory
 from prima.scheduler.streams import let_go

@@ -2,15 +2,7 @@
 
 from __future__ import annotations
 
-from prima.scheduler.behavior import (
-    GONE,
-    LINKED,
-    RUNNING,
-    WAITING,
-    Application,
-    Behavior,
-    Stream,
-)
+from prima.scheduler.behavior import GONE, LINKED, RUNNING, WAITING, Application, Behavior, Stream
 
 
 class WorkingMemory:

@@ -2,15 +2,7 @@
 
 from __future__ import annotations
 
-from prima.messages import (
-    NO_DEVICES,
-    Command,
-    LeaveState,
-    Notice,
-    OpenUnit,
-    Request,
-    line_of,
-)
+from prima.messages import NO_DEVICES, Command, LeaveState, Notice, OpenUnit, Request, line_of
 from prima.scheduler.admission import (
     CommandRefused,
     check_command,
@@ -22,15 +14,7 @@ from prima.scheduler.admission import (
 from prima.scheduler.behavior import GONE, Application, Behavior, Stream
 from prima.scheduler.endings import cancel, close_unit, withdraw
 from prima.scheduler.mediation import Mediation
-from prima.scheduler.streams import (
-    continue_with,
-    drop_hints,
-    going_on,
-    held_of,
-    let_go,
-    opened,
-    x3,
-)
+from prima.scheduler.streams import continue_with, drop_hints, going_on, held_of, let_go, opened, x3
 
 
 def u3(mediation: Mediation, app: Application, asked: Request) -> None:

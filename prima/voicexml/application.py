@@ -35,14 +35,7 @@ from prima.script.isolated import AnyEngine, Engines
 from prima.voicexml.arranging import Queued, steps_of
 from prima.voicexml.document import Page, VoiceDocument
 from prima.voicexml.machine import Machine
-from prima.voicexml.state import (
-    SCOPES,
-    Flow,
-    Resume,
-    TakenUtterance,
-    UnitOver,
-    thrown_of_event,
-)
+from prima.voicexml.state import SCOPES, Flow, Resume, TakenUtterance, UnitOver, thrown_of_event
 
 
 class VoiceInterpreter(App[AnyEngine]):

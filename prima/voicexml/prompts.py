@@ -12,14 +12,7 @@ from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Step
 from prima.script.evaluation import Scope
 from prima.voicexml.arranging import ARRANGING, Arranged, Queued, arrange, longest_of, said_last
-from prima.voicexml.cues import (
-    MAX_CUES,
-    MAX_NAME,
-    break_ms,
-    later,
-    milliseconds,
-    rate_of,
-)
+from prima.voicexml.cues import MAX_CUES, MAX_NAME, break_ms, later, milliseconds, rate_of
 from prima.voicexml.document import FetchError, Page, of_web
 from prima.voicexml.elements import SILENT
 from prima.voicexml.evaluating import VoiceEvaluator

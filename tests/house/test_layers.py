@@ -205,6 +205,7 @@ INSIDE = {
         {"goals", "lines", "protocol", "reading", "senses", "vocabulary", "voice"},
         {"ear", "endpoints", "settings"},
         {"loop", "profile", "speech"},
+        {"tasks"},
         {"conductor"},
         {"__init__"},
     ],

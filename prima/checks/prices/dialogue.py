@@ -4,24 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from prima.checks.prices.contents import (
-    handlers_of,
-    hooks_of,
-    inside,
-    own_contents,
-    sent_by,
-)
+from prima.checks.prices.contents import handlers_of, hooks_of, inside, own_contents, sent_by
 from prima.checks.prices.firsts import Firsts, asks_at_most, is_left, responds
 from prima.checks.prices.model import SPEECH, Gap, Outline, Price, PricedReaction, PricedState
 from prima.checks.prices.own import OwnEvents
 from prima.checks.prices.texts import words_of
-from prima.checks.prices.times import (
-    ASKED_AGAIN,
-    OFTEN,
-    SERVICES,
-    Times,
-    is_inner,
-)
+from prima.checks.prices.times import ASKED_AGAIN, OFTEN, SERVICES, Times, is_inner
 from prima.devices.profile import Profile
 from prima.errors import Place, UsageError
 from prima.interpreter.acts import (

@@ -5,12 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from prima.checks.prices.commands import command_price, group_price, unit_price
-from prima.checks.prices.contents import (
-    again,
-    contents_of,
-    inside,
-    thrown_by,
-)
+from prima.checks.prices.contents import again, contents_of, inside, thrown_by
 from prima.checks.prices.model import Price, devices_of
 from prima.checks.prices.texts import Constants
 from prima.devices.profile import Profile

@@ -8,14 +8,7 @@ from itertools import chain
 from prima.checks.prices.firsts import responds
 from prima.checks.prices.model import Gap, Outline, Price, PricedReaction, PricedState
 from prima.checks.prices.pages import TARGETS
-from prima.checks.prices.tags import (
-    holders,
-    is_foreign,
-    leaves,
-    returns,
-    thrown_by,
-    to_item,
-)
+from prima.checks.prices.tags import holders, is_foreign, leaves, returns, thrown_by, to_item
 from prima.checks.prices.times import ASKED_AGAIN, OFTEN, QUESTION
 from prima.checks.prices.voicetimes import ASKING, VoiceTimes
 from prima.devices.profile import Profile

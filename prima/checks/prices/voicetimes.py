@@ -8,11 +8,7 @@ from prima.checks.prices.commands import command_price, group_price, unit_price
 from prima.checks.prices.model import Price, devices_of
 from prima.checks.prices.pages import PricedPages
 from prima.checks.prices.speech import Said, SpeechReader, utterances
-from prima.checks.prices.tags import (
-    commands_in,
-    holders,
-    says,
-)
+from prima.checks.prices.tags import commands_in, holders, says
 from prima.checks.prices.times import QUESTION
 from prima.devices.profile import Profile
 from prima.devices.voice import duration
