@@ -7,28 +7,19 @@ and nothing else: of a prompt its words, of a question that it asks.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from itertools import chain
 from urllib.parse import urldefrag, urlsplit
 
 from prima.interpreter.acts import (
     Act,
-    Assign,
-    Clear,
     CommandRun,
-    CommandTemplate,
-    Exit,
     Expression,
     Foreach,
     Goto,
     Handler,
     If,
-    Pause,
-    Return,
-    StepTemplate,
-    Text,
-    Throw,
 )
 from prima.interpreter.elements import (
     Block,
@@ -46,11 +37,21 @@ from prima.interpreter.units import Finder, Reach, thrown_by
 from prima.markup.tree import Node
 from prima.messages import Json
 from prima.script.choices import PossibleText, choices
-from prima.voicexml.arranging import ARRANGING, is_unit, longest_of
-from prima.voicexml.cues import break_ms
+from prima.voicexml.acting import (
+    ACTS,
+    branches_of,
+    code_of,
+    commands_in,
+    run_of,
+    saying,
+    speak,
+    spoken_pieces,
+    text_of,
+)
+from prima.voicexml.arranging import is_unit, longest_of
 from prima.voicexml.document import Page
-from prima.voicexml.elements import HANDLERS, ITEMS, SILENT, handler_names, handler_number
-from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
+from prima.voicexml.elements import HANDLERS, ITEMS, handler_names, handler_number
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 ASKING = ("field", "initial", "record", "menu")
 FETCHING = ("goto", "submit", "data", "script")
@@ -100,7 +101,7 @@ class Sketch:
 
     def _item(self, node: Node) -> Item:
         name = node.get("name") or f"#{node.index}"
-        expr, cond = _code(node, "expr"), _code(node, "cond")
+        expr, cond = code_of(node, "expr"), code_of(node, "cond")
         properties: dict[str, Json] = {}
         own = (name, expr, cond, self._handlers(node), properties, node, None)
         if is_unit(node):
@@ -124,7 +125,7 @@ class Sketch:
         return tuple(
             Handler(
                 tuple(handler_names(node)),
-                _code(node, "cond"),
+                code_of(node, "cond"),
                 handler_number(node),
                 None,
                 self._acts(node, node.content),
@@ -134,11 +135,11 @@ class Sketch:
         )
 
     def _prompts(self, item: Node) -> Iterator[Prompt]:
-        for pieces, node in _spoken(item.content):
+        for pieces, node in spoken_pieces(item.content):
             words = text_of(pieces)
             if words and node is not None:
                 count = handler_number(node)
-                yield Prompt(words, count, _code(node, "cond"), None, None, node)
+                yield Prompt(words, count, code_of(node, "cond"), None, None, node)
             elif words:
                 yield Prompt(words, 1, None, None, None, item)
 
@@ -147,36 +148,25 @@ class Sketch:
     def _acts(self, holder: Node, content: Iterable[Node | str]) -> tuple[Act, ...]:
         """Content of an element as acts; what is said without an element of its own is its."""
         made: list[Act] = []
-        for pieces, node in _spoken(content):
-            cond = _code(node, "cond") if pieces and node is not None else None
+        for pieces, node in spoken_pieces(content):
+            cond = code_of(node, "cond") if pieces and node is not None else None
             if pieces and cond is not None:
-                made.append(If(((cond, tuple(self._saying(pieces, node or holder))),), holder))
+                made.append(If(((cond, tuple(saying(pieces, node or holder))),), holder))
             elif pieces:
-                made += self._saying(pieces, node or holder)
+                made += saying(pieces, node or holder)
             elif node is not None:
                 made += self._act(node)
         return tuple(made)
 
-    @staticmethod
-    def _saying(pieces: list[Node | str], node: Node) -> Iterator[Act]:
-        """What is said, and the Commands of the robot among it."""
-        words = text_of(pieces)
-        if words:
-            yield _run([_speak(words, node)])
-        for piece in pieces:
-            commands = commands_in(piece) if isinstance(piece, Node) else []
-            if commands:
-                yield _run(commands)
-
     def _act(self, node: Node) -> Iterator[Act]:
         if node.namespace == PRIMA_NAMESPACE:
             commands = commands_in(node)
-            yield from [_run(commands)] if commands else ()  # none in a document with errors
+            yield from [run_of(commands)] if commands else ()  # none in a document with errors
             return
         if node.tag in FETCHING and self._plays(node):
-            yield _run([_speak((Expression("", node, "fetchaudio"),), node)])
+            yield run_of([speak((Expression("", node, "fetchaudio"),), node)])
         if node.tag == "if":
-            branches = [(cond, self._acts(node, part)) for cond, part in _divided(node)]
+            branches = [(cond, self._acts(node, part)) for cond, part in branches_of(node)]
             yield If(tuple(branches), node)
         elif node.tag == "foreach":
             array = Expression(node.get("array"), node, "array")
@@ -259,121 +249,5 @@ def _filled_in(items: Iterable[Item]) -> Iterator[Filled]:
     return chain.from_iterable(item.filled for item in inner if isinstance(item, Field))
 
 
-def text_of(pieces: Iterable[Node | str]) -> Text:
-    """What is said of some pieces of a prompt, with its pauses; nothing of blanks alone."""
-    found = tuple(_words(pieces))
-    return found if any(not isinstance(one, str) or one.strip() for one in found) else ()
-
-
-def _words(pieces: Iterable[Node | str]) -> Iterator[str | Expression | Pause]:
-    for piece in pieces:
-        if isinstance(piece, str):
-            yield piece
-        elif piece.tag == "break":
-            yield Pause(break_ms(piece.get("time"), piece.get("strength"), piece.get("size")))
-        elif piece.tag in ("value", "enumerate") or (piece.tag == "audio" and not piece.content):
-            yield Expression(piece.get("expr"), piece)
-        elif piece.tag == "sub":
-            yield piece.get("alias")
-        elif piece.namespace != PRIMA_NAMESPACE and piece.tag not in SILENT:
-            yield from _words(piece.content)
-
-
-def commands_in(piece: Node) -> list[CommandTemplate]:
-    """The Commands of the robot in an element, itself included, in document order."""
-    return [
-        command_of(node)
-        for node in piece.walk()
-        if node.namespace == PRIMA_NAMESPACE and node.tag not in (*ARRANGING, "param")
-    ]
-
-
-def command_of(node: Node) -> CommandTemplate:
-    """A Command's element as PRIMA's language has it, without its arguments."""
-    name = node.get("type") if node.tag == "command" else node.tag
-    return CommandTemplate(name, {}, text_of(node.content) or None, False, (), (), node)
-
-
-def _speak(words: Text, node: Node) -> CommandTemplate:
-    return CommandTemplate("speak", {}, words, False, (), (), node)
-
-
-def _run(commands: list[CommandTemplate]) -> CommandRun:
-    steps = [StepTemplate(one, (index - 1,) if index else ()) for index, one in enumerate(commands)]
-    return CommandRun(tuple(steps), commands[0].node)
-
-
 def _is_item(node: Node) -> bool:
     return node.tag in ITEMS or node.tag == "menu" or is_unit(node)
-
-
-def _code(node: Node, attribute: str) -> Expression | None:
-    return (
-        Expression(node.get(attribute), node, attribute) if attribute in node.attributes else None
-    )
-
-
-def _spoken(content: Iterable[Node | str]) -> Iterator[tuple[list[Node | str], Node | None]]:
-    """Content as what is said, with its prompt where it has one, and as other elements alone."""
-    loose: list[Node | str] = []
-    for piece in content:
-        if isinstance(piece, str) or piece.tag in SPOKEN - {"prompt"}:
-            loose.append(piece)
-            continue
-        if loose:
-            yield loose, None
-            loose = []
-        yield ([*piece.content] if piece.tag == "prompt" else []), piece
-    if loose:
-        yield loose, None
-
-
-def _divided(node: Node) -> Iterator[tuple[Expression | None, list[Node | str]]]:
-    """The branches of an ``if``, each with its condition; that of ``else`` is none."""
-    cond, part = _code(node, "cond"), list[Node | str]()
-    for child in node.content:
-        if isinstance(child, Node) and child.tag in ("elseif", "else"):
-            yield cond, part
-            cond, part = _code(child, "cond"), []
-        else:
-            part.append(child)
-    yield cond, part
-
-
-# Acts of elements without content
-
-
-def _assign(node: Node) -> Act:
-    return Assign(node.get("name"), Expression(node.get("expr"), node), node)
-
-
-def _throw(node: Node) -> Act:
-    event = node.get("event") or Expression(node.get("eventexpr"), node, "eventexpr")
-    return Throw(event, "", node)
-
-
-def _goto(node: Node) -> Act:
-    return Goto(None, node.get("nextitem") or _code(node, "expritem"), node)
-
-
-def _clear(node: Node) -> Act:
-    names = (one.removeprefix("dialog.") for one in node.get("namelist").split())
-    return Clear(tuple(names), node)
-
-
-def _return(node: Node) -> Act:
-    if node.get("eventexpr"):
-        return Exit(node)
-    return Return(tuple(node.get("namelist").split()), node.get("event"), node)
-
-
-ACTS: Mapping[str, Callable[[Node], Act]] = {
-    "assign": _assign,
-    "throw": _throw,
-    "goto": _goto,
-    "submit": _goto,
-    "clear": _clear,
-    "return": _return,
-    "exit": Exit,
-    "disconnect": Exit,
-}

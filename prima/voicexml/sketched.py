@@ -13,11 +13,12 @@ from prima.interpreter.events import beginnings
 from prima.interpreter.repeats import told_twice
 from prima.interpreter.units import Reached, long_unit, speak, unit_problem, unit_speaks
 from prima.language.commands import TABLE_4_2, CommandType
+from prima.voicexml.acting import commands_in
 from prima.voicexml.arranging import UNIT, is_unit
 from prima.voicexml.caught import thrown_in
 from prima.voicexml.document import Page, broken
 from prima.voicexml.elements import HANDLERS
-from prima.voicexml.sketch import Sketch, commands_in
+from prima.voicexml.sketch import Sketch
 
 PREFIX = "p:"
 OWN = ("noinput", "nomatch", "help", "cancel", "exit", "error", "maxspeechtimeout", "connection")

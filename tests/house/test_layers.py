@@ -143,7 +143,7 @@ INSIDE = {
     "voicexml": [
         {"caught", "cues", "dom", "elements", "recordings", "site", "upgrade", "vocabulary"},
         {"arranging", "speech"},
-        {"checks"},
+        {"acting", "checks"},
         {"document"},
         {"listening", "matching", "sketch", "state", "variables"},
         {"owner", "results", "settings", "sketched"},

@@ -1,0 +1,156 @@
+"""Executable content of VoiceXML as the acts of PRIMA's own language."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+
+from prima.interpreter.acts import (
+    Act,
+    Assign,
+    Clear,
+    CommandRun,
+    CommandTemplate,
+    Exit,
+    Expression,
+    Goto,
+    Pause,
+    Return,
+    StepTemplate,
+    Text,
+    Throw,
+)
+from prima.markup.tree import Node
+from prima.voicexml.arranging import ARRANGING
+from prima.voicexml.cues import break_ms
+from prima.voicexml.elements import SILENT
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
+
+
+def text_of(pieces: Iterable[Node | str]) -> Text:
+    """What is said of some pieces of a prompt, with its pauses; nothing of blanks alone."""
+    found = tuple(_words(pieces))
+    return found if any(not isinstance(one, str) or one.strip() for one in found) else ()
+
+
+def _words(pieces: Iterable[Node | str]) -> Iterator[str | Expression | Pause]:
+    for piece in pieces:
+        if isinstance(piece, str):
+            yield piece
+        elif piece.tag == "break":
+            yield Pause(break_ms(piece.get("time"), piece.get("strength"), piece.get("size")))
+        elif piece.tag in ("value", "enumerate") or (piece.tag == "audio" and not piece.content):
+            yield Expression(piece.get("expr"), piece)
+        elif piece.tag == "sub":
+            yield piece.get("alias")
+        elif piece.namespace != PRIMA_NAMESPACE and piece.tag not in SILENT:
+            yield from _words(piece.content)
+
+
+def commands_in(piece: Node) -> list[CommandTemplate]:
+    """The Commands of the robot in an element, itself included, in document order."""
+    return [
+        command_of(node)
+        for node in piece.walk()
+        if node.namespace == PRIMA_NAMESPACE and node.tag not in (*ARRANGING, "param")
+    ]
+
+
+def command_of(node: Node) -> CommandTemplate:
+    """A Command's element as PRIMA's language has it, without its arguments."""
+    name = node.get("type") if node.tag == "command" else node.tag
+    return CommandTemplate(name, {}, text_of(node.content) or None, False, (), (), node)
+
+
+def speak(words: Text, node: Node) -> CommandTemplate:
+    """What is said, as a Command."""
+    return CommandTemplate("speak", {}, words, False, (), (), node)
+
+
+def run_of(commands: list[CommandTemplate]) -> CommandRun:
+    """Commands one after another, as an act."""
+    steps = [StepTemplate(one, (index - 1,) if index else ()) for index, one in enumerate(commands)]
+    return CommandRun(tuple(steps), commands[0].node)
+
+
+def saying(pieces: list[Node | str], node: Node) -> Iterator[Act]:
+    """What is said, and the Commands of the robot among it."""
+    words = text_of(pieces)
+    if words:
+        yield run_of([speak(words, node)])
+    for piece in pieces:
+        commands = commands_in(piece) if isinstance(piece, Node) else []
+        if commands:
+            yield run_of(commands)
+
+
+def code_of(node: Node, attribute: str) -> Expression | None:
+    """The code of an attribute, if it is there."""
+    return (
+        Expression(node.get(attribute), node, attribute) if attribute in node.attributes else None
+    )
+
+
+def spoken_pieces(content: Iterable[Node | str]) -> Iterator[tuple[list[Node | str], Node | None]]:
+    """Content as what is said, with its prompt where it has one, and as other elements alone."""
+    loose: list[Node | str] = []
+    for piece in content:
+        if isinstance(piece, str) or piece.tag in SPOKEN - {"prompt"}:
+            loose.append(piece)
+            continue
+        if loose:
+            yield loose, None
+            loose = []
+        yield ([*piece.content] if piece.tag == "prompt" else []), piece
+    if loose:
+        yield loose, None
+
+
+def branches_of(node: Node) -> Iterator[tuple[Expression | None, list[Node | str]]]:
+    """The branches of an ``if``, each with its condition; that of ``else`` is none."""
+    cond, part = code_of(node, "cond"), list[Node | str]()
+    for child in node.content:
+        if isinstance(child, Node) and child.tag in ("elseif", "else"):
+            yield cond, part
+            cond, part = code_of(child, "cond"), []
+        else:
+            part.append(child)
+    yield cond, part
+
+
+# Acts of elements without content
+
+
+def _assign(node: Node) -> Act:
+    return Assign(node.get("name"), Expression(node.get("expr"), node), node)
+
+
+def _throw(node: Node) -> Act:
+    event = node.get("event") or Expression(node.get("eventexpr"), node, "eventexpr")
+    return Throw(event, "", node)
+
+
+def _goto(node: Node) -> Act:
+    return Goto(None, node.get("nextitem") or code_of(node, "expritem"), node)
+
+
+def _clear(node: Node) -> Act:
+    names = (one.removeprefix("dialog.") for one in node.get("namelist").split())
+    return Clear(tuple(names), node)
+
+
+def _return(node: Node) -> Act:
+    if node.get("eventexpr"):
+        return Exit(node)
+    return Return(tuple(node.get("namelist").split()), node.get("event"), node)
+
+
+ACTS: Mapping[str, Callable[[Node], Act]] = {
+    "assign": _assign,
+    "throw": _throw,
+    "goto": _goto,
+    "submit": _goto,
+    "clear": _clear,
+    "return": _return,
+    "exit": Exit,
+    "disconnect": Exit,
+}
