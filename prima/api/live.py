@@ -47,7 +47,7 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded | None = None) 
         message = "what users said was left out of this journal, so it cannot be run again."
         raise UsageError(f"{transcript.name}: {message}")
     if scenario is None:
-        from prima.live.visit import reloaded
+        from prima.live.chosen import reloaded
 
         loaded = reloaded(head, transcript.name)
     else:
@@ -125,8 +125,9 @@ def run_live(
         RunError: the robot cannot be reached, or the journal cannot be written.
         KeyboardInterrupt: Ctrl-C or a signal has ended the run; the journal can be resumed.
     """
+    from prima.live.chosen import Chosen
     from prima.live.prepared import prepared
-    from prima.live.visit import Chosen, LiveSettings
+    from prima.live.visit import LiveSettings
     from prima.transcript.lines import finished, line
 
     def name(path: str | Path | None) -> str:

@@ -34,7 +34,8 @@ from prima.cli.common import (
 from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
-    from prima.live.visit import Chosen, LiveSettings, Visit
+    from prima.live.chosen import Chosen
+    from prima.live.visit import LiveSettings, Visit
     from prima.messages import Record
 
 INTERRUPTED = 130
@@ -130,8 +131,9 @@ def live(
     prima live --resume visit.jsonl
     """
     from prima.api.rehearsing import fetcher
+    from prima.live.chosen import Chosen
     from prima.live.prepared import check_usage, prepared
-    from prima.live.visit import Chosen, LiveSettings
+    from prima.live.visit import LiveSettings
 
     raise_limits(limits)
     chosen = Chosen(robot or "", scenario or "", world or "", fas, eas, maps, services or "")

@@ -16,8 +16,8 @@ import zipfile
 from pathlib import Path
 
 from prima.errors import UsageError
+from prima.experiments.kept import Kept
 from prima.experiments.sweep import Output, SweepQuestion
-from prima.experiments.variants import Kept
 from prima.loading.writing import whole
 from prima.messages import Json
 from prima.version import __version__

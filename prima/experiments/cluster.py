@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from prima.errors import RunError, UsageError
 from prima.errors.visible import escaped
 from prima.experiments.pools import Making, Pool, Result, Runs, local
-from prima.experiments.variants import Variant
+from prima.experiments.scenariotext import Variant
 from prima.pool import Died, cores
 from prima.version import __version__
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from prima import api
-from prima.experiments.variants import Made, Stage, Variant, failed_expectations
+from prima.experiments.scenariotext import Variant
+from prima.experiments.variants import Made, Stage, failed_expectations
 from prima.invariants import callers, check
 from prima.loading import Loaded
 

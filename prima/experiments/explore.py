@@ -19,7 +19,8 @@ from prima.experiments.lines import (
     shrunk,
 )
 from prima.experiments.pools import Pool, Runs
-from prima.experiments.variants import ExperimentSettings, Made, Variant
+from prima.experiments.scenariotext import Variant
+from prima.experiments.variants import ExperimentSettings, Made
 from prima.language.distributions import written
 from prima.language.values import LONGEST_MS, read_value
 from prima.pool import Died

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager
 from typing import Protocol, TypeVar
 
-from prima.experiments.variants import Variant
+from prima.experiments.scenariotext import Variant
 from prima.pool import Died, cores, staff
 
 Result = TypeVar("Result")

@@ -17,6 +17,7 @@ from prima.errors import UsageError, counted
 from prima.experiments.design import Design
 from prima.experiments.levels import Factor, cell, read_factor
 from prima.experiments.pools import Pool
+from prima.experiments.scenariotext import Variant
 from prima.experiments.table import (
     Column,
     columns,
@@ -25,7 +26,7 @@ from prima.experiments.table import (
     read_rows,
     write_parquet,
 )
-from prima.experiments.variants import ExperimentSettings, Made, Stage, Variant
+from prima.experiments.variants import ExperimentSettings, Made, Stage
 from prima.loading.writing import write_whole
 from prima.messages import Json
 from prima.pool import Died

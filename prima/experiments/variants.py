@@ -7,57 +7,35 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
-from pathlib import Path, PurePath
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import Any
 
 from prima import api
-from prima.devices.vocabulary.robot import ROBOT
-from prima.errors import TOO_MUCH, DocumentError, PrimaError, Problem, UsageError, has_errors
+from prima.errors import TOO_MUCH, DocumentError, PrimaError, Problem, UsageError
 from prima.errors.visible import visible
+from prima.experiments.kept import Kept
+from prima.experiments.scenariotext import ScenarioText, Variant
 from prima.interpreter.elements import Document
 from prima.loading import Loaded, load_text, with_robot, with_scenario
-from prima.loading.files import Files, GivenFiles, in_place_of_files, read_file, read_head
+from prima.loading.files import Files, in_place_of_files, read_file
 from prima.loading.writing import write_whole
-from prima.markup.edits import TextEdit, edited, set_attribute
 from prima.markup.limits import LIMITS
-from prima.markup.reader import read_tree
-from prima.markup.tree import Node
 from prima.messages import Json
-from prima.sim.paths import ScenarioValue, find
-from prima.sim.scenario import look_at_scenario
-from prima.sim.vocabulary.scenario import SCENARIO
+from prima.sim.paths import ScenarioValue
 from prima.testing.checking import Failure, check
 from prima.testing.facts import make_run
 from prima.testing.tracing import states_of
 from prima.transcript.criteria import Criteria
 from prima.transcript.row import Row
-from prima.voicexml.recordings import length_ms
 
 MOST_LOADED = 64
 """Combinations of documents, worlds and robots that are kept loaded."""
-MOST_SENT = 64_000_000
-"""Bytes of documents that are sent to a cluster."""
-MOST_FILES = 1_000
-"""Files of the folders of VoiceXML applications that are sent to a cluster."""
 MOST_MESSAGE = 1_000
 """Characters of a run's messages."""
 CRITERIA = [one.name for one in fields(Criteria) if one.name != "delays"]
-
-
-class Variant(NamedTuple):
-    """One run: which scenario, its policy, and the values of what is varied."""
-
-    number: int
-    scenario: int
-    policy: str
-    """Empty for the scenario's own."""
-    seed: int
-    """By which the run is drawn; 0 for the scenario's own."""
-    values: tuple[str, ...]
 
 
 @dataclass(slots=True)
@@ -82,189 +60,6 @@ class ExperimentSettings:
     patience: int | None = None
     isolate: str = "ea"
     limits: Mapping[str, int] = field(default_factory=lambda: asdict(LIMITS))
-
-
-class ScenarioText:
-    """A scenario as it is written, and the values in it that are varied."""
-
-    def __init__(self, path: str, data: bytes, paths: Sequence[str]) -> None:
-        """Read a scenario.
-
-        Raises:
-            DocumentError: it has errors.
-            UsageError: a path means nothing in it.
-        """
-        self.path = path
-        scenario, problems = look_at_scenario(path, data)
-        if has_errors(problems):
-            raise DocumentError(problems)
-        self.root = scenario.node
-        self.policy = scenario.policy
-        try:
-            self.targets = [find(self.root, one, lambda: self.robot) for one in paths]
-        except UsageError as error:
-            raise UsageError(f"{path}: {error}") from None
-        self._check_apart()
-        users = [one for one in self.root.all("person") if "user" in one.attributes]
-        self._drawn = "seed" not in paths and (
-            scenario.draws.any
-            or bool(users)
-            or any(one.attribute and one.attribute.name == "user" for one in self.targets)
-        )
-
-    @cached_property
-    def robot(self) -> Node:
-        """The robot's document.
-
-        Raises:
-            DocumentError: it is no robot's document.
-            UsageError: it cannot be read.
-        """
-        path = os.path.normpath(os.path.join(os.path.dirname(self.path), self.root.get("robot")))
-        root, problems = read_tree(path, read_file(path), ROBOT)
-        if has_errors(problems):
-            raise DocumentError(problems)
-        return root
-
-    def _check_apart(self) -> None:
-        """Refuse two paths of one value, and another robot beside changes of the one it replaces."""
-        seen: dict[tuple[bool, int, str], str] = {}
-        for target in self.targets:
-            name = target.attribute.name if target.attribute else ""
-            key = target.of_robot, target.node.index, name
-            if key in seen:
-                raise UsageError(f'"{seen[key]}" and "{target.path}" are the same value.')
-            seen[key] = target.path
-        changed = next((one.path for one in self.targets if one.of_robot), None)
-        if changed and (False, self.root.index, "robot") in seen:
-            message = f'"{changed}" is a value of one robot, and "robot" names others.'
-            raise UsageError(f"{message} Vary one of the two.")
-
-    def _changed(self, variant: Variant) -> Iterator[tuple[ScenarioValue, str]]:
-        """The values that a run changes."""
-        pairs = zip(self.targets, variant.values, strict=True)
-        return ((one, value) for one, value in pairs if value != one.written)
-
-    def text(self, variant: Variant) -> bytes:
-        """The scenario of a run."""
-        changed = self._changed(variant)
-        edits = [one.edit(value) for one, value in changed if not one.of_robot]
-        return edited(self.root.source.text, [*edits, *self._seeded(variant)])
-
-    def robot_text(self, variant: Variant) -> bytes | None:
-        """The robot's document of a run; None if it is as it is written."""
-        edits = [one.edit(value) for one, value in self._changed(variant) if one.of_robot]
-        return edited(self.robot.source.text, edits) if edits else None
-
-    def _seeded(self, variant: Variant) -> list[TextEdit]:
-        """The edit that lets a run be drawn by its seed, if anything is drawn."""
-        if not (self._drawn and variant.seed):
-            return []
-        return [set_attribute(self.root, "seed", str(variant.seed))]
-
-    def moved(self, variant: Variant, folder: Path, robot: Path | None = None) -> bytes:
-        """The scenario of a run with its policy, as a file of another folder.
-
-        Args:
-            variant: the run.
-            folder: the folder.
-            robot: another document of the robot.
-        """
-        changed = [one for one in self._changed(variant) if not one[0].of_robot]
-        files = {
-            (one.node.index, one.attribute.name): value
-            for one, value in changed
-            if one.attribute and one.kind == "path"
-        }
-        if robot:
-            files[self.root.index, "robot"] = str(robot.absolute())
-        edits = [one.edit(value) for one, value in changed if one.kind != "path"]
-        edits += self._seeded(variant)
-        if variant.policy:
-            edits.append(set_attribute(self.root, "policy", variant.policy))
-        edits += self._files_from(folder, files)
-        return edited(self.root.source.text, edits)
-
-    def _files_from(
-        self, folder: Path, varied: Mapping[tuple[int, str], str]
-    ) -> Iterator[TextEdit]:
-        """Edits by which all files are named as seen from another folder.
-
-        Args:
-            folder: the other folder.
-            varied: the files that a run has in place of those written, by element and attribute.
-        """
-        here = os.path.dirname(os.path.abspath(self.path))
-        for node in self.root.walk():
-            for item in SCENARIO.elements[node.key].attributes:
-                value = varied.get((node.index, item.name), node.get(item.name))
-                if item.kind == "path" and value:
-                    beside = os.path.relpath(os.path.join(here, value), folder.absolute())
-                    yield set_attribute(node, item.name, PurePath(beside).as_posix())
-
-
-class Kept:
-    """Keeps the content of every file that is read while it is in place."""
-
-    def __init__(self) -> None:
-        self.folder = os.getcwd()
-        self.texts: dict[Path, bytes] = {}
-        self.heads: dict[Path, tuple[bytes, int]] = {}
-
-    def text(self, path: Path) -> bytes | None:
-        """The content of a file as it was first read."""
-        if path not in self.texts:
-            try:
-                with path.open("rb") as stream:
-                    self.texts[path] = stream.read(LIMITS.bytes + 1)
-            except OSError:
-                return None
-        return self.texts[path]
-
-    def head(self, path: Path) -> tuple[bytes, int] | None:
-        """The first bytes of a file and its size as they were first."""
-        if path not in self.heads:
-            try:
-                self.heads[path] = read_head(path)
-            except OSError:
-                return None
-        return self.heads[path]
-
-    def keep(self, folder: str) -> None:
-        """Keep all files of a folder; of sounds only their heads.
-
-        A link that leads out of the folder is none of its files: an application may not read it.
-
-        Raises:
-            UsageError: they are too many or too large.
-        """
-        held, root = sum(map(len, self.texts.values())), Path(self.folder, folder)
-        for path in sorted(root.rglob("*")):
-            inside = path.is_file() and path.resolve().is_relative_to(root.resolve())
-            if inside and (head := self.head(path)):
-                if length_ms(*head) is None:
-                    held += len(self.text(path) or b"")
-                if held > MOST_SENT or len(self.heads) > MOST_FILES:
-                    raise UsageError(
-                        f"{folder}: a cluster needs the files that an application may name,"
-                        f" and its folder has more than {MOST_SENT // 1_000_000} MB of them,"
-                        f" or more than {MOST_FILES:,}. Keep it in a folder of its own."
-                    )
-
-    @contextmanager
-    def beside(self, files: Mapping[Path, bytes]) -> Iterator[None]:
-        """Let files that are still to be written count as if they were there."""
-        added = {path.absolute(): data for path, data in files.items()}
-        self.texts |= added
-        try:
-            yield
-        finally:
-            for path in added:
-                del self.texts[path]
-
-    def contents(self) -> GivenFiles:
-        """What was read, for another process."""
-        return GivenFiles(self.texts, self.heads, self.folder)
 
 
 class Stage:

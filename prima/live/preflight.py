@@ -15,12 +15,13 @@ from prima.devices.settings import DriverLimits
 from prima.errors import UsageError
 from prima.language.commands import Argument, CommandType
 from prima.live.carried import SPOKEN, lacking, route
+from prima.live.chosen import Chosen
 from prima.live.deadlines import run, within
 from prima.live.devices import SAFE_S, LiveDevices
 from prima.live.driver import Driver, Unreachable
 from prima.live.shell import open_driver
 from prima.live.signals import heeding_signals
-from prima.live.visit import Chosen, LiveSettings, make_drivers
+from prima.live.visit import LiveSettings, make_drivers
 from prima.loading import documents_folder
 from prima.loading.files import read_file
 from prima.messages import Command, Json

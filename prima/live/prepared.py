@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from prima.errors import UsageError
+from prima.live.chosen import Chosen
 from prima.live.journal import read_broken
 from prima.live.resumed import go_on
-from prima.live.visit import Chosen, LiveSettings, Visit, begin
+from prima.live.visit import LiveSettings, Visit, begin
 
 
 def check_usage(

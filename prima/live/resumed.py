@@ -7,20 +7,12 @@ from dataclasses import replace
 from prima.devices.loop import Loop
 from prima.errors import UsageError
 from prima.language.commands import PATIENCE_MS
+from prima.live.chosen import Chosen, chosen_then, reloaded
 from prima.live.clock import Clock
 from prima.live.devices import LiveDevices
 from prima.live.journal import CutJournal, Journal, catch_up, going_on, known, lacking
 from prima.live.services import LiveServices
-from prima.live.visit import (
-    Chosen,
-    LiveSettings,
-    Visit,
-    chosen_then,
-    in_simulation,
-    on_robot,
-    record_beside,
-    reloaded,
-)
+from prima.live.visit import LiveSettings, Visit, in_simulation, on_robot, record_beside
 from prima.loading import Loaded
 from prima.loading.heads import chosen_policy
 from prima.messages import Record

@@ -9,22 +9,16 @@ from __future__ import annotations
 import asyncio
 import json
 import os
-import socket
-import threading
-import time
 from collections.abc import Callable, Container, Iterable, Mapping
-from contextlib import suppress
-from dataclasses import dataclass, field
-from http.client import HTTPException, HTTPResponse
-from typing import TYPE_CHECKING, TypeVar
-from urllib.error import HTTPError, URLError
-from urllib.parse import urlsplit
+from http.client import HTTPResponse
+from typing import TYPE_CHECKING
 from urllib.request import Request
 
 from prima.devices.endpoints import Endpoint, Unfit, filled_by_grammar
 from prima.errors import UsageError
-from prima.live.answers import HIDDEN, check_type, hidden, read_json, said_by_model
-from prima.loading.web import end_connections, follow, form_request, read_plain, silence
+from prima.live.answers import check_type, hidden, read_json, said_by_model
+from prima.live.asking import ServiceRequests, in_thread
+from prima.loading.web import form_request
 from prima.messages import Data, Fetched, Inbound, Json, Order
 from prima.sim.happenings import Reply
 from prima.sim.services import (
@@ -44,11 +38,6 @@ from prima.sim.telephone import Telephone
 if TYPE_CHECKING:
     from prima.live.devices import LiveDevices
 
-T = TypeVar("T")
-BUSY = frozenset([429, 502, 503, 504])
-"""Statuses after which a service is asked again."""
-FIRST_S = 0.1
-"""How long (s) it is waited before a service is asked again; then twice as long, and so on."""
 MOST_ASKED = 32
 """Requests of a run that are under way at one time."""
 CUT_OFF = "the run was cut off before the answer came; it is asked once only"
@@ -225,7 +214,7 @@ class LiveServices:
         Raises:
             Unfit: there is none.
         """
-        asking = _ServiceRequests(endpoint, self._secrets[endpoint.name], self._hosts, check)
+        asking = ServiceRequests(endpoint, self._secrets[endpoint.name], self._hosts, check)
         try:
             async with asyncio.timeout(endpoint.deadline / 1000):
                 return await asking.repeat(make, endpoint.retries if again else 0)
@@ -233,91 +222,6 @@ class LiveServices:
             raise Unfit(f"no answer within {endpoint.deadline / 1000:g} s") from None
         finally:
             asking.close()
-
-
-class _Busy(Unfit):
-    """It may help to ask again."""
-
-
-@dataclass(slots=True)
-class _ServiceRequests:
-    """Requests to one service, one after the other, each in a thread."""
-
-    endpoint: Endpoint
-    secrets: dict[str, tuple[str, str]]
-    hosts: frozenset[str]
-    check: Callable[[HTTPResponse], None]
-    held: list[socket.socket] = field(default_factory=list)
-    closed: bool = False
-
-    async def repeat(self, make: Callable[[], Request], retries: int) -> bytes:
-        """Ask, and again where it may help, later each time.
-
-        Raises:
-            Unfit: there is no answer.
-        """
-        for count in range(retries):
-            with suppress(_Busy):
-                return await in_thread(lambda: self.run(make()))
-            await asyncio.sleep(FIRST_S * 2**count)
-        return await in_thread(lambda: self.run(make()))
-
-    def run(self, request: Request) -> bytes:
-        """Ask.
-
-        Raises:
-            Unfit: there is no answer.
-        """
-        try:
-            body = follow(request, self._check, self._read, self.held, self._seconds)
-        except HTTPError as error:
-            error.close()
-            why = f"the service answers {error.code}"
-            raise (_Busy if error.code in BUSY else Unfit)(why) from None
-        except URLError as error:
-            raise _Busy(silence(error.reason)) from None
-        except (OSError, HTTPException):
-            raise _Busy("the answer breaks off") from None
-        except ValueError as error:
-            raise Unfit(str(error)) from None
-        for _, secret in self.secrets.values():
-            body = body.replace(secret.encode(), HIDDEN.encode())
-        return body
-
-    @property
-    def _seconds(self) -> float:
-        return self.endpoint.deadline / 1000
-
-    def close(self) -> None:
-        """End all connections."""
-        self.closed = True
-        end_connections(self.held)
-
-    def _check(self, request: Request) -> None:
-        """Let no other host be asked, nor any but the service's own be told a secret."""
-        url, own = request.full_url, self.endpoint.url
-        if self.closed:
-            raise Unfit("nobody waits for it any more")
-        if urlsplit(url).scheme not in ("http", "https") or host_of(url) not in self.hosts:
-            raise Unfit(f'it is moved to the host "{host_of(url)}", which no service names')
-        if urlsplit(url)[:2] != urlsplit(own)[:2]:
-            return
-        for name, value in self.endpoint.headers.items():
-            request.add_header(name, value)
-        for name, (before, secret) in self.secrets.items():
-            request.add_header(name, before + secret)
-
-    def _read(self, response: HTTPResponse) -> bytes:
-        """An answer's body, chunk by chunk: its deadline is that of all."""
-        self.check(response)
-        most = self.endpoint.most
-        ends = time.monotonic() + self._seconds
-        data = read_plain(response, most + 1)
-        if len(data) > most:
-            raise Unfit(f"the answer is larger than {most:,} bytes")
-        if time.monotonic() > ends or self.closed:
-            raise Unfit("the answer is too slow")
-        return data
 
 
 def _secrets(endpoint: Endpoint, environment: Mapping[str, str]) -> dict[str, tuple[str, str]]:
@@ -353,29 +257,3 @@ def _failed(order: Order, why: str) -> Inbound:
     if "method" in order.data:
         return fetched_of(order, Reply(error=why))
     return event_of(order, Reply(error=why))
-
-
-async def in_thread(work: Callable[[], T]) -> T:
-    """Let something that waits run in a thread that nobody waits for at the end of the run."""
-    loop = asyncio.get_running_loop()
-    done: asyncio.Future[T] = loop.create_future()
-
-    def settle(value: T | None, error: BaseException | None) -> None:
-        if done.done():
-            return
-        if error is not None:
-            done.set_exception(error)
-        else:
-            done.set_result(value)  # type: ignore[arg-type]
-
-    def run() -> None:
-        value, error = None, None
-        try:
-            value = work()
-        except Exception as problem:
-            error = problem
-        with suppress(RuntimeError):  # the run is over
-            loop.call_soon_threadsafe(settle, value, error)
-
-    threading.Thread(target=run, daemon=True).start()
-    return await done

@@ -22,8 +22,9 @@ from types import SimpleNamespace
 import prima as package
 from prima.errors import RunError, UsageError
 from prima.experiments.cluster import cluster
+from prima.experiments.scenariotext import Variant
 from prima.experiments.sweep import Sweep, SweepQuestion
-from prima.experiments.variants import Made, Stage, Variant
+from prima.experiments.variants import Made, Stage
 from prima.pool import Died
 from tests import ROOT
 from tests.helpers.batches import files, until

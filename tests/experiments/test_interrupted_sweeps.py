@@ -16,8 +16,9 @@ from typing import Any
 import pytest
 
 from prima.experiments.pools import local
+from prima.experiments.scenariotext import Variant
 from prima.experiments.sweep import Output, Sweep, SweepQuestion
-from prima.experiments.variants import Made, Stage, Variant
+from prima.experiments.variants import Made, Stage
 from prima.pool import Died
 from tests.helpers.batches import until
 from tests.helpers.command import prima

@@ -9,7 +9,8 @@ import pytest
 
 from prima.errors import UsageError
 from prima.experiments import variants
-from prima.experiments.variants import ExperimentSettings, Stage, Variant
+from prima.experiments.scenariotext import Variant
+from prima.experiments.variants import ExperimentSettings, Stage
 from tests.helpers.spoken import recording
 from tests.helpers.sweeps import VISIT, write_visit
 from tests.helpers.voice import vxml

@@ -13,8 +13,9 @@ import pytest
 from prima.api import rehearse
 from prima.errors import DocumentError, Problem, UsageError
 from prima.experiments.pools import local
+from prima.experiments.scenariotext import Variant
 from prima.experiments.sweep import Output, Sweep, SweepQuestion, estimate
-from prima.experiments.variants import Stage, Variant, signature
+from prima.experiments.variants import Stage, signature
 from tests.helpers.batches import files
 from tests.helpers.command import prima
 from tests.helpers.sweeps import VISIT, write_visit

@@ -83,6 +83,7 @@ INSIDE = {
         {"heads"},
     ],
     "experiments": [
+        {"kept", "scenariotext"},
         {"levels", "plan", "study", "variants"},
         {"design", "examine", "ledger", "pools", "rows", "table"},
         {"batch", "cluster", "lines", "sweep"},
@@ -210,12 +211,13 @@ INSIDE = {
         {"__init__"},
     ],
     "live": [
-        {"answers", "clock", "journal", "recordings", "signals", "told"},
-        {"driver"},
+        {"answers", "clock", "deadlines", "journal", "recordings", "signals", "told"},
+        {"asking", "driver"},
         {"carried", "mapped"},
         {"ros"},
         {"devices", "drivers"},
         {"services"},
+        {"chosen"},
         {"shell"},
         {"visit"},
         {"preflight", "resumed"},

@@ -15,10 +15,11 @@ from prima.devices.loop import Loop
 from prima.errors import RunError, UsageError
 from prima.grammar.answers import Answers
 from prima.journal import replay_instants
+from prima.live.chosen import Chosen
 from prima.live.devices import LiveDevices
 from prima.live.journal import Journal, Redactor, catch_up, going_on, known, read_broken
 from prima.live.prepared import prepared
-from prima.live.visit import Chosen, LiveSettings, begin
+from prima.live.visit import LiveSettings, begin
 from prima.messages import Record
 from prima.sim.devices import Cast
 from prima.transcript.lines import finished

@@ -15,6 +15,7 @@ import pytest
 
 from prima.devices.goals import SAY, Begin
 from prima.devices.profile import read_robot
+from prima.live.chosen import Chosen
 from prima.live.driver import Driver, TaskDriver, Unreachable
 from prima.live.drivers.console import ConsoleDriver
 from prima.live.drivers.ros2 import Ros2Driver
@@ -24,7 +25,7 @@ from prima.live.drivers.speech import SpeechDriver
 from prima.live.drivers.speech.segments import Segments
 from prima.live.drivers.speech.sound import RATE, Pipes
 from prima.live.ros import CANCELED, Outcome, RosUse, Sent
-from prima.live.visit import Chosen, LiveSettings, begin
+from prima.live.visit import LiveSettings, begin
 from prima.messages import Command, Emergency, Record
 from prima.sim.map import Map
 from tests.live.fake_reachy import FakeReachy, fake_reachy

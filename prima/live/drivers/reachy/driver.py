@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import asyncio
 import math
-from collections.abc import Callable
 from importlib.util import find_spec
 from typing import Any, ClassVar
 
 from prima.devices.goals import At, Begin
-from prima.devices.profile import POINTING_MS, Profile
+from prima.devices.profile import Profile
 from prima.devices.settings import Does, DriverSettings
 from prima.devices.settings import Pose as Place
 from prima.errors import UsageError
 from prima.live.driver import Refused, TaskDriver, Unreachable, Unusable
 from prima.live.drivers.reachy.link import ReachyLink, read_address
 from prima.live.drivers.reachy.pose import LIMITS, NEAR, HeadPose, read_pose, read_step, wrapped
+from prima.live.drivers.reachy.ways import WAYS, Step, number
 from prima.live.told import Teller
 from prima.messages import Data
 from prima.sim.map import Map
@@ -34,10 +34,6 @@ SAFE_S = 2.0
 """How long it may take to stop everything."""
 GOTO = "goto"
 """What ``by`` is where the document itself has the steps of a movement."""
-OUT = 90.0
-"""Where an antenna is that lies flat (degrees)."""
-
-Step = dict[str, float]
 
 
 class ReachyDriver(TaskDriver):
@@ -179,7 +175,7 @@ class ReachyDriver(TaskDriver):
         """Where a goal leads (degrees to the left of where the body is at 0), if it says so."""
         args = goal.command.args
         if "heading" in args:
-            return wrapped(_number(goal, "heading") - self._stands.heading)
+            return wrapped(number(goal, "heading") - self._stands.heading)
         if "toward" not in args:
             return None
         place, here = self.place(goal), self._stands
@@ -325,41 +321,3 @@ def _check_way(does: Does) -> None:
             HeadPose().moved(read_step(name, step))
     elif "/" not in does.by.strip("/"):
         raise Refused(f'by="{does.by}" is neither "{GOTO}" nor a recorded move, DATASET/MOVE.')
-
-
-def _number(goal: Begin, name: str) -> float:
-    value = goal.command.args.get(name)
-    return float(value) if isinstance(value, int | float) else 0.0
-
-
-def _head(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
-    return [{"pan": _number(goal, "pan"), "tilt": _number(goal, "tilt")}]
-
-
-def _turn(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
-    return [{"turn": _number(goal, "angle")}]
-
-
-def _drive(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
-    if _number(goal, "speed"):
-        raise Refused("Reachy Mini has no wheels; it only turns.")
-    seconds = _number(goal, "time") / 1000
-    return [{"turn": _number(goal, "turn-speed") * seconds, "time": seconds}]
-
-
-def _point(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
-    """Lay the antenna of the side out for a while: it points no more exactly than that."""
-    angle = _number(goal, "angle") if direction is None else wrapped(direction - at.body)
-    side = "left" if angle >= 0 else "right"
-    out, back = {side: OUT, "time": 0.5}, {side: getattr(HeadPose(), side), "time": 0.5}
-    return [out, {"time": POINTING_MS / 1000}, back]
-
-
-WAYS: dict[str, Callable[[Begin, HeadPose, float | None], list[Step]]] = {
-    "move-head": _head,
-    "turn": _turn,
-    "set-speed-and-time": _drive,
-    "point-by-hand": _point,
-}
-"""What each Command is that the robot's document need not explain, by where the parts are, and
-the direction that it leads to."""

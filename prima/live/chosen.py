@@ -1,0 +1,130 @@
+"""What a live run is made of: as chosen, and as its journal says it was."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from prima.errors import UsageError
+from prima.live.services import LiveServices
+from prima.loading import Loaded, load_scenario, load_services, stage
+from prima.loading.files import GivenFiles, in_place_of_files, read_file
+from prima.loading.heads import check_files
+from prima.messages import Json, Record
+from prima.sim.services import Web
+
+STAGE = "stage.xml"
+"""The scenario that is made of applications, and no file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """What a live run is made of. Paths are as given on the command line."""
+
+    robot: str = ""
+    scenario: str = ""
+    world: str = ""
+    fas: tuple[str, ...] = ()
+    eas: tuple[str, ...] = ()
+    maps: tuple[str, ...] = ()
+    services: str = ""
+
+    def loaded(self) -> Loaded:
+        """Load it all.
+
+        Raises:
+            DocumentError: with the problems of all files, if any is an error.
+            UsageError: a file cannot be read.
+        """
+        if self.scenario:
+            return load_scenario(self.scenario, robot=self.robot)
+        given = self.world or None, self.robot or None, self.maps, bool(self.world)
+        loaded = stage(self.fas, self.eas, (), *given)
+        if self.services:
+            _, loaded.files[self.services] = load_services(self.services)
+        return loaded
+
+    def answering(self, web: Web | None) -> LiveServices:
+        """What answers what applications send and fetch.
+
+        Raises:
+            UsageError: a secret is not in the environment.
+        """
+        return LiveServices(load_services(self.services)[0] if self.services else (), web)
+
+    def told(self, folder: str) -> dict[str, Json]:
+        """The same for a journal in a folder: paths lead from there, and the robot is whole."""
+
+        def seen(path: str) -> str:
+            return os.path.relpath(path, folder or ".")
+
+        told: dict[str, Json] = {"robot": seen(self.robot)} if self.robot else {}
+        for name in ("scenario", "world", "services"):
+            if path := getattr(self, name):
+                told[name] = seen(path)
+        for name, paths in (("fa", self.fas), ("ea", self.eas)):
+            if paths:
+                told[name] = [seen(path) for path in paths]
+        if self.maps:
+            parts = (text.partition("=") for text in self.maps)
+            told["maps"] = [f"{uri}={seen(path)}" for uri, _, path in parts]
+        if self.robot:
+            told["document"] = read_file(self.robot).decode("utf-8", "replace")
+        return told
+
+
+def chosen_then(head: Record, name: str) -> Chosen:
+    """What a journal says that it was made with.
+
+    Args:
+        head: its first record.
+        name: its path, from which paths in it lead.
+
+    Raises:
+        UsageError: the record says nothing of files.
+    """
+    live = head["data"].get("live")
+    if not isinstance(live, dict) or not (live.get("robot") or live.get("scenario")):
+        message = "the transcript does not say with which files it was made; name its scenario."
+        raise UsageError(f"{name}: {message}")
+    folder = os.path.dirname(name)
+
+    def path(told: Json) -> str:
+        return os.path.relpath(os.path.join(folder, str(told))) if told else ""
+
+    def paths(told: Json) -> tuple[str, ...]:
+        return tuple(path(one) for one in told) if isinstance(told, list) else ()
+
+    parts = (str(one).partition("=") for one in live.get("maps") or ())
+    return Chosen(
+        path(live.get("robot")),
+        path(live.get("scenario")),
+        path(live.get("world")),
+        paths(live.get("fa")),
+        paths(live.get("ea")),
+        tuple(f"{uri}={path(where)}" for uri, _, where in parts),
+        path(live.get("services")),
+    )
+
+
+def reloaded(head: Record, name: str) -> Loaded:
+    """Load what a journal says that it was made with; the robot is the one in the journal.
+
+    Args:
+        head: its first record.
+        name: its path, from which paths in it lead.
+
+    Raises:
+        DocumentError: documents are wrong.
+        UsageError: the record says nothing of files, or a file is not the one of then.
+    """
+    chosen = chosen_then(head, name)
+    live, texts = head["data"]["live"], {}
+    if chosen.robot and isinstance(live.get("document"), str):
+        texts[Path(chosen.robot).resolve()] = live["document"].encode()
+    with in_place_of_files(GivenFiles(texts)):
+        loaded = chosen.loaded()
+    loaded.files.pop(STAGE, None)
+    check_files(head, loaded, name)
+    return loaded

@@ -1,0 +1,54 @@
+"""How Reachy Mini does what the robot's document need not explain."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from prima.devices.goals import Begin
+from prima.devices.profile import POINTING_MS
+from prima.live.driver import Refused
+from prima.live.drivers.reachy.pose import HeadPose, wrapped
+
+OUT = 90.0
+"""Where an antenna is that lies flat (degrees)."""
+
+Step = dict[str, float]
+
+
+def number(goal: Begin, name: str) -> float:
+    """An argument of a Command; 0 where it is none."""
+    value = goal.command.args.get(name)
+    return float(value) if isinstance(value, int | float) else 0.0
+
+
+def _head(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
+    return [{"pan": number(goal, "pan"), "tilt": number(goal, "tilt")}]
+
+
+def _turn(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
+    return [{"turn": number(goal, "angle")}]
+
+
+def _drive(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
+    if number(goal, "speed"):
+        raise Refused("Reachy Mini has no wheels; it only turns.")
+    seconds = number(goal, "time") / 1000
+    return [{"turn": number(goal, "turn-speed") * seconds, "time": seconds}]
+
+
+def _point(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
+    """Lay the antenna of the side out for a while: it points no more exactly than that."""
+    angle = number(goal, "angle") if direction is None else wrapped(direction - at.body)
+    side = "left" if angle >= 0 else "right"
+    out, back = {side: OUT, "time": 0.5}, {side: getattr(HeadPose(), side), "time": 0.5}
+    return [out, {"time": POINTING_MS / 1000}, back]
+
+
+WAYS: dict[str, Callable[[Begin, HeadPose, float | None], list[Step]]] = {
+    "move-head": _head,
+    "turn": _turn,
+    "set-speed-and-time": _drive,
+    "point-by-hand": _point,
+}
+"""What each Command is that the robot's document need not explain, by where the parts are, and
+the direction that it leads to."""
