@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from prima.devices.goals import RECORD, Begin
+from prima.devices import voice
+from prima.devices.goals import LISTEN, RECORD, SAY, Begin
 from prima.devices.profile import Profile
+from prima.devices.settings import DriverLimits
 from prima.errors import Problem, few
 from prima.errors.diagnoses.names import UNSUPPORTED_COMMAND
 from prima.interpreter.acts import CommandTemplate
@@ -16,6 +18,8 @@ from prima.messages import Command, Json
 from prima.session import AnyDocument
 
 UNCARRIED = UNSUPPORTED_COMMAND.says("{what}: {lacking}.")
+SPEECH_MS = 5_000
+"""How much longer than expected a text may take, besides twice its time."""
 SPOKEN = ("pause", "speak", "q-and-a")
 """Commands that move nothing."""
 
@@ -40,6 +44,22 @@ def lacking(drivers: Sequence[Driver], goal: Begin) -> str:
     gesture = str(goal.command.args.get("name", "")) if goal.kind == "gesture" else ""
     which = f'gesture="{gesture}"' if gesture else f'command="{goal.kind}"'
     return f"no driver carries it out: write <does {which} ...> in a <driver>"
+
+
+def limits_of(drivers: Sequence[Driver], goal: Begin, rates: dict[str, float]) -> DriverLimits:
+    """How long a goal's driver may take: as the document says, else as suits the goal."""
+    driver = route(drivers, goal)
+    if driver is None:
+        return DriverLimits()
+    does = driver.does(goal)
+    said = does.limits.over(driver.settings.limits) if does else driver.settings.limits
+    if goal.kind in (LISTEN, RECORD):
+        return DriverLimits(said.accept, None, said.cancel)
+    if goal.kind == SAY and said.progress is None:
+        command = goal.command
+        lasts = voice.duration(command.text or "", command.lang, rates)
+        said = DriverLimits(said.accept, 2 * lasts + SPEECH_MS, said.cancel)
+    return said.over(driver.progress)
 
 
 def uncarried(

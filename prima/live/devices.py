@@ -9,12 +9,9 @@ from collections.abc import Callable, Coroutine, Sequence
 from functools import partial
 from typing import Any, Protocol, TypeVar
 
-from prima.devices import voice
 from prima.devices.conductor import Conductor
 from prima.devices.goals import (
-    LISTEN,
     RECORD,
-    SAY,
     Accepted,
     Again,
     At,
@@ -36,10 +33,11 @@ from prima.devices.goals import (
 from prima.devices.profile import Profile
 from prima.devices.settings import DriverLimits
 from prima.grammar.answers import Answers
-from prima.live.carried import lacking, route
+from prima.live.carried import lacking, limits_of, route
 from prima.live.deadlines import within
 from prima.live.driver import Driver
 from prima.live.journal import KnownAtCut
+from prima.live.speaking import UserSpeech
 from prima.messages import ApplicationLoaded, Emergency, Heard, Inbound, Order, Record, Sensed
 from prima.sim.entrances import Entrances
 
@@ -48,8 +46,6 @@ MOST_NEWS = 10_000
 """What drivers may tell in one turn, before the one that tells more is given up."""
 SAFE_S = 5.0
 """How long a driver may take to stop everything."""
-SPEECH_MS = 5_000
-"""How much longer than expected a text may take, besides twice its time."""
 
 
 class Answering(Protocol):
@@ -128,11 +124,7 @@ class LiveDevices:
         """Drivers that have failed themselves, and are asked for nothing until they are back."""
         self._flooding: set[Driver] = set()
         """Drivers that have told too much in this turn."""
-        self._began: int | None = None
-        """When the user began to speak."""
-        self._heard = False
-        self._cut = False
-        """Whether what the user is saying has taken too long, and is over for the run."""
+        self._speech = UserSpeech(self.conductor)
         self._carrying = False
 
     # The session's side ------------------------------------------------------------------
@@ -149,7 +141,7 @@ class LiveDevices:
             self._last + 1 if self._loads or self._entrances.unseen else None,
             told,
             self.conductor.due(self._sees.visible),
-            self._too_long(),
+            self._speech.too_long,
             self.services.due(),
             *(self._let(driver, driver.due) for driver in self.drivers),
         ]
@@ -172,8 +164,7 @@ class LiveDevices:
         while news and not (self._stopping and _releases(news[0])):
             inbound += self._take(now, news.pop(0))
         self._news = news  # a release counts when everything has stopped
-        inbound += self._cut_off(now)
-        return inbound + self.services.collect(now)
+        return [*inbound, *self._speech.cut_off(now), *self.services.collect(now)]
 
     def order(self, now: int, order: Order) -> None:
         """Give an order to whom it is for."""
@@ -187,9 +178,7 @@ class LiveDevices:
         """All orders of an instant have been given: the ear listens on."""
         self.conductor.end_loops()
         self._carry_out()
-        if self._heard:
-            self._heard = False
-            self.conductor.ear.listen_on(now)
+        self._speech.listen_on(now)
         takes = self.listening()
         if [id(one) for one in takes] != [id(one) for one in self._taken]:
             self._taken = takes
@@ -241,28 +230,19 @@ class LiveDevices:
 
     def _take(self, now: int, news: News | Inbound) -> list[Inbound]:
         """What a driver's news mean for the session."""
-        conductor = self.conductor
         match news:
             case Speaks(begins=True):
-                self._began, self._cut = now, False
-                conductor.speech_begins(now)
+                self._speech.begins(now)
                 self._carry_out()
                 return []
             case Speaks():
-                self._silent()
-                return []
-            case Heard() if self._cut:
-                self._cut = False
+                self._speech.ends()
                 return []
             case Heard():
-                began, self._heard = self._began, True
-                self._silent()
-                began = now if began is None else began
-                passed = conductor.marks_passed(began)
-                return [Heard(news.text, {**passed, **news.data}, now - began)]
+                return self._speech.heard(now, news)
             case Sensed():
                 values = {name: value for name, value in news.values.items() if self._matters(name)}
-                return conductor.sensors.take(values)
+                return self.conductor.sensors.take(values)
             case Emergency(pressed=True):
                 self.make_safe()
                 return [news]
@@ -273,32 +253,9 @@ class LiveDevices:
 
     def _matters(self, sensor: str) -> bool:
         """Whether an application looks at a sensor; of the others the first value is told."""
-        if not self._watches:
-            return False
-        read = self._read
-        known = sensor in self.conductor.sensors.values
-        return not known or read is None or sensor.partition(".")[0] in read
-
-    def _too_long(self) -> int | None:
-        """When the user will have spoken for longer than the question lets them (ms)."""
-        longest = self.conductor.longest_answer() if self._began is not None else 0
-        return self._began + longest if self._began is not None and longest else None
-
-    def _cut_off(self, now: int) -> list[Inbound]:
-        """End an answer that takes too long (VoiceXML 2.0, 6.3.2); what follows of it is not heard."""
-        over = self._too_long()
-        if over is None or over > now:
-            return []
-        passed = self.conductor.marks_passed(over)
-        self._cut = True
-        self._silent()
-        return [Heard("", {**passed, "toolong": True})]
-
-    def _silent(self) -> None:
-        """The user has fallen silent."""
-        if self._began is not None:
-            self._began, self._heard = None, True
-            self.conductor.ear.speech_ends()
+        read, known = self._read, self.conductor.sensors.values
+        looks = read is None or sensor.partition(".")[0] in read
+        return self._watches and (looks or sensor not in known)
 
     def _now(self) -> int:
         return max(self.now(), self._last)
@@ -345,11 +302,9 @@ class LiveDevices:
         match call:
             case Begin():
                 self._begin(call)
-            case Again() if call.key in self._routes:
-                driver = self._routes[call.key]
+            case Again() if driver := self._routes.get(call.key):
                 self._let(driver, partial(driver.again, call.key))
-            case Cancel() if call.key in self._routes:
-                driver = self._routes[call.key]
+            case Cancel() if driver := self._routes.get(call.key):
                 self._let(driver, partial(driver.cancel, call.key))
             case Stand():
                 for driver in self.drivers:
@@ -372,19 +327,8 @@ class LiveDevices:
             self.conductor.report(now, Broke(goal.key, device, reason))
 
     def limits(self, goal: Begin) -> DriverLimits:
-        """How long a goal's driver may take: as the document says, else as suits the goal."""
-        driver = route(self.drivers, goal)
-        if driver is None:
-            return DriverLimits()
-        does = driver.does(goal)
-        said = does.limits.over(driver.settings.limits) if does else driver.settings.limits
-        if goal.kind in (LISTEN, RECORD):
-            return DriverLimits(said.accept, None, said.cancel)
-        if goal.kind == SAY and said.progress is None:
-            command = goal.command
-            lasts = voice.duration(command.text or "", command.lang, self.profile.voices)
-            said = DriverLimits(said.accept, 2 * lasts + SPEECH_MS, said.cancel)
-        return said.over(driver.progress)
+        """How long a goal's driver may take."""
+        return limits_of(self.drivers, goal, self.profile.voices)
 
     # Where it is -------------------------------------------------------------------------
 

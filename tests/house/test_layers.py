@@ -211,7 +211,7 @@ INSIDE = {
         {"__init__"},
     ],
     "live": [
-        {"answers", "clock", "deadlines", "journal", "recordings", "signals", "told"},
+        {"answers", "clock", "deadlines", "journal", "recordings", "signals", "speaking", "told"},
         {"asking", "driver"},
         {"carried", "mapped"},
         {"ros"},

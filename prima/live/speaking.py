@@ -1,0 +1,63 @@
+"""What the user says, as drivers tell it: when they begin and fall silent, and what was heard."""
+
+from __future__ import annotations
+
+from prima.devices.conductor import Conductor
+from prima.messages import Heard, Inbound
+
+
+class UserSpeech:
+    """What the user is saying. Times are ms of the run."""
+
+    def __init__(self, conductor: Conductor) -> None:
+        self._conductor = conductor
+        self._began: int | None = None
+        """When they began to speak."""
+        self._over = False
+        """Whether they have spoken since the ear listened last."""
+        self._cut = False
+        """Whether what they are saying has taken too long, and is over for the run."""
+
+    def begins(self, now: int) -> None:
+        """The user begins to speak."""
+        self._began, self._cut = now, False
+        self._conductor.speech_begins(now)
+
+    def ends(self) -> None:
+        """The user has fallen silent."""
+        if self._began is not None:
+            self._began, self._over = None, True
+            self._conductor.ear.speech_ends()
+
+    def heard(self, now: int, heard: Heard) -> list[Inbound]:
+        """What a recogniser has heard, for the session; nothing of what was cut off."""
+        if self._cut:
+            self._cut = False
+            return []
+        began, self._over = self._began, True
+        self.ends()
+        began = now if began is None else began
+        passed = self._conductor.marks_passed(began)
+        return [Heard(heard.text, {**passed, **heard.data}, now - began)]
+
+    def listen_on(self, now: int) -> None:
+        """Let the ear listen on after what the user has said."""
+        if self._over:
+            self._over = False
+            self._conductor.ear.listen_on(now)
+
+    @property
+    def too_long(self) -> int | None:
+        """When the user will have spoken for longer than the question lets them."""
+        longest = self._conductor.longest_answer() if self._began is not None else 0
+        return self._began + longest if self._began is not None and longest else None
+
+    def cut_off(self, now: int) -> list[Inbound]:
+        """End an answer that takes too long (VoiceXML 2.0, 6.3.2); what follows of it is not heard."""
+        over = self.too_long
+        if over is None or over > now:
+            return []
+        passed = self._conductor.marks_passed(over)
+        self._cut = True
+        self.ends()
+        return [Heard("", {**passed, "toolong": True})]
