@@ -38,31 +38,11 @@ if TYPE_CHECKING:
     from prima.experiments.functions import explore, sweep
 
 __all__ = [
-    "Difference",
-    "Document",
-    "DocumentError",
-    "Loaded",
-    "Problem",
-    "RunError",
-    "Transcript",
-    "UsageError",
-    "__version__",
-    "diff",
-    "documents_folder",
-    "explain",
-    "explain_row",
-    "explore",
-    "export",
-    "load",
-    "load_scenario",
-    "read",
-    "rehearse",
-    "replay",
-    "run_live",
-    "stage",
-    "sweep",
+    "Difference", "Document", "DocumentError", "Loaded", "Problem", "RunError", "Transcript",
+    "UsageError", "__version__", "diff", "documents_folder", "explain", "explain_row", "explore",
+    "export", "load", "load_scenario", "read", "rehearse", "replay", "run_live", "stage", "sweep",
     "validate",
-]
+]  # fmt: skip
 
 
 ELSEWHERE = {

@@ -19,14 +19,9 @@ from prima.loading.files import read_file
 from prima.session import AnyDocument
 
 __all__ = [
-    "Certificate",
-    "Delay",
-    "Starving",
-    "certificate_data",
-    "certificates",
-    "certify",
+    "Certificate", "Delay", "Starving", "certificate_data", "certificates", "certify",
     "format_certificate",
-]
+]  # fmt: skip
 
 
 def certify(

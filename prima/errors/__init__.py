@@ -42,37 +42,11 @@ from prima.errors.problems import (
 from prima.errors.words import counted, one_of
 
 __all__ = [
-    "LONGEST_TEXT",
-    "MOST_TOLD",
-    "SEVERITIES",
-    "TOO_MUCH",
-    "Diagnosis",
-    "DocumentError",
-    "Edit",
-    "Fix",
-    "Hint",
-    "Place",
-    "PrimaError",
-    "Problem",
-    "RunError",
-    "Severity",
-    "Span",
-    "UsageError",
-    "brief",
-    "counted",
-    "did_you_mean",
-    "few",
-    "few_guesses",
-    "guessable",
-    "has_errors",
-    "in_order",
-    "listed",
-    "meant",
-    "nearest_word",
-    "one_of",
-    "replaced",
-    "suggestion",
-]
+    "LONGEST_TEXT", "MOST_TOLD", "SEVERITIES", "TOO_MUCH", "Diagnosis", "DocumentError", "Edit",
+    "Fix", "Hint", "Place", "PrimaError", "Problem", "RunError", "Severity", "Span", "UsageError",
+    "brief", "counted", "did_you_mean", "few", "few_guesses", "guessable", "has_errors",
+    "in_order", "listed", "meant", "nearest_word", "one_of", "replaced", "suggestion",
+]  # fmt: skip
 
 TOO_MUCH = (
     "the run made more records, or more text, than a run may."

@@ -23,16 +23,9 @@ if TYPE_CHECKING:
     from prima.grammar.semantics import SemanticError
 
 __all__ = [
-    "Grammar",
-    "GrammarError",
-    "Match",
-    "SemanticError",
-    "UnsupportedBuiltIn",
-    "UnsupportedFormat",
-    "UnsupportedLanguage",
-    "load",
-    "supports",
-]
+    "Grammar", "GrammarError", "Match", "SemanticError", "UnsupportedBuiltIn", "UnsupportedFormat",
+    "UnsupportedLanguage", "load", "supports",
+]  # fmt: skip
 
 _HOMES = {"Grammar": "grammar", "Match": "grammar", "SemanticError": "semantics", "load": "loading",
           "supports": "media"}  # fmt: skip

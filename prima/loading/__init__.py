@@ -23,25 +23,8 @@ from prima.loading.validation import Validation, once, validate
 from prima.loading.voicedocuments import mappings
 
 __all__ = [
-    "FAVOURITE",
-    "Loaded",
-    "Validation",
-    "documents_folder",
-    "favourite_problem",
-    "is_application",
-    "is_grammar",
-    "is_voicexml",
-    "load",
-    "load_scenario",
-    "load_services",
-    "load_text",
-    "mappings",
-    "once",
-    "read_application",
-    "schemas_folder",
-    "seeded",
-    "stage",
-    "validate",
-    "with_robot",
+    "FAVOURITE", "Loaded", "Validation", "documents_folder", "favourite_problem", "is_application",
+    "is_grammar", "is_voicexml", "load", "load_scenario", "load_services", "load_text", "mappings",
+    "once", "read_application", "schemas_folder", "seeded", "stage", "validate", "with_robot",
     "with_scenario",
-]
+]  # fmt: skip

@@ -16,15 +16,8 @@ from prima.voicexml.site import Site
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 __all__ = [
-    "PRIMA_NAMESPACE",
-    "Fetch",
-    "FetchError",
-    "Page",
-    "VoiceDocument",
-    "broken",
-    "join",
-    "of_web",
-]
+    "PRIMA_NAMESPACE", "Fetch", "FetchError", "Page", "VoiceDocument", "broken", "join", "of_web",
+]  # fmt: skip
 REMOTE = frozenset(["http", "https", "service"])
 """Schemes of URIs that are asked for outside the application."""
 Fetch = Callable[[str], bytes]

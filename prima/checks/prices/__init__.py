@@ -18,16 +18,9 @@ if TYPE_CHECKING:
     from prima.voicexml.document import VoiceDocument
 
 __all__ = [
-    "Gap",
-    "Outline",
-    "Price",
-    "PricedReaction",
-    "PricedState",
-    "notes",
-    "outline",
-    "prices",
+    "Gap", "Outline", "Price", "PricedReaction", "PricedState", "notes", "outline", "prices",
     "worst",
-]
+]  # fmt: skip
 
 
 def outline(document: Document | VoiceDocument, profile: Profile) -> Outline:

@@ -7,11 +7,6 @@ from prima.voicexml.checks.names import NAMING
 from prima.voicexml.checks.tree import check_tree
 
 __all__ = [
-    "FORM_ITEMS",
-    "NAMING",
-    "check_code",
-    "check_commands",
-    "check_tree",
-    "grammar_problems",
+    "FORM_ITEMS", "NAMING", "check_code", "check_commands", "check_tree", "grammar_problems",
     "is_code",
-]
+]  # fmt: skip
