@@ -107,7 +107,7 @@ class Calls:
             opened = open_to_answers(queue, question)
             queue.append(question)
         self.app.heard = None
-        resume = yield from self.app.wait(queue, opened)
+        resume = yield from self.app.waits.wait(queue, opened)
         self._note(call, resume)
 
     def _question(
@@ -140,20 +140,20 @@ class Calls:
         longest = milliseconds(item.get("maxtime"), 0) if call.kind == "bridge" else 0
         data: dict[str, Json] = {"transfer": call.kind, "params": {"aai": aai} if aai else {}}
         late = Transferred(self.app.name, 0, call.to, "noanswer")
-        self.app.ask(call.to, data, late, connect, item)
+        self.app.waits.ask(call.to, data, late, connect, item)
         call.serial = late.serial
         try:
             outcome = yield from self._wait(context, call, self._audio(context, call))
             if outcome == ANSWERED and call.kind == "bridge" and call.heard is None:
                 call.connected = self.app.now
                 late = Transferred(self.app.name, call.serial, call.to, "maxtime_disconnect")
-                self.app.expect(late, longest or None)
+                self.app.waits.expect(late, longest or None)
                 outcome = yield from self._wait(context, call, None)
         except Thrown as thrown:
             self._over(call, thrown.name)
             raise
         finally:
-            self.app.expect_nothing()
+            self.app.waits.expect_nothing()
         if call.heard is not None or (call.given_up and call.kind != "blind"):
             self._over(call, outcome)
         return outcome
@@ -181,9 +181,9 @@ class Calls:
             if call.listens:
                 commands = [self._question(context, call, LISTEN, audio)]
             self.app.heard, audio = None, None
-            found = yield from self.app.answer_or_input(commands)
+            found = yield from self.app.waits.answer_or_input(commands)
             if isinstance(found, Transferred):
-                call.given_up = self.app.overdue
+                call.given_up = self.app.waits.overdue
                 return found.outcome
             if isinstance(found, Resume):
                 self._note(call, found)

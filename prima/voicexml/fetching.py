@@ -114,13 +114,13 @@ def _asked(
     timeout = milliseconds(_setting(owner, node, "fetchtimeout"), FETCH_TIMEOUT)
     data: Data = {"method": request.method or "get", "params": dict(request.values)}
     late = Fetched(owner.app.name, 0, "", problem="no answer within its fetchtimeout")
-    owner.app.ask(uri, data, late, timeout, node)
+    owner.app.waits.ask(uri, data, late, timeout, node)
     audio = _setting(owner, node, "fetchaudio")
     if audio and not owner.gone:
         said = Command("speak", text=f"[{audio.rpartition('/')[2]}]", source=source(node))
         queued = owner.unqueue()
-        yield from owner.app.pass_time(queued, [said])
-    return (yield from owner.app.fetched())
+        yield from owner.app.waits.pass_time(queued, [said])
+    return (yield from owner.app.waits.fetched())
 
 
 def _check_reach(where: str, uri: str, node: Node) -> None:

@@ -338,7 +338,7 @@ class Machine:
         self.queue = []
         if self.gone:
             raise GoOut(self.gone)
-        return (yield from self.app.wait(commands, open_to_answers))
+        return (yield from self.app.waits.wait(commands, open_to_answers))
 
 
 def _holds_enumerate(node: Node) -> bool:

@@ -11,11 +11,9 @@ from collections.abc import Generator, Sequence
 from typing import Literal, NoReturn, Protocol
 
 from prima.interpreter.bounds import ElementVisit
-from prima.interpreter.protocol import Answer
 from prima.interpreter.transfers import Thrown
-from prima.interpreter.units import Reach
 from prima.markup.tree import Node
-from prima.messages import Action, Command, Cue, Data, Event, Fetched, Json
+from prima.messages import Action, Command, Cue, Data, Event, Json
 from prima.script.budget import Budget
 from prima.script.evaluation import Scope
 from prima.script.isolated import AnyEngine
@@ -23,6 +21,7 @@ from prima.voicexml.arranging import Queued
 from prima.voicexml.document import Page, VoiceDocument
 from prima.voicexml.speech import Speech
 from prima.voicexml.state import Context, Flow, Resume, TakenUtterance, UriRequest
+from prima.voicexml.waits import Waits
 
 
 class VoiceApplication(Protocol):
@@ -35,12 +34,14 @@ class VoiceApplication(Protocol):
     """What is known of the user's connection (VoiceXML 5.1.4)."""
     heard: TakenUtterance | None
     """What the user said last, as a grammar took it."""
-    leaving: bool
-    """Whether a unit is being left: what is said in it is said to its end."""
     actions: list[Action]
     """What it wants, for the session to carry out."""
     visits: list[ElementVisit]
     """What it came to."""
+
+    @property
+    def waits(self) -> Waits:
+        """What it waits for."""
 
     @property
     def engine(self) -> AnyEngine:
@@ -49,10 +50,6 @@ class VoiceApplication(Protocol):
     @property
     def document(self) -> VoiceDocument:
         """What it runs."""
-
-    @property
-    def overdue(self) -> bool:
-        """Whether no answer has come in time."""
 
     def note(self, node: Node, what: Literal["in", "true", "false", "heard"] = "in") -> None:
         """An element is gone through, or its condition has been evaluated."""
@@ -77,39 +74,6 @@ class VoiceApplication(Protocol):
 
     def send(self, service: str, data: Data, place: str) -> int:
         """Send something to a service, or to a URI; gives its serial."""
-
-    def ask(self, uri: str, data: Data, late: Answer, timeout: int, node: Node) -> None:
-        """Ask something of a URI; ``late`` is the answer if none comes in ``timeout`` ms."""
-
-    def expect(self, late: Answer, timeout: int | None) -> None:
-        """Wait for an answer to what has been asked; without a timeout, for ever."""
-
-    def expect_nothing(self) -> None:
-        """Wait for no answer any more."""
-
-    def wait(
-        self, commands: Sequence[Queued], open_to_answers: Sequence[Command] = ()
-    ) -> Generator[None, Resume, Resume]:
-        """Ask for Commands, one after another, and wait for the end of the last."""
-
-    def answer_or_input(
-        self, commands: Sequence[Queued]
-    ) -> Generator[None, Resume, Answer | Resume]:
-        """Wait for an answer or for the end of Commands, whichever is first."""
-
-    def pass_time(
-        self, queued: Sequence[Queued], audio: Sequence[Queued]
-    ) -> Generator[None, Resume, None]:
-        """Play what is queued, then fetch audio until the answer is there (6.1.1)."""
-
-    def fetched(self) -> Generator[None, Resume, Fetched]:
-        """Wait for the answer of a fetch."""
-
-    def open_unit(self, reach: Reach, longest: int, node: Node) -> None:
-        """U5: what is asked for from now on belongs to a unit."""
-
-    def close_unit(self) -> None:
-        """U5: the unit is left."""
 
 
 class VoiceContentRunner(Protocol):

@@ -39,7 +39,7 @@ class Units:
         if self.owner.queue:
             yield from self.owner.play(context)  # what was said before is no part of it
         app, items = self.owner.app, self.owner.items_of
-        app.open_unit(self._reach(context, unit), longest_of(unit), unit)
+        app.waits.open_unit(self._reach(context, unit), longest_of(unit), unit)
         context.unit = unit
         items.mark(context, unit)
         try:
@@ -51,17 +51,17 @@ class Units:
             raise
         finally:
             context.item, context.unit = unit, None
-            app.close_unit()
+            app.waits.close_unit()
 
     def _say_rest(self, context: Context) -> Flow:
         """What is said before a unit is left belongs to it (O3); nothing breaks it off."""
         if not self.owner.queue or self.owner.gone:
             return
-        self.owner.app.leaving = True
+        self.owner.app.waits.leaving = True
         try:
             yield from self.owner.play(context)
         finally:
-            self.owner.app.leaving = False
+            self.owner.app.waits.leaving = False
 
     def left_by(self, context: Context, error: Thrown | ScriptError) -> bool:
         """Whether an event leaves the unit that the dialog is in before it is handled."""

@@ -1,0 +1,198 @@
+"""What a VoiceXML application waits for: Commands, answers from outside, the end of a unit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Sequence
+from itertools import pairwise
+
+from prima.interpreter.places import source
+from prima.interpreter.protocol import Answer, App
+from prima.interpreter.units import Reach
+from prima.markup.tree import Node
+from prima.messages import (
+    CloseUnit,
+    Command,
+    Data,
+    Fetched,
+    LeaveState,
+    OpenUnit,
+    Request,
+    Transferred,
+)
+from prima.script.isolated import AnyEngine
+from prima.voicexml.arranging import Queued, steps_of
+from prima.voicexml.state import Resume, UnitOver
+
+
+class Waits:
+    """Asks for Commands, answers and units, and waits for them.
+
+    Args:
+        app: the application.
+        here: where it is.
+        begun: is called when what is queued is asked for.
+    """
+
+    def __init__(
+        self, app: App[AnyEngine], here: Callable[[], Node], begun: Callable[[], None]
+    ) -> None:
+        self._app = app
+        self._here = here
+        self._begun = begun
+        self.run = 0
+        """The Commands that are waited for; 0 for none."""
+        self.cause: int | None = None
+        """The event that what is asked for next reacts to."""
+        self.asked: int | None = None
+        """The serial of what is asked for outside and waited for: the transitioning state."""
+        self.late: Answer | None = None
+        """The answer when the deadline is over."""
+        self.calling = False
+        """Whether what is waited for is a call, which the user may hang up."""
+        self.patient = False
+        """Whether what is played now is played to its end, even with the answer there."""
+        self.unit: int | None = None
+        """The unit around form items in which Commands are asked for (U5)."""
+        self.leaving = False
+        """Whether a unit is being left: what is said in it is said to its end."""
+        self._answer: Answer | None = None
+        self._state = 0
+        self._left = 0
+        """The state that was left last: each is left once (O3)."""
+        self._open: Sequence[Command] = ()
+        """Commands during which the question behind them may be answered."""
+        self._queue: Sequence[Queued] = ()
+        """Commands whose end is waited for."""
+        self._unit_place = ""
+        """Where that unit is written."""
+        self._overdue = ""
+        """What to say of a unit that has just taken too long."""
+
+    # Commands -------------------------------------------------------------------------
+
+    def opens(self, command: Command) -> bool:
+        """Whether the question behind a Command may be answered during it."""
+        return any(one is command for one in self._open)
+
+    def before(self, command: Command) -> Command | None:
+        """Which of the Commands that are waited for comes before one of them, if any does."""
+        for one, after in pairwise(self._queue):
+            if after is command:
+                return one if isinstance(one, Command) else None
+        return None
+
+    def leave_state(self) -> None:
+        """O3: what is asked for and waited for is given up."""
+        if self._left != self._state:
+            self._left = self._state
+            self._app.actions.append(LeaveState(self._state))
+
+    def wait(
+        self, commands: Sequence[Queued], open_to_answers: Sequence[Command] = ()
+    ) -> Generator[None, Resume, Resume]:
+        """Ask for Commands, one after another, and wait for the end of the last.
+
+        Args:
+            commands: the Commands.
+            open_to_answers: those during which the question behind them may be answered.
+        """
+        self.run = next(self._app.runs)
+        self._state = next(self._app.states)
+        cause, self.cause = self.cause, None
+        self._begun()
+        steps = steps_of(commands)
+        self._app.actions.append(Request(self.run, steps, self._state, cause, self.unit))
+        self._open, self._queue = open_to_answers, commands
+        resume = yield from self._resumed()
+        self.run, self._open, self._queue = 0, (), ()
+        self._stay_in_time()
+        return resume
+
+    def _resumed(self) -> Generator[None, Resume, Resume]:
+        """Wait until something goes on."""
+        began = self._app.now
+        resume = yield
+        self._app.count_wait(began, self._here())
+        return resume
+
+    def open_unit(self, reach: Reach, longest: int, node: Node) -> None:
+        """U5: what is asked for from now on belongs to a unit, which is a state of its own."""
+        self.unit, self._unit_place = next(self._app.units), source(node)
+        self._state = next(self._app.states)
+        cause, self.cause = self.cause, None
+        place, devices, types = self._unit_place, reach.devices, reach.types
+        self._app.actions.append(
+            OpenUnit(self.unit, self._state, devices, longest, cause, place, types=types)
+        )
+
+    def close_unit(self) -> None:
+        """U5: the unit is left, by whatever way."""
+        if self.unit is not None and not self._app.over:
+            self._app.actions.append(CloseUnit(self.unit))
+        self.unit = None
+
+    def _stay_in_time(self) -> None:
+        """U5: nothing is waited for any longer in a unit that has taken too long.
+
+        Raises:
+            UnitOver: ``error.unit.timeout``.
+        """
+        message, self._overdue = self._overdue, ""
+        if message:
+            self.expect_nothing()
+            raise UnitOver("error.unit.timeout", message, self._unit_place)
+
+    def ask(self, uri: str, data: Data, late: Answer, timeout: int, node: Node) -> None:
+        """Ask something of a URI; ``late`` is the answer if none comes in ``timeout`` ms."""
+        late.serial = self._app.send(uri, data, source(node))
+        self.expect(late, timeout)
+
+    def expect(self, late: Answer, timeout: int | None) -> None:
+        """Wait for an answer to what has been asked; without a timeout, for ever."""
+        self.asked, self._answer, self.late = late.serial, None, late
+        self.calling = isinstance(late, Transferred)
+        self._app.deadline = None if timeout is None else self._app.now + timeout
+
+    @property
+    def overdue(self) -> bool:
+        """Whether the answer is that none has come in time."""
+        return self._answer is not None and self._answer is self.late
+
+    def expect_nothing(self) -> None:
+        """Wait for no answer any more."""
+        self.asked = self._answer = self.late = self._app.deadline = None
+        self.calling = False
+
+    def answer_or_input(
+        self, commands: Sequence[Queued]
+    ) -> Generator[None, Resume, Answer | Resume]:
+        """Wait for an answer or, with Commands, for the end of the last, whichever is first.
+
+        An event ends the wait as well.
+        """
+        resume = yield from self.wait(commands) if commands else self._resumed()
+        return self._answer or resume
+
+    def pass_time(
+        self, queued: Sequence[Queued], audio: Sequence[Queued]
+    ) -> Generator[None, Resume, None]:
+        """Play what is queued, and then fetch audio until the answer is there (6.1.1)."""
+        for commands, self.patient in ((queued, True), (audio, False)):
+            if commands and self._answer is None:
+                yield from self.wait(commands)
+        self.patient = False
+
+    def fetched(self) -> Generator[None, Resume, Fetched]:
+        """Wait for the answer of a fetch."""
+        while not isinstance(self._answer, Fetched):
+            yield from self._resumed()
+            self._stay_in_time()
+        return self._answer
+
+    def take(self, answer: Answer) -> None:
+        """The answer to what was asked for is there."""
+        self.asked, self._answer, self._app.deadline = None, answer, None
+
+    def overrun(self, message: str) -> None:
+        """U5: the unit has taken too long."""
+        self.unit, self._overdue = None, f"{self._unit_place}: {message}"
