@@ -214,7 +214,7 @@ class Content(Speaker):
                 context.item = None  # it is handled in the dialog's scope
                 raise no_item(node, item)
             raise GoItem(item)
-        yield from self.owner.go(context, self.word(node, "next", context, local), node)
+        yield from self.owner.documents.go(context, self.word(node, "next", context, local), node)
 
     def submit(self, node: Node, context: Context, local: Scope) -> Flow:
         """Leave for what values are answered with, or send them and go on (5.3.8)."""
@@ -225,7 +225,7 @@ class Content(Speaker):
         service, _, dialog = uri.removeprefix(SERVICE).partition("#")
         if not uri.startswith(SERVICE) or not dialog:
             request = UriRequest(node.get("method"), values)
-            yield from self.owner.go(context, uri, node, request)
+            yield from self.owner.documents.go(context, uri, node, request)
             return
         if context.page.dialog(dialog) is None:
             raise Thrown.at(node, "error.badfetch", f'there is no dialog "{dialog}"')

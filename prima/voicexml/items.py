@@ -63,7 +63,7 @@ class Items:
         if event:
             raise Thrown(event, content.word(node, "message", context, local), source(node))
         uri = content.word(node, "next", context, local)
-        yield from self.owner.go(context, uri, node)
+        yield from self.owner.documents.go(context, uri, node)
 
     def remember(self, context: Context, heard: TakenUtterance) -> None:
         """Set ``application.lastresult$`` (5.1.5); what was said is recorded where that is asked for.

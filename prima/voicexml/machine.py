@@ -30,7 +30,6 @@ from prima.voicexml.state import (
     Resume,
     TakenUtterance,
     Unasked,
-    UriRequest,
     thrown_outside,
 )
 from prima.voicexml.units import Units
@@ -73,17 +72,6 @@ class Machine:
         """The dialog that is active, by its name."""
 
     # What content needs -------------------------------------------------------------
-
-    def go(
-        self,
-        context: Context,
-        uri: str,
-        node: Node,
-        request: UriRequest | None = None,
-        base: Page | None = None,
-    ) -> Flow:
-        """Follow a URI to a dialog (5.3.7)."""
-        return self.documents.go(context, uri, node, request, base)
 
     def say(self, text: str, lang: str, place: str, prompt: Node | None = None) -> None:
         """Queue something to be said."""

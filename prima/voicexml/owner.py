@@ -150,6 +150,16 @@ class DocumentEntering(Protocol):
     ) -> Generator[None, Resume, tuple[Page | None, str]]:
         """The dialog that a URI names, and its document where that is fetched."""
 
+    def go(
+        self,
+        context: Context,
+        uri: str,
+        node: Node,
+        request: UriRequest | None = None,
+        base: Page | None = None,
+    ) -> Flow:
+        """Follow a URI to a dialog (5.3.7)."""
+
 
 class Recording(Protocol):
     """Fills the record items."""
@@ -299,13 +309,3 @@ class MachineOwner(Protocol):
 
     def finish(self, context: Context) -> Flow:
         """Say what is queued at an application's end (4.1.8)."""
-
-    def go(
-        self,
-        context: Context,
-        uri: str,
-        node: Node,
-        request: UriRequest | None = None,
-        base: Page | None = None,
-    ) -> Flow:
-        """Follow a URI to a dialog (5.3.7)."""
