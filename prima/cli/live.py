@@ -78,9 +78,7 @@ FASTEST = 1000.0  # as prima.api.live.FASTEST, which takes long to import
     help="Take drivers from this Python file, too; it is run.",
 )
 @click.option(
-    "--policy",
-    shell_complete=suggesting(*POLICIES),
-    help=f"The mediator's policy: {USAGE}.",
+    "--policy", shell_complete=suggesting(*POLICIES), help=f"The mediator's policy: {USAGE}."
 )
 @bound_option
 @duration_option("--patience", PATIENCE)

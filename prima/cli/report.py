@@ -96,10 +96,7 @@ def report(
 
 
 def _report_runs(
-    runs: tuple[str, ...],
-    output: str | None,
-    policies: tuple[str, ...],
-    scenarios: tuple[str, ...],
+    runs: tuple[str, ...], output: str | None, policies: tuple[str, ...], scenarios: tuple[str, ...]
 ) -> None:
     """Write the page of one run, or of two.
 

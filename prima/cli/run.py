@@ -220,12 +220,7 @@ def _check_file(output: str, folder: str, loaded: Loaded) -> None:
 
 
 def _run_one(
-    loaded: Loaded,
-    output: str | None,
-    policy: str | None,
-    options: Options,
-    why: bool,
-    form: str,
+    loaded: Loaded, output: str | None, policy: str | None, options: Options, why: bool, form: str
 ) -> Transcript:
     """Run, and write the transcript to a file or print it."""
     from prima import api

@@ -53,9 +53,7 @@ if TYPE_CHECKING:
 )
 @click.option("--scripted", is_flag=True, help="Carry out the scenario's user actions too.")
 @click.option(
-    "--policy",
-    shell_complete=suggesting(*POLICIES),
-    help=f"The mediator's policy: {USAGE}.",
+    "--policy", shell_complete=suggesting(*POLICIES), help=f"The mediator's policy: {USAGE}."
 )
 @why_option
 @hosts_option

@@ -38,9 +38,7 @@ MOST_JOBS = 64
     "-k", "word", metavar="WORD", default="", help="Only scenarios with WORD in the path."
 )
 @click.option(
-    "--policy",
-    shell_complete=suggesting(*POLICIES),
-    help=f"Run under this policy: {USAGE}.",
+    "--policy", shell_complete=suggesting(*POLICIES), help=f"Run under this policy: {USAGE}."
 )
 @click.option(
     "-j", "--jobs", type=click.IntRange(1, MOST_JOBS), default=1, help="Number of runs at once."

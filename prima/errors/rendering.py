@@ -110,11 +110,7 @@ def sarif(
     ]
     results = [_result(problem, used.index(problem.code)) for problem in held]
     driver = {"name": "prima", "version": version, "rules": rules}
-    run = {
-        "tool": {"driver": driver},
-        "columnKind": "unicodeCodePoints",
-        "results": results,
-    }
+    run = {"tool": {"driver": driver}, "columnKind": "unicodeCodePoints", "results": results}
     return {"$schema": SARIF_SCHEMA, "version": "2.1.0", "runs": [run]}
 
 
@@ -137,10 +133,7 @@ def _result(problem: Problem, rule: int) -> dict[str, Any]:
 def _sarif_fix(fix: Fix, file: dict[str, str]) -> dict[str, Any]:
     names = ("startLine", "startColumn", "endLine", "endColumn")
     replacements = [
-        {
-            "deletedRegion": dict(zip(names, span, strict=True)),
-            "insertedContent": {"text": text},
-        }
+        {"deletedRegion": dict(zip(names, span, strict=True)), "insertedContent": {"text": text}}
         for span, text in fix.edits
     ]
     changes = [{"artifactLocation": file, "replacements": replacements}]

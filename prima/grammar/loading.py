@@ -116,13 +116,7 @@ def _named(uri: str, mode: Mode | None, lang: str) -> Grammar:
 
 
 def _element(
-    library: Library,
-    node: Node,
-    base: str,
-    lang: str,
-    mode: Mode | None,
-    type: str,
-    rule: str,
+    library: Library, node: Node, base: str, lang: str, mode: Mode | None, type: str, rule: str
 ) -> tuple[GrammarDocument, str]:
     """A <grammar> element inside a document: rules, text in ABNF, or a reference by src."""
     media = media_type(node.get("type") or type)

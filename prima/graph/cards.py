@@ -30,11 +30,7 @@ MANY_BACK = 6
 """Maximum number of lines back to one card; if there are more, none is drawn."""
 LONGEST_BOW = 900.0
 """Maximum length of a line back within a column."""
-LEGEND = (
-    ("go", "leads to"),
-    ("call", "calls and comes back"),
-    ("guess", "may lead to"),
-)
+LEGEND = (("go", "leads to"), ("call", "calls and comes back"), ("guess", "may lead to"))
 
 
 @dataclass(slots=True)

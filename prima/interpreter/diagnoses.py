@@ -59,8 +59,7 @@ FOR_FAS = FA_ONLY.says(
 )
 SAYS_NOTHING = NOTHING_TO_SAY.says("<{tag}> has nothing to say.", "Write its text inside it.")
 ONLY_A_PAUSE = NOTHING_TO_SAY.says(
-    SAYS_NOTHING.message,
-    f'{SAYS_NOTHING.remedy} A pause between Commands is <pause time="1s"/>.',
+    SAYS_NOTHING.message, f'{SAYS_NOTHING.remedy} A pause between Commands is <pause time="1s"/>.'
 )
 SPEAKS_TOO_LONG = TOO_LONG.says("{wrong}", "Divide it: say it in several Commands.")
 BEHIND_ELSE = AFTER_ELSE.says("<{tag}> comes after <else>.", "<else> comes last.")

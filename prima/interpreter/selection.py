@@ -111,10 +111,7 @@ def of_highest_count(found: Iterable[tuple[int, T]]) -> list[T]:
 
 
 def select_item(
-    items: Sequence[T],
-    wanted: str,
-    named: Callable[[T, str], bool],
-    is_open: Callable[[T], bool],
+    items: Sequence[T], wanted: str, named: Callable[[T, str], bool], is_open: Callable[[T], bool]
 ) -> T | None:
     """The item to visit: that a goto names, or the first that is open (2.1.6.2).
 

@@ -252,12 +252,7 @@ KINDS: dict[str, Kind] = {
     ),
     "expression": Kind(_filled, "xs:string", r"[\s\S]*\S[\s\S]*", "an ECMAScript expression"),
     "text": Kind(str, "xs:string", "", "any text"),
-    "target": Kind(
-        _target,
-        "xs:string",
-        f"#{_XSD_NAME}",
-        "# and the id of a form",
-    ),
+    "target": Kind(_target, "xs:string", f"#{_XSD_NAME}", "# and the id of a form"),
     "path": Kind(_filled, "xs:string", r"[\s\S]*\S[\s\S]*", "a file, relative to this document"),
     "language": Kind(
         _pattern(r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*", "a language tag", 'Write one such as "en".'),

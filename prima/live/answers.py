@@ -62,11 +62,7 @@ def read_json(body: bytes | str, what: str) -> Json:
 
     try:
         given: Json = json.loads(
-            body,
-            parse_constant=refuse,
-            parse_float=finite,
-            parse_int=whole,
-            object_pairs_hook=once,
+            body, parse_constant=refuse, parse_float=finite, parse_int=whole, object_pairs_hook=once
         )
         json.dumps(given, ensure_ascii=False).encode()
     except UnicodeEncodeError:

@@ -18,9 +18,7 @@ from urllib.request import Request
 from prima.devices.endpoints import Endpoint, Unfit
 from prima.live.answers import HIDDEN
 from prima.loading.web import end_connections, follow, read_plain, silence
-from prima.sim.services import (
-    host_of,
-)
+from prima.sim.services import host_of
 
 T = TypeVar("T")
 BUSY = frozenset([429, 502, 503, 504])

@@ -183,12 +183,7 @@ class Maker:
         return unit
 
     def chain(
-        self,
-        app: Application,
-        stream: Stream,
-        asked: Request,
-        now: int,
-        unit: Behavior | None,
+        self, app: Application, stream: Stream, asked: Request, now: int, unit: Behavior | None
     ) -> list[Behavior]:
         """The ABs of a request's steps, linked as they say; roots wait for nothing yet."""
         run = AwaitedRun(asked.run, app, len(asked.steps))

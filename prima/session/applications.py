@@ -123,10 +123,7 @@ class Applications:
 
 
 def interpreter_of(
-    document: AnyDocument,
-    arguments: Mapping[str, frozenset[str]],
-    began: int,
-    engines: Engines,
+    document: AnyDocument, arguments: Mapping[str, frozenset[str]], began: int, engines: Engines
 ) -> AnyApp:
     """The interpreter of a document, of whichever language it is, in a run that began then."""
     app: AnyApp

@@ -125,12 +125,7 @@ class Wiring:
         """Record an event that one application alone has defined; gives its serial number."""
         self.serial += 1
         self.recorder.add(
-            "event",
-            actor,
-            app=app.name,
-            event=name,
-            data=dict(data) or None,
-            serial=self.serial,
+            "event", actor, app=app.name, event=name, data=dict(data) or None, serial=self.serial
         )
         return self.serial
 

@@ -335,9 +335,4 @@ class Game:
     def saved(self, target: str) -> str:
         """The session so far as a scenario that repeats it, for a file."""
         whens = [f"<!-- {comment(one.after)} -->\n  {when(one.at, one.xml)}" for one in self.lines]
-        return self.scene.text(
-            whens,
-            seconds(self.clock),
-            target,
-            SAVED,
-        )
+        return self.scene.text(whens, seconds(self.clock), target, SAVED)

@@ -14,21 +14,11 @@ class Phase(NamedTuple):
 
 
 PHASES = {
-    "run": Phase(
-        "the run begins",
-        "`data`",
-        ("data",),
-    ),
+    "run": Phase("the run begins", "`data`", ("data",)),
     "load": Phase(
-        "an application starts; once as inbound, once by the mediator",
-        "`app`",
-        ("app",),
+        "an application starts; once as inbound, once by the mediator", "`app`", ("app",)
     ),
-    "unload": Phase(
-        "an application has ended or is taken out",
-        "`outcome`: why",
-        ("app",),
-    ),
+    "unload": Phase("an application has ended or is taken out", "`outcome`: why", ("app",)),
     "request": Phase(
         "an AB enters working memory",
         "`behavior`, `tree`, `command`, `text`, `args`, `extra`, `parent`, `parents`, "
@@ -56,49 +46,21 @@ PHASES = {
         "an AB is deleted, or halted by the emergency stop",
         "`rule`, `outcome`: the state it was in",
     ),
-    "fail": Phase(
-        "an AB fails, or a Command is refused",
-        "`event`, `device`, `message`, `rule`",
-    ),
-    "hold": Phase(
-        "a waiting AB may not start",
-        "`rule`, `by`",
-        ("behavior", "rule", "by"),
-    ),
-    "suspend": Phase(
-        "a stream is suspended by another",
-        "`tree`, `by`, `rule`",
-    ),
-    "resume": Phase(
-        "a suspended stream goes on",
-        "`tree`, `behavior`, `rule`",
-    ),
-    "floor": Phase(
-        "the floor is taken or returned",
-        "`tree`, `outcome`, `floor`, `rule`",
-    ),
+    "fail": Phase("an AB fails, or a Command is refused", "`event`, `device`, `message`, `rule`"),
+    "hold": Phase("a waiting AB may not start", "`rule`, `by`", ("behavior", "rule", "by")),
+    "suspend": Phase("a stream is suspended by another", "`tree`, `by`, `rule`"),
+    "resume": Phase("a suspended stream goes on", "`tree`, `behavior`, `rule`"),
+    "floor": Phase("the floor is taken or returned", "`tree`, `outcome`, `floor`, `rule`"),
     "window": Phase(
-        "an application begins or ends to handle the end of its Command",
-        "`tree`, `outcome`",
+        "an application begins or ends to handle the end of its Command", "`tree`, `outcome`"
     ),
     "leave": Phase(
-        "an application has left a state of its document",
-        "`state`, `rule`",
-        ("app", "state"),
+        "an application has left a state of its document", "`state`, `rule`", ("app", "state")
     ),
-    "stream-end": Phase(
-        "a stream ends",
-        "`tree`",
-        ("tree",),
-    ),
-    "stop": Phase(
-        "the body is stopped, since nobody moves it on",
-        "`behavior`, `rule`",
-    ),
+    "stream-end": Phase("a stream ends", "`tree`", ("tree",)),
+    "stop": Phase("the body is stopped, since nobody moves it on", "`behavior`, `rule`"),
     "collision": Phase(
-        "without a mediator: an AB loses a device",
-        "`by`, `device`",
-        ("behavior", "by"),
+        "without a mediator: an AB loses a device", "`by`, `device`", ("behavior", "by")
     ),
     "starve": Phase(
         "an AB has waited for another application for many loops of its feedback Command (E4), "
@@ -108,23 +70,14 @@ PHASES = {
         ("behavior",),
     ),
     "emergency": Phase(
-        "the emergency stop is pressed or released",
-        "`outcome`, `serial`",
-        ("outcome",),
+        "the emergency stop is pressed or released", "`outcome`, `serial`", ("outcome",)
     ),
-    "listening": Phase(
-        "a question has been said, and listens",
-        "`behavior`",
-        ("behavior",),
-    ),
+    "listening": Phase("a question has been said, and listens", "`behavior`", ("behavior",)),
     "held": Phase(
         "a stream is kept open for an event, or no longer (x3)",
         "`tree`, `outcome`: `begun`, `joined`, `left` or `over`; `data`: until when (s)",
     ),
-    "interrupt": Phase(
-        "a restartable AB gives way to a reaction (x2)",
-        "`behavior`, `by`, `rule`",
-    ),
+    "interrupt": Phase("a restartable AB gives way to a reaction (x2)", "`behavior`, `by`, `rule`"),
     "halted": Phase(
         "the device tells how much of it was done",
         "`behavior`, `data`: `done` (0 to 1), `heard`; of what has marks, `mark` and how many "
@@ -142,8 +95,7 @@ PHASES = {
         ("device", "outcome"),
     ),
     "substitute": Phase(
-        "another Command takes the place of one that the robot lacks (x6)",
-        "`command`, `by`",
+        "another Command takes the place of one that the robot lacks (x6)", "`command`, `by`"
     ),
     "event": Phase(
         "an event, or what the user says (`speech`, with `text`; where the recogniser is not "
@@ -153,9 +105,7 @@ PHASES = {
         ("event",),
     ),
     "fetched": Phase(
-        "the answer to what an application has asked a URI for",
-        "`data`",
-        ("app", "data"),
+        "the answer to what an application has asked a URI for", "`data`", ("app", "data")
     ),
     "transferred": Phase(
         "what has become of a call",
@@ -167,28 +117,14 @@ PHASES = {
         "`data`",
         ("data",),
     ),
-    "note": Phase(
-        "a remark for the reader",
-        "`text`",
-        ("text",),
-    ),
+    "note": Phase("a remark for the reader", "`text`", ("text",)),
     "send": Phase(
         "a message to a service or a URI; a call to somebody, or its end, where `data` has "
         "`transfer`",
         "`data`, `serial`",
     ),
-    "log": Phase(
-        "what a `log` element says",
-        "`message`, `source`",
-        ("message",),
-    ),
-    "error": Phase(
-        "an error that no handler took",
-        "`message`, `source`",
-    ),
-    "over": Phase(
-        "the run has ended",
-        "`outcome`: `over`, `quiet`, `until` or `limit`",
-    ),
+    "log": Phase("what a `log` element says", "`message`, `source`", ("message",)),
+    "error": Phase("an error that no handler took", "`message`, `source`"),
+    "over": Phase("the run has ended", "`outcome`: `over`, `quiet`, `until` or `limit`"),
 }
 """The phases by their names."""

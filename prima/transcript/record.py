@@ -69,8 +69,7 @@ class Entry:
     args: Annotated[dict[str, Any], "Motion arguments; times in ms."] = _NOTHING
     extra: Annotated[dict[str, Any], "Additional arguments of an FA."] = _NOTHING
     cues: Annotated[
-        list[dict[str, Any]],
-        "Pauses, rates and marks of the text, each `at` a place in it; in ms.",
+        list[dict[str, Any]], "Pauses, rates and marks of the text, each `at` a place in it; in ms."
     ] = _NONE
     parent: Annotated[str, "The AB that this one follows."] = ""
     parents: Annotated[list[str], "All ABs that it waits for, where more than one."] = _NONE

@@ -11,16 +11,7 @@ from prima.interpreter.bounds import ElementVisit
 from prima.interpreter.protocol import Answer, App
 from prima.interpreter.transfers import GoOut, Thrown
 from prima.markup.tree import Node
-from prima.messages import (
-    Command,
-    Data,
-    Event,
-    Hypothesis,
-    Json,
-    Notice,
-    Say,
-    Understood,
-)
+from prima.messages import Command, Data, Event, Hypothesis, Json, Notice, Say, Understood
 from prima.messages import Heard as Spoken
 from prima.script.isolated import AnyEngine, Engines
 from prima.voicexml.document import Page, VoiceDocument
@@ -32,11 +23,7 @@ from prima.voicexml.waits import Waits
 class VoiceInterpreter(App[AnyEngine]):
     """Runs one VoiceXML application."""
 
-    def __init__(
-        self,
-        document: VoiceDocument,
-        engines: Engines | None = None,
-    ) -> None:
+    def __init__(self, document: VoiceDocument, engines: Engines | None = None) -> None:
         self.document = document
         engine = (engines or Engines()).engine(document.id, document.kind, SCOPES)
         super().__init__(document.id, document.kind, engine)

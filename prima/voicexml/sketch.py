@@ -12,15 +12,7 @@ from functools import cached_property
 from itertools import chain
 from urllib.parse import urldefrag, urlsplit
 
-from prima.interpreter.acts import (
-    Act,
-    CommandRun,
-    Expression,
-    Foreach,
-    Goto,
-    Handler,
-    If,
-)
+from prima.interpreter.acts import Act, CommandRun, Expression, Foreach, Goto, Handler, If
 from prima.interpreter.elements import (
     Block,
     Document,

@@ -66,11 +66,7 @@ def _check_units(sketch: Sketch, root: Page | None) -> Iterator[Problem]:
 
 def _source(sketch: Sketch, root: Page | None) -> EnteredDocument:
     """A document as what is told twice is looked for in it."""
-    own = {
-        *OWN,
-        *thrown_in(sketch.page.root),
-        *(thrown_in(root.root) if root is not None else ()),
-    }
+    own = {*OWN, *thrown_in(sketch.page.root), *(thrown_in(root.root) if root is not None else ())}
     return EnteredDocument(
         sketch.document, lambda name: _is_foreign(name, own), sketch.leads, queues=True
     )

@@ -15,10 +15,7 @@ from prima.markup.vocabulary import Attribute
 
 VERSIONS = ("2.0", "2.1")
 OLD = "1.0"
-RENAMED = {
-    "vxml": {"base": "xml:base", "lang": "xml:lang"},
-    "pros": {"vol": "volume"},
-}
+RENAMED = {"vxml": {"base": "xml:base", "lang": "xml:lang"}, "pros": {"vol": "volume"}}
 """Attributes of VoiceXML 1.0 with their later names."""
 DROPPED = {"subdialog": ("modal",)}
 """Attributes of VoiceXML 1.0 that have no meaning any more; ``caching`` is one of all elements."""

@@ -59,15 +59,11 @@ UNKNOWN_ATTRIBUTE = Diagnosis(
 )
 
 MISSING_ATTRIBUTE = Diagnosis(
-    "missing-attribute",
-    "Missing attribute",
-    "The element needs an attribute, or one of several.",
+    "missing-attribute", "Missing attribute", "The element needs an attribute, or one of several."
 )
 
 MISSING_ELEMENT = Diagnosis(
-    "missing-element",
-    "Missing element",
-    "The element needs a child element.",
+    "missing-element", "Missing element", "The element needs a child element."
 )
 
 DUPLICATE_ID = Diagnosis(
@@ -87,9 +83,7 @@ DUPLICATE_NAME = Diagnosis(
 )
 
 DUPLICATE_ELEMENT = Diagnosis(
-    "duplicate-element",
-    "Element written twice",
-    "The element may be there only once.",
+    "duplicate-element", "Element written twice", "The element may be there only once."
 )
 
 DUPLICATE_ANSWER = Diagnosis(
@@ -99,11 +93,7 @@ DUPLICATE_ANSWER = Diagnosis(
     rule="VoiceXML 2.0, 2.3.1.3",
 )
 
-EMPTY = Diagnosis(
-    "empty",
-    "Empty element",
-    "The element holds nothing.",
-)
+EMPTY = Diagnosis("empty", "Empty element", "The element holds nothing.")
 
 AFTER_ELSE = Diagnosis(
     "after-else",

@@ -40,8 +40,5 @@ TOO_LONG = Diagnosis(
 )
 
 NOTHING_TO_SAY = Diagnosis(
-    "nothing-to-say",
-    "Nothing to say",
-    "A Command that speaks has no text.",
-    rule="E3",
+    "nothing-to-say", "Nothing to say", "A Command that speaks has no text.", rule="E3"
 )

@@ -15,11 +15,7 @@ from prima.errors import DocumentError, Problem, UsageError, did_you_mean
 from prima.markup.limits import LIMITS
 
 FOLDER = Path(__file__).parent
-LOWERED = {
-    "too-large": ("elements", 4),
-    "too-deep": ("depth", 5),
-    "more-problems": ("problems", 1),
-}
+LOWERED = {"too-large": ("elements", 4), "too-deep": ("depth", 5), "more-problems": ("problems", 1)}
 """Lower limits for the examples of some codes, so that they can be short."""
 BY_HAND = {
     "language": "load(..., languages=...) does not take it",

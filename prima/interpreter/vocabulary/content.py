@@ -29,9 +29,7 @@ ACTS = (
         source="VoiceXML 5.3.4",
     ),
     Element(
-        "elseif",
-        "Divides an if.",
-        (attribute("cond", "expression", "the condition", "required"),),
+        "elseif", "Divides an if.", (attribute("cond", "expression", "the condition", "required"),)
     ),
     Element("else", "Divides an if."),
     Element(

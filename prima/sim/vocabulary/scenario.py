@@ -140,10 +140,7 @@ SCENARIO = Vocabulary(
         ),
         Element("never", "What must not happen in the run.", _EXPECTED, ("data",)),
         Element(
-            "in-order",
-            "Expectations that have to come true one after the other.",
-            (),
-            ("expect",),
+            "in-order", "Expectations that have to come true one after the other.", (), ("expect",)
         ),
     ),
     hints={

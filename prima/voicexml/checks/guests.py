@@ -18,8 +18,7 @@ from prima.voicexml.vocabulary import COMMANDS, HOLDING, PRIMA_NAMESPACE, VOICEX
 
 UNKNOWN_COMMAND = UNKNOWN_ELEMENT.says("PRIMA has no Command <{tag}>.")
 NOT_HERE = MISPLACED_ELEMENT.says(
-    "A Command cannot stand in <{parent}>.",
-    "It may stand in a prompt or among executable content.",
+    "A Command cannot stand in <{parent}>.", "It may stand in a prompt or among executable content."
 )
 ARRANGING_NOT_HERE = MISPLACED_ELEMENT.says(
     "<p:{tag}> cannot stand in <{parent}>: it is around Commands.", NOT_HERE.remedy
