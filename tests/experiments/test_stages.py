@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from prima.errors import UsageError
-from prima.experiments import variants
+from prima.experiments import kept
 from prima.experiments.scenariotext import Variant
 from prima.experiments.variants import ExperimentSettings, Stage
 from tests.helpers.spoken import recording
@@ -57,11 +57,11 @@ def test_a_packed_stage_needs_no_file(folder: Path, monkeypatch: pytest.MonkeyPa
 
 def test_too_much_to_pack(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     stage = Stage.of(["visit.xml"], ["touch"], ExperimentSettings())
-    monkeypatch.setattr(variants, "MOST_SENT", 100)
+    monkeypatch.setattr(kept, "MOST_SENT", 100)
     with pytest.raises(UsageError, match=r"shop: a cluster needs the files .* folder of its own"):
         stage.pack()
-    monkeypatch.setattr(variants, "MOST_SENT", 10**6)
-    monkeypatch.setattr(variants, "MOST_FILES", 2)
+    monkeypatch.setattr(kept, "MOST_SENT", 10**6)
+    monkeypatch.setattr(kept, "MOST_FILES", 2)
     with pytest.raises(UsageError, match="shop: a cluster needs"):
         stage.pack()
 
