@@ -6,11 +6,17 @@ is the run's. What waits, or tells when memory was collected, is removed.
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 MEMORY_LIMIT = 16 * 1024 * 1024
 """Bytes that one engine may use."""
 STACK_LIMIT = 256 * 1024
+MAY_ASK_TIME = re.compile(
+    r"""Date|\bthis\b|globalThis|eval|Function|constructor|Reflect|Object|\\"""
+    r"""|\[(?!\s*(?:\d*|"[^"]*"|'[^']*')\s*\])"""
+)
+"""Code that names ``Date``, or may find it without naming it."""
 
 
 def source(name: str) -> str:
