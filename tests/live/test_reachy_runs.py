@@ -30,7 +30,7 @@ NOD = 4
         (
             "guide.xml",
             "/touch head\n",
-            ["This robot cannot do", '"Please go ahead without me."', "ends guide: exit"],
+            ["Topological Move fails", '"Please go ahead without me."', "ends guide: exit"],
         ),
     ],
 )
