@@ -136,7 +136,7 @@ class OpenGoals:
     """The goals that have not ended: told to drivers once their devices are free, and cancelled.
 
     Args:
-        inbound: takes what has to be told of them.
+        inbound: takes what the session has to know about them.
     """
 
     def __init__(self, inbound: list[Inbound]) -> None:

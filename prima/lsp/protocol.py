@@ -38,7 +38,7 @@ SEVERITIES = {
 
 IDS = (str, int, float)
 """What the id of a request may be."""
-NO_MESSAGE = "It is no message of JSON-RPC 2.0."
+NO_MESSAGE = "This is not a JSON-RPC 2.0 message."
 logger = logging.getLogger("prima.lsp")
 
 
@@ -137,7 +137,7 @@ class Server(LanguageServer):
     def report_server_error(self, error: Exception, source: Any) -> None:
         """Do not log wrong messages of an editor: it gets an error as answer."""
         if source is JsonRpcException and isinstance(error, ValueError | RecursionError):
-            self.protocol.refused(None, JsonRpcParseError("It is no JSON."))
+            self.protocol.refused(None, JsonRpcParseError("This is not JSON."))
         logger.debug("%s: %s", type(error).__name__, error)
 
     # Places -------------------------------------------------------------------

@@ -63,7 +63,7 @@ class Send:
 
     ``data`` has the values sent as ``params``, and where an answer is waited for as a
     :class:`Fetched` the ``method``, ``get`` or ``post``. A call to somebody else has its kind
-    as ``transfer`` (``bridge``, ``blind``, ``consultation``) and is told of by
+    as ``transfer`` (``bridge``, ``blind``, ``consultation``) and ends with
     :class:`Transferred`; ``over`` ends the one whose serial is ``call``.
     """
 

@@ -11,7 +11,7 @@ Data = Mapping[str, Json]
 Record = dict[str, Json]
 """One line of the transcript while it is still being made: field name to value."""
 Fate = Literal["ended", "done", "cancelled", "expired", "failed", "interrupted", "unit-timeout"]
-"""What an application may be told of its Commands; ``expired``: a part of a run came too late (X8)."""
+"""Notices to an application about its Commands; ``expired``: part of a run came too late (X8)."""
 Verb = Literal["start", "abort", "interrupt", "stop", "send"]
 """What devices may be told to do."""
 PROMOTED = -1

@@ -130,7 +130,7 @@ _Step = tuple[str, str | None]
 def _steps(path: str) -> list[_Step]:
     if WHOLE.fullmatch(path) is None:
         why = "Write it as when[2].after or person.speed."
-        raise UsageError(f'"{path}" is no value of the scenario. {why}')
+        raise UsageError(f'"{path}" is not a value of the scenario. {why}')
     return [(one["name"], one["which"]) for one in STEP.finditer(path)]
 
 
@@ -158,7 +158,7 @@ class _Search:
 
     def wrong(self, why: str) -> UsageError:
         where = "the scenario" if self.vocabulary is SCENARIO else self.root.place.file
-        return UsageError(f'"{self.path}" is no value of {where}. {why}'.rstrip())
+        return UsageError(f'"{self.path}" is not a value of {where}. {why}'.rstrip())
 
     def found(self, steps: list[_Step]) -> ScenarioValue:
         """The value to which steps lead."""

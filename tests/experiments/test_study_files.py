@@ -86,7 +86,7 @@ def test_options_come_before_the_file(folder: Path) -> None:
         ("seeds = 2", "seeds = 0x" + "f" * 9000, ":4", "seeds: write a whole number from 1 to"),
         ("[0.5, 1]", "[0x" + "f" * 9000 + "]", ":10", "person.speed: write its levels, as"),
         ("[0.5, 1]", "9", ":10", 'person.speed: "9" is out of range'),
-        ("touch =", "toch =", ":8", '"toch" is no value of the scenario. Did you mean "touch"'),
+        ("touch =", "toch =", ":8", '"toch" is not a value of the scenario. Did you mean "touch"'),
         ("site/visit.xml", "site/none.xml", ":2", "none.xml: cannot be read"),
         ('"prima", "fifo"', '"pirma"', ":3", 'Did you mean "prima"'),
     ],
@@ -138,7 +138,7 @@ def test_large_studies_are_refused_soon_and_with_their_line() -> None:
         (f'reply = [{levels}, "z", "z"]', 'reply: The level "z" is there twice'),
         (f"reply = [{'{},' * 300_000}]", "reply: write its levels, as"),
         (f'touch = "{"0ms..99999ms/1ms|" * 1000}"', "levels; at most 100,000"),
-        ("\n".join(f"a{number} = 1" for number in range(60_000)), '"a0" is no value'),
+        ("\n".join(f"a{number} = 1" for number in range(60_000)), '"a0" is not a value'),
         (f'touch = "{"s" * 900_000}"', "is not a time. Write a number with its unit"),
     ):
         Path("study.toml").write_text(f"{STUDY.partition('touch')[0]}{written}", encoding="utf-8")

@@ -185,7 +185,7 @@ def test_what_a_sweep_will_cost() -> None:
     [
         (
             {"vary": {"toch": "1s"}},
-            'visit.xml: "toch" is no value of the scenario. Did you mean "touch"',
+            'visit.xml: "toch" is not a value of the scenario. Did you mean "touch"',
         ),
         ({"vary": {"touch": "1s", "touch.at": "2s"}}, '"touch" and "touch.at" are the same value'),
         ({"vary": {"policy": "prima"}}, "write --policy prima --policy fifo"),

@@ -103,7 +103,7 @@ def test_a_path_that_leads_on_in_the_robots_document(path: str, written: str, ki
 @pytest.mark.parametrize(
     ("path", "why"),
     [
-        ("robot.sped", r'"robot.sped" is no value of papero.xml. Did you mean "speed"\?'),
+        ("robot.sped", r'"robot.sped" is not a value of papero.xml. Did you mean "speed"\?'),
         ("robot.gesture", r"There are 2 <gesture>: write gesture\[1\] to gesture\[2\]"),
         ("robot.gesture[bow]", 'No <gesture> has the name "bow".'),
         ("robot.device", "<device> has no value of its own: write robot.device.name."),

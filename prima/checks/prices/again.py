@@ -16,15 +16,22 @@ def reacting_again(outline: Outline) -> list[Gap]:
     found = [one.made for one in outline.reactions if one.made]
     starts: list[Node] = [("reaction", number) for number in range(len(outline.reactions))]
     for ring in rings(starts, _Ways(outline)):
-        held = {name for kind, name in ring if kind == "state"}
-        events = {str(name) for kind, name in ring if kind == "event"}
-        round_trip = [outline.reactions[int(name)] for kind, name in ring if kind == "reaction"]
-        states = [*(one.does for one in round_trip), *_states(outline, held)]
-        if events and round_trip and any(state.parts for state in states):
-            first = min(round_trip, key=lambda one: one.node.index)
-            if first.made is None:
-                found.append(Gap(first.node.place, _again(first, events)))
+        found += _gaps(outline, ring)
     return list(dict.fromkeys(found))
+
+
+def _gaps(outline: Outline, ring: Iterable[Node]) -> Iterator[Gap]:
+    """The gap of a ring of nodes that lead to each other, if Commands are in it."""
+    held: dict[str, list[str | int]] = {"state": [], "event": [], "reaction": []}
+    for kind, name in ring:
+        held[kind].append(name)
+    reactions = [outline.reactions[int(number)] for number in held["reaction"]]
+    states = [*(one.does for one in reactions), *_states(outline, held["state"])]
+    if not (held["event"] and reactions and any(state.parts for state in states)):
+        return
+    first = min(reactions, key=lambda one: one.node.index)
+    if first.made is None:
+        yield Gap(first.node.place, _again(first, set(map(str, held["event"]))))
 
 
 def _again(reaction: PricedReaction, events: set[str]) -> str:

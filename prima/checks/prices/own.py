@@ -21,6 +21,14 @@ ANSWERS = ("reply", "error.service")
 """Events of services; the name of the service follows."""
 
 
+def _handled_answers(document: Document) -> set[str]:
+    """The events of services that a document handles."""
+    events = {name for _, one in handlers_of(document) for name in one.events}
+    return {
+        name for name in events if any(takes(kind, name) or takes(name, kind) for kind in ANSWERS)
+    }
+
+
 class OwnEvents:
     """Finds the events that content causes in its own application."""
 
@@ -45,13 +53,7 @@ class OwnEvents:
         """The watches that may look at variables."""
         self._moved = {name for name, of in sensors if of is None or not of.isdisjoint(MOVED)}
         """The watches that may look at where the robot is."""
-        self._answers = {
-            name
-            for _, one in handlers_of(document)
-            for name in one.events
-            if any(takes(kind, name) or takes(name, kind) for kind in ANSWERS)
-        }
-        """The handled events of services."""
+        self._answers = _handled_answers(document)
         self._leads = EventLeads(self.raised)
 
     def leads_round(self, handler: Handler, form: Form | None) -> bool:
