@@ -101,12 +101,13 @@ class Shell:
 
     def _advance(self) -> bool:
         """Carry out all that is due; false when the run is over."""
-        loop, now = self.loop, min(self.clock.now(), self.loop.until)
-        due = loop.due()
-        if due is not None and due < now:
-            self._note_late(now - due)
-        while not self._stopped and loop.advance(now) is not None:
-            now = min(self.clock.now(), loop.until)
+        loop = self.loop
+        while not self._stopped:
+            now, due = min(self.clock.now(), loop.until), loop.due()
+            if due is not None and due < now:
+                self._note_late(now - due)
+            if loop.advance(now) is None:
+                break
         if loop.outcome or loop.over:
             loop.finish(loop.now)
             return False

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
 
 import pytest
 
 from prima import api
 from prima.invariants import callers, check
+from prima.live.shell import Shell
 from prima.messages import Record
 from prima.scheduler.policy import policy_named
 from prima.sim.rehearsal import Rehearsal
 from prima.transcript.lines import finished
-from tests.live.stage import carried_out, live_loop
+from tests.live.stage import Jumping, carried_out, live_loop
 
 SCENARIOS = sorted((Path(__file__).parents[2] / "documents" / "scenarios").glob("*.xml"))
 
@@ -56,3 +58,22 @@ def test_what_begins_on_a_device_that_still_stops_is_held_back_and_told() -> Non
     delays = [record for record in live if record["phase"] == "delayed"]
     assert delays
     assert {record["data"]["waited"] for record in delays} == {0.06}
+
+
+def test_an_instant_that_comes_late_because_the_one_before_took_long_is_told() -> None:
+    path = next(one for one in SCENARIOS if one.stem == "follow-during-navigation")
+    loop, clock, told = live_loop(api.load_scenario(path).cast), Jumping(), list[str]()
+
+    def slow(records: list[Record]) -> None:
+        if records[0]["time"] == 0:
+            clock.time = 60_000
+
+    loop.journal = slow
+    shell = Shell(loop, clock, told.append, late=250)
+    clock.ended = shell.stop
+    try:
+        asyncio.run(shell.run())
+    finally:
+        loop.session.close()
+    assert len(told) == 1 and told[0].startswith("An instant was carried out ")
+    assert shell.latest > 50_000
