@@ -40,7 +40,7 @@ from prima.interpreter import (
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.interpreter.vocabulary.names import CONTENT, HANDLERS, SPEAKING
 from prima.interpreter.vocabulary.questions import PROPERTIES
-from prima.language.commands import LONGEST_TURN_MS, TABLE_4_2, CommandType
+from prima.language.commands import LONGEST_TURN_MS, PATIENCE_MS, TABLE_4_2, CommandType
 from prima.language.values import KINDS, LONGEST_MS
 from prima.lsp.descriptions import VOICEXML_ATTRIBUTES
 from prima.markup.limits import LIMITS
@@ -258,6 +258,11 @@ def limits() -> str:
             "what one utterance or question keeps the speaker, at 50 ms a letter",
             f"{LONGEST_TURN_MS // 1000} s",
             "`too-long`, `error.semantic`",
+        ),
+        (
+            "the same beside another application",
+            f"the run's `patience`, {PATIENCE_MS // 1000} s by default",
+            "`long-turn`, `error.semantic`",
         ),
         (
             "what an application says, logs and sends in one instant",

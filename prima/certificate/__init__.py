@@ -14,6 +14,7 @@ from prima.devices.profile import Profile, read_robot
 from prima.errors import DocumentError, UsageError, has_errors
 from prima.interpreter.checks import check_commands, document_commands
 from prima.interpreter.elements import Document
+from prima.language.commands import PATIENCE_MS
 from prima.loading import documents_folder, read_application
 from prima.loading.files import read_file
 from prima.session import AnyDocument
@@ -44,6 +45,7 @@ def certify(
         theirs.holds,
         starving(own, theirs),
         theirs.gaps,
+        [one for one in theirs.parts if "speaker" in one.devices and one.lasts > PATIENCE_MS],
         {one.id: _lacks(ea, theirs, one) for one in (profile, *others)},
     )
 

@@ -78,5 +78,7 @@ class Certificate:
     starves: list[Starving] = field(default_factory=list)
     gaps: list[Gap] = field(default_factory=list)
     """What is unknown from the EA's documents."""
+    long: list[Price] = field(default_factory=list)
+    """Parts of the EA that keep the speaker for longer than a run's patience, if unset (E6)."""
     lacks: dict[str, list[str]] = field(default_factory=dict)
     """What the EA needs and a robot lacks, by robot; empty if it lacks nothing."""

@@ -35,6 +35,12 @@ def format_certificate(one: Certificate) -> str:
     lines += [f"  {place}: a hold, for {lasts / 1000:g} s, with x3\n    waiting: all"
               for place, lasts in one.holds]  # fmt: skip
     lines += _others(one)
+    if one.long:
+        patience = f"a run's patience, {PATIENCE_MS // 1000} s by default (E6)"
+        lines += ["", f"What of {one.ea} is longer than {patience}"]
+    for price in one.long:
+        meets = "it ends then" if price.what == "unit" else "it may be refused"
+        lines.append(f"  {price.what} at {price.place}, {price.seconds}: {meets}")
     lines += ["", f"Robots that can run {one.ea}"]
     for robot, lacking in sorted(one.lacks.items()):
         lines.append(f"  {robot}: {'all of it' if not lacking else f'not {_list(lacking)}'}")
@@ -167,6 +173,7 @@ def certificate_data(one: Certificate) -> dict[str, Any]:
             "not_known": _gaps(one.others.unknown),
             "without_end": _gaps(one.others.endless),
         },
+        "long": [_price(held) for held in one.long],
         "lacks": one.lacks,
     }
 

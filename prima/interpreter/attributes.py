@@ -17,10 +17,11 @@ from prima.interpreter.diagnoses import (
     ONLY_ONE,
     SAYS_NOTHING,
     SPEAKS_TOO_LONG,
+    TURN_TOO_LONG,
 )
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.language.arguments import check_argument, excluding_arguments, missing_argument
-from prima.language.commands import TABLE_4_2, CommandType, too_long
+from prima.language.commands import PATIENCE_MS, TABLE_4_2, CommandType, too_long
 from prima.language.values import XML_SPACE, BadValue, nearest, outside, read_value, within
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
@@ -234,8 +235,11 @@ class AttributeReader:
             given = [key for key in node.attributes if key.removesuffix("-expr") in choices]
             self.problem(ONLY_ONE, node, given[-1], wrong=excluding)
 
-    def check_length(self, node: Node, text: Text | None) -> None:
-        """Note a text that certainly takes longer than one utterance may (E3)."""
+    def check_length(self, node: Node, text: Text | None, timeout: int = 0) -> None:
+        """Note what certainly takes longer than one utterance or question may (E3, E6)."""
         letters = sum(len(part) for part in text or () if isinstance(part, str))
-        if wrong := too_long(letters, pauses_in(text)):
+        silence = pauses_in(text) + timeout
+        if wrong := too_long(letters, silence):
             self.problem(SPEAKS_TOO_LONG, node, wrong=wrong)
+        elif wrong := too_long(letters, silence, PATIENCE_MS):
+            self.problem(TURN_TOO_LONG, node, wrong=wrong)

@@ -245,7 +245,7 @@ class Builder(ContentBuilder):
                 bargein=self.value(child, "bargein", "boolean", None),
                 node=child,
             )
-            self.check_length(child, prompt.text)
+            self.check_length(child, prompt.text, prompt.timeout or 0)
             made.append(prompt)
         return tuple(made)
 

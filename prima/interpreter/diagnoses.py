@@ -16,6 +16,7 @@ from prima.errors.diagnoses.structure import (
 from prima.errors.diagnoses.values import (
     BAD_VALUE,
     EXCLUSIVE,
+    LONG_TURN,
     NOTHING_TO_SAY,
     OUT_OF_RANGE,
     TOO_LONG,
@@ -62,4 +63,5 @@ ONLY_A_PAUSE = NOTHING_TO_SAY.says(
     SAYS_NOTHING.message, f'{SAYS_NOTHING.remedy} A pause between Commands is <pause time="1s"/>.'
 )
 SPEAKS_TOO_LONG = TOO_LONG.says("{wrong}", "Divide it: say it in several Commands.")
+TURN_TOO_LONG = LONG_TURN.says("{wrong}", "Divide it, or shorten its pauses and timeout.")
 BEHIND_ELSE = AFTER_ELSE.says("<{tag}> comes after <else>.", "<else> comes last.")

@@ -33,12 +33,12 @@ ABSENCE_MS = 20_000
 """After how long without being seen, heard or felt the user is absent (rule K1), unless the
 profile says otherwise."""
 LONGEST_TURN_MS = 600_000
-"""How long one utterance, or one question, may keep the speaker (rule E3)."""
+"""How long one utterance, or one question, may keep the speaker where nobody waits (rule E3)."""
 LETTER_MS = 50
 """How long a letter counts in that: less than it takes, so that whatever is refused is too long."""
 PATIENCE_MS = 60_000
-"""How long an application may keep another from the speaker (rule E6), unless the run says
-otherwise."""
+"""How long an application may keep another from the speaker, by one utterance or question or by
+many (rule E6), unless the run says otherwise."""
 LATE_MS = 2_000
 """How long after a question's timeout the user may begin to answer it still (rule X10)."""
 
@@ -302,10 +302,19 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
 """The 17 Command types of the thesis by name, and Pause, which needs no device."""
 
 
-def too_long(letters: int, silence: float) -> str:
-    """Why an utterance or question of so many letters and ms of silence is too long; empty if it is not."""
+def too_long(letters: int, silence: float, most: int = LONGEST_TURN_MS) -> str:
+    """Why an utterance or question of so many letters and ms of silence is too long.
+
+    Args:
+        letters: of its text.
+        silence: its pauses, and a question's timeout (ms).
+        most: how long it may last (ms).
+
+    Returns:
+        What is wrong; empty if nothing is.
+    """
     lasts = letters * LETTER_MS + silence
-    if lasts <= LONGEST_TURN_MS:
+    if lasts <= most:
         return ""
-    most = LONGEST_TURN_MS // 1000
-    return f"It keeps the speaker for at least {lasts / 1000:.0f} s; {most} s are the most."
+    beside = "" if most == LONGEST_TURN_MS else " beside another application (E6)"
+    return f"It keeps the speaker for at least {lasts / 1000:.0f} s; {most / 1000:g} s are the most{beside}."

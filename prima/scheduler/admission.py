@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from prima.errors import did_you_mean
 from prima.language.arguments import check_arguments
-from prima.language.commands import TABLE_4_2, CommandType, too_long
+from prima.language.commands import LONGEST_TURN_MS, TABLE_4_2, CommandType, too_long
 from prima.messages import NO_DEVICES, Command, Group, OpenUnit, Request, Step
 from prima.scheduler.behavior import GONE, Application, AwaitedRun, Behavior, Inside, Stream
 
@@ -23,8 +23,12 @@ class CommandRefused(Exception):
         self.command = command
 
 
-def check_command(command: Command, app: Application, table: Table) -> None:
+def check_command(
+    command: Command, app: Application, table: Table, most: int = LONGEST_TURN_MS
+) -> None:
     """Refuse a Command that the rules or this robot do not know, and fill in defaults.
+
+    ``most`` is how long (ms) it may keep the speaker.
 
     Raises:
         CommandRefused: with ``error.unsupported.TYPE`` or ``error.semantic``.
@@ -49,8 +53,10 @@ def check_command(command: Command, app: Application, table: Table) -> None:
         command.args = dict(check_arguments(row, command.text, command.args))
     except ValueError as error:
         raise CommandRefused("error.semantic", str(error), command) from None
-    if problem := too_long(len(command.text or ""), silence(command)):
-        raise CommandRefused("error.semantic", f"{problem} Divide it.", command)
+    if problem := too_long(len(command.text or ""), silence(command), most):
+        raise CommandRefused(
+            "error.semantic", f"{problem} Divide it, or shorten its pauses and timeout.", command
+        )
     command.now = command.now or row.now
 
 
@@ -76,17 +82,22 @@ def substitute(steps: list[Step], table: Table) -> list[tuple[Command, str]]:
 
 
 def check_steps(
-    steps: list[Step], app: Application, table: Table, owned: frozenset[str] | None = None
+    steps: list[Step],
+    app: Application,
+    table: Table,
+    owned: frozenset[str] | None = None,
+    most: int = LONGEST_TURN_MS,
 ) -> None:
     """Check all Commands of a request before any of them is taken in.
 
-    ``owned`` are the devices of the unit that they are requested in, if any (U5).
+    ``owned`` are the devices of the unit that they are requested in, if any (U5), and ``most`` is
+    how long (ms) each may keep the speaker.
 
     Raises:
         CommandRefused: for the first bad one.
     """
     for command in commands_of(steps):
-        check_command(command, app, table)
+        check_command(command, app, table, most)
     check_units(steps, table, owned)
 
 

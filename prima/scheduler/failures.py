@@ -123,12 +123,15 @@ def unit_timeout(mediation: Mediation, unit: Behavior) -> None:
 
 
 def set_deadlines(mediation: Mediation) -> None:
-    """E1, U5: note when what has just started will have run for too long."""
+    """E1, U5, E6: note when what has just started will have run for too long."""
     for ab in mediation.started:
         if ab.command is not None:
             ab.late = mediation.now + allowance(ab)
         elif ab.group is not None and ab.group.longest is not None:
-            ab.late = mediation.now + ab.group.longest
+            longest = ab.group.longest
+            if mediation.shared and "speaker" in ab.devices:
+                longest = min(longest, mediation.patience)
+            ab.late = mediation.now + longest
 
 
 def allowance(ab: Behavior) -> int:

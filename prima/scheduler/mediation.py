@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
+from prima.language.commands import ABSENCE_MS, LONGEST_TURN_MS, PATIENCE_MS, CommandType
 from prima.messages import Command, Notice, Order, Verb
 from prima.scheduler.admission import Maker
 from prima.scheduler.behavior import Application, Behavior, Stream
@@ -100,6 +100,17 @@ class Mediation:
     def now(self) -> int:
         """The instant."""
         return self.recorder.now
+
+    @property
+    def shared(self) -> bool:
+        """Whether an application must leave the speaker to others after a time (E6)."""
+        others = sum(not app.gone for app in self.memory.apps.values()) > 1
+        return others and self.patience > 0 and self.policy.floor
+
+    @property
+    def longest_turn(self) -> int:
+        """How long (ms) one utterance or question may keep the speaker (E3, E6)."""
+        return min(self.patience, LONGEST_TURN_MS) if self.shared else LONGEST_TURN_MS
 
     def has(self, extension: str) -> bool:
         """Whether an extension is on."""

@@ -22,9 +22,10 @@ def u3(mediation: Mediation, app: Application, asked: Request) -> None:
     x6(mediation, app, asked)
     unit = app.units.get(asked.unit) if asked.unit is not None else None
     try:
-        check_steps(asked.steps, app, mediation.table, unit.devices if unit else None)
+        most = mediation.longest_turn
+        check_steps(asked.steps, app, mediation.table, unit.devices if unit else None, most)
         if asked.words is not None and asked.words.type in mediation.table:
-            check_command(asked.words, app, mediation.table)
+            check_command(asked.words, app, mediation.table, most)
     except CommandRefused as refused:
         e3(mediation, app, asked, refused)
     else:

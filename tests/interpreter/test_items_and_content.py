@@ -202,10 +202,10 @@ def test_breaks_of_prompts_stand_where_they_are_said() -> None:
         ("<pause/>", "missing-attribute", 'time="..."'),
         ('<break time="1s"/>', "misplaced-element", '<pause time="1s"/>'),
         ('<speak>a<pause time="1s"/></speak>', "misplaced-element", '<break time="1s"/>'),
-        ('<iu><speak>a<break time="60s"/></speak></iu>', "long-unit", ""),
+        ('<iu><speak>a<break time="50s"/></speak></iu>', "long-unit", ""),
     ],
 )
 def test_what_is_wrong_with_a_pause_is_told(content: str, code: str, remedy: str) -> None:
     _, problems = read(f"<form id='a'><block>{content}<exit/></block></form>")
-    (problem,) = problems
+    (problem,) = [one for one in problems if one.code != "long-turn"]  # a pause may be that, too
     assert problem.code == code and remedy in problem.remedy, problem

@@ -18,7 +18,7 @@ SILENT = Command("turn", {"angle": 30.0})
 
 def refused(command: Command, app: str = "ea", table: object = LOUD) -> str:
     """The message with which it is refused; empty if it is not."""
-    stage = Stage(table=table)  # type: ignore[arg-type]
+    stage = Stage(table=table, apps={app: app})  # type: ignore[arg-type]
     stage.request(app, replace(command))
     started = stage.select()
     failed = [str(record["message"]) for record in stage.phases("fail")]
@@ -122,7 +122,7 @@ def test_e3_nobody_speaks_or_listens_longer_than_the_longest_turn(
     assert refused(fits) == ""
     message = refused(too_long)
     assert message.startswith("It keeps the speaker for at least "), message
-    assert message.endswith(" s are the most. Divide it.")
+    assert message.endswith(" s are the most. Divide it, or shorten its pauses and timeout.")
     stage = Stage()
     stage.request("ea", replace(too_long))
     stage.select()
@@ -139,3 +139,49 @@ def test_e3_nobody_speaks_or_listens_longer_than_the_longest_turn(
 )
 def test_e3_what_keeps_no_speaker_is_not_counted(command: Command) -> None:
     assert refused(command) == ""
+
+
+@pytest.mark.parametrize(
+    ("patience", "policy", "apps", "most"),
+    [
+        (60_000, "prima", {"ea": "ea", "fa": "fa"}, 60_000),
+        (5_000, "prima", {"ea": "ea", "fa": "fa"}, 5_000),
+        (900_000, "prima", {"ea": "ea", "fa": "fa"}, LONGEST_TURN_MS),
+        (0, "prima", {"ea": "ea", "fa": "fa"}, LONGEST_TURN_MS),
+        (60_000, "fifo", {"ea": "ea", "fa": "fa"}, LONGEST_TURN_MS),
+        (60_000, "prima", {"ea": "ea"}, LONGEST_TURN_MS),
+    ],
+)
+def test_e6_beside_another_nobody_speaks_longer_than_the_patience(
+    patience: int, policy: str, apps: dict[str, str], most: int
+) -> None:
+    for letters, heard in ((most // LETTER_MS, []), (most // LETTER_MS + 1, ["error.semantic"])):
+        stage = Stage(policy, apps=apps, patience=patience)
+        stage.request("ea", say("x" * letters))
+        assert bool(stage.select()) == (heard == [])
+        assert stage.told("ea") == heard
+    assert all(record["rule"] == "E3" for record in stage.phases("fail"))
+
+
+def test_e6_who_is_alone_again_may_speak_for_long() -> None:
+    stage = Stage()
+    stage.mediator.unload("fa", "exit")
+    stage.request("ea", say(LONG))
+    assert stage.select() == ["ea#1"]
+
+
+@pytest.mark.parametrize(
+    ("content", "apps", "ends"),
+    [
+        (say("One."), {"ea": "ea", "fa": "fa"}, 5_000),
+        (say("One."), {"ea": "ea"}, 90_000),
+        (SILENT, {"ea": "ea", "fa": "fa"}, 90_000),
+    ],
+)
+def test_e6_a_unit_keeps_the_speaker_no_longer_than_the_patience(
+    content: Command, apps: dict[str, str], ends: int
+) -> None:
+    stage = Stage(apps=apps, patience=5_000)
+    stage.request("ea", Group(chain(replace(content)), longest=90_000))
+    stage.select()
+    assert stage.mediator.deadline() == ends

@@ -296,6 +296,8 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("e6", "whatever keeps it", put(rules, "keeps_speaker", lambda ab, memory: True)),
     ("e6", "nobody hears an answer", put(rules, "acknowledges", lambda ab, now: False)),
     ("e6", "any word is one", put(rules, "acknowledges", lambda ab, now: ab.freed == now)),
+    ("e6", "one turn has no bound", put(Mediation, "shared", property(lambda all_: False))),
+    ("e6", "who is alone has one", put(Mediation, "shared", property(lambda all_: True))),
     ("x1", "dropped", put(preparation, "x1", lambda *given: False)),
     ("x2", "dropped", put(interruption, "x2", lambda *given: False)),
     ("x3", "dropped", put(streams, "x3", nothing)),

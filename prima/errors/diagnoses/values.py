@@ -39,6 +39,18 @@ TOO_LONG = Diagnosis(
     rule="E3",
 )
 
+LONG_TURN = Diagnosis(
+    "long-turn",
+    "Speech too long beside another",
+    (
+        "Beside another application, an utterance or a question keeps the speaker no longer than "
+        "the run's patience, 60 s by default, counted at 50 ms a letter. A run refuses it as "
+        "error.semantic then (rule E6)."
+    ),
+    rule="E6",
+    severity="warning",
+)
+
 NOTHING_TO_SAY = Diagnosis(
     "nothing-to-say", "Nothing to say", "A Command that speaks has no text.", rule="E3"
 )
