@@ -33,4 +33,5 @@ def lsp(stdio: bool) -> None:
     if sys.stdin is None or sys.stdin.isatty():
         message = "An editor starts this command; docs/editors.md says how to set it up."
         raise UsageError(f"lsp: {message} To check a file here: prima validate FILE.")
-    serve()
+    if not serve():
+        raise click.exceptions.Exit(1)

@@ -59,6 +59,9 @@ def _exactly(kind: type, value: Any, _: object) -> Any:
 class Protocol(LanguageServerProtocol):
     """Answers requests that are wrong, or come too early or late, with an error; pygls does not."""
 
+    left_early = False
+    """Whether the editor has said ``exit`` without ``shutdown`` before."""
+
     def structure_message(self, data: dict[str, Any]) -> Any:
         """Read a message; errors in a request are sent back."""
         asked = data.get("id")
@@ -88,9 +91,11 @@ class Protocol(LanguageServerProtocol):
             return
         method = getattr(message, "method", "")
         error: JsonRpcException | None = None
-        if self._shutdown and method != lsp.EXIT:
+        if method == lsp.EXIT:
+            self.left_early = not self._shutdown
+        elif self._shutdown:
             error = JsonRpcInvalidRequest("The server has been shut down.")
-        elif self._workspace is None and method not in (lsp.INITIALIZE, lsp.EXIT):
+        elif self._workspace is None and method != lsp.INITIALIZE:
             error = JsonRpcServerNotInitialized("The server waits for initialize.")
         if error is None:
             super().handle_message(message)

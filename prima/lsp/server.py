@@ -182,9 +182,15 @@ class _Input:
         return sys.stdin.buffer.read(size)
 
 
-def serve() -> None:
-    """Serve an editor over standard input and output until it disconnects."""
+def serve() -> bool:
+    """Serve an editor over standard input and output until it disconnects.
+
+    Returns:
+        Whether it did not say ``exit`` without ``shutdown`` before (LSP 3.17, Exit Notification).
+    """
     logging.basicConfig(level=logging.ERROR, format="prima lsp: %(message)s")
     logging.getLogger("pygls").setLevel(logging.CRITICAL)
     with os.fdopen(os.dup(1), "wb") as stdout:  # pygls closes what it writes to
-        make_server().start_io(cast("BinaryIO", _Input()), stdout)
+        server = make_server()
+        server.start_io(cast("BinaryIO", _Input()), stdout)
+    return not server.protocol.left_early

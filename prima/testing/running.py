@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from prima import api
 from prima.errors import TOO_MUCH, DocumentError, PrimaError, RunError, UsageError
@@ -29,6 +29,7 @@ Status = Literal["passed", "failed", "error", "invalid"]
 class TestOptions:
     """How to test scenarios: the policy (None for their own), and how to compare tables."""
 
+    __test__: ClassVar[bool] = False  # its name is that of tests, for pytest
     policy: str | None = None
     compare: str = "text"
     coverage: bool = False

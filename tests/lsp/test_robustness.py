@@ -278,7 +278,7 @@ NO_MESSAGES: list[tuple[Any, Any, int]] = [
 
 
 @contextmanager
-def served() -> Iterator[subprocess.Popen[bytes]]:
+def served(ends: int = 0) -> Iterator[subprocess.Popen[bytes]]:
     """A server of its own, which writes nothing but messages and ends when it is told to."""
     process = subprocess.Popen(
         [sys.executable, "-m", "prima", "lsp"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
@@ -287,11 +287,11 @@ def served() -> Iterator[subprocess.Popen[bytes]]:
     yield process
     speak(process, {"jsonrpc": "2.0", "method": "exit"})
     assert process.stderr is not None
-    assert (process.wait(SECONDS), process.stderr.read()) == (0, b"")
+    assert (process.wait(SECONDS), process.stderr.read()) == (ends, b"")
 
 
 def test_what_is_no_request_is_answered_and_the_server_goes_on() -> None:
-    with served() as process:
+    with served(ends=1) as process:
         speak(process, BEGINNING)
         assert hear(process)["id"] == 0
         for message, asked, code in NO_MESSAGES:
@@ -338,3 +338,11 @@ def test_wrong_parameters_are_answered_as_such_and_the_server_goes_on() -> None:
                     assert answer["error"]["message"] == f"Wrong parameters of {method}."
         speak(process, {"jsonrpc": "2.0", "id": -1, "method": "shutdown"})
         assert hear(process) == {"jsonrpc": "2.0", "id": -1, "result": None}
+
+
+@pytest.mark.parametrize("begun", [True, False])
+def test_an_editor_that_leaves_without_shutdown_gets_exit_code_1(begun: bool) -> None:
+    with served(ends=1) as process:
+        if begun:
+            speak(process, BEGINNING)
+            assert hear(process)["id"] == 0
