@@ -80,7 +80,9 @@ class Endpoint:
     """A service that a live run may ask. Times are ms of real time."""
 
     name: str
-    url: str
+    application: str
+    """The application that alone may ask it; empty where all may."""
+    uri: str
     method: str
     deadline: int
     retries: int
@@ -181,8 +183,10 @@ def read_services(file: str, data: bytes, grammars: Grammars) -> list[Endpoint]:
     reader = Reader(SERVICES, file, data)
     made: list[Endpoint] = []
     for node in reader.root.all("service", "language-model"):
-        if any(one.name == node.get("name") for one in made):
-            message = f'The service "{node.get("name")}" is there twice.'
+        name, owner = node.get("name"), node.get("application")
+        if any((one.name, one.application) == (name, owner) for one in made):
+            whose = f' for the application "{owner}"' if owner else ""
+            message = f'The service "{name}" is there twice{whose}.'
             reader.problem(node, "duplicate-name", message, "name", RENAME)
         made.append(_endpoint(reader, node, grammars))
     reader.finish()
@@ -195,6 +199,7 @@ def _endpoint(reader: Reader, node: Node, grammars: Grammars) -> Endpoint:
     method = "post" if chats else reader.get(node, "method") or "post"
     made = Endpoint(
         node.get("name"),
+        node.get("application"),
         node.get("url"),
         method,
         reader.get(node, "deadline") or 1,

@@ -87,7 +87,7 @@ class ServiceRequests:
 
     def _check(self, request: Request) -> None:
         """Let no other host be asked, nor any but the service's own be told a secret."""
-        url, own = request.full_url, self.endpoint.url
+        url, own = request.full_url, self.endpoint.uri
         if self.closed:
             raise Unfit("nobody waits for it any more")
         if urlsplit(url).scheme not in ("http", "https") or host_of(url) not in self.hosts:

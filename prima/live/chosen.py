@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from prima.errors import UsageError
+from prima.devices.endpoints import Endpoint
+from prima.errors import DocumentError, Problem, UsageError, did_you_mean
 from prima.live.services import LiveServices
 from prima.loading import Loaded, load_scenario, load_services, stage
 from prima.loading.files import GivenFiles, in_place_of_files, read_file
@@ -42,7 +44,8 @@ class Chosen:
         given = self.world or None, self.robot or None, self.maps, bool(self.world)
         loaded = stage(self.fas, self.eas, (), *given)
         if self.services:
-            _, loaded.files[self.services] = load_services(self.services)
+            endpoints, loaded.files[self.services] = load_services(self.services)
+            _check_owners(endpoints, [one.id for one in loaded.cast.documents])
         return loaded
 
     def answering(self, web: Web | None) -> LiveServices:
@@ -72,6 +75,26 @@ class Chosen:
         if self.robot:
             told["document"] = read_file(self.robot).decode("utf-8", "replace")
         return told
+
+
+def _check_owners(endpoints: Iterable[Endpoint], known: list[str]) -> None:
+    """Check that services are for applications that the run has.
+
+    Raises:
+        DocumentError: one is not.
+    """
+    strange = [one for one in endpoints if one.application and one.application not in known]
+    if strange:
+        raise DocumentError(
+            Problem(
+                one.place,
+                "error",
+                "no-such-name",
+                f'There is no application "{one.application}".',
+                did_you_mean(one.application, known) or f"The run has {', '.join(known)}.",
+            )
+            for one in strange
+        )
 
 
 def chosen_then(head: Record, name: str) -> Chosen:

@@ -24,12 +24,12 @@ from prima.sim.happenings import Reply
 from prima.sim.services import (
     NO_ANSWER,
     SCHEME,
+    Directory,
     Web,
     answer,
     event_of,
     fetched_of,
     host_of,
-    is_below,
     not_allowed,
     serial_of,
 )
@@ -61,11 +61,12 @@ class LiveServices:
         web: Web | None = None,
         environment: Mapping[str, str] = os.environ,
     ) -> None:
-        self._endpoints = {one.name: one for one in endpoints}
-        self._secrets = {one.name: _secrets(one, environment) for one in self._endpoints.values()}
+        known = tuple(endpoints)
+        self._endpoints = Directory(known)
+        self._secrets = {(one.name, one.application): _secrets(one, environment) for one in known}
         made = (secret for held in self._secrets.values() for _, secret in held.values())
         self._hide = frozenset(made)
-        self._hosts = frozenset(host_of(one.url) for one in self._endpoints.values())
+        self._hosts = frozenset(host_of(one.uri) for one in known)
         self._web = web
         self._telephone = Telephone()
         self._arrived: list[tuple[int, Inbound]] = []
@@ -108,9 +109,9 @@ class LiveServices:
     def _may_ask_again(self, order: Order) -> bool:
         """Whether it does no harm to ask something twice."""
         fetches, name = "method" in order.data, str(order.data["to"])
-        endpoint = self._of(name) if fetches else self._endpoints.get(name)
         if "transfer" in order.data or order.data.get("method") == "get":
             return True
+        endpoint = self._endpoints.for_order(order)
         if endpoint is None:  # one that is not there is not asked; other hosts are by a post
             return not fetches or name.startswith(SCHEME)
         return endpoint.repeats
@@ -144,25 +145,17 @@ class LiveServices:
 
     async def _asked(self, order: Order) -> Inbound:
         fetches, name = "method" in order.data, str(order.data["to"])
-        endpoint = self._of(name) if fetches else self._endpoints.get(name)
+        endpoint = self._endpoints.for_order(order)
         if endpoint is None and fetches and not name.startswith(SCHEME):
             return await self._outside(order)
         if endpoint is None:
-            name = name.removeprefix(SCHEME)
             hint = "name it in the document of --services"
-            raise Unfit(f'there is no service "{name}"; {hint}')
+            raise Unfit(f"{self._endpoints.lacking(name)}; {hint}")
         params = order.data.get("params", order.data) if fetches else order.data["params"]
         if fetches and not endpoint.model:
             return await self._fetch(endpoint, order, params)
         data = await self._data(endpoint, params)
         return fetched_of(order, Reply(data)) if fetches else event_of(order, Reply(data))
-
-    def _of(self, uri: str) -> Endpoint | None:
-        """The service that a URI is of: the one named, or the one with the longest address."""
-        if uri.startswith(SCHEME):
-            return self._endpoints.get(uri.removeprefix(SCHEME))
-        below = (one for one in self._endpoints.values() if is_below(uri, one.url))
-        return max(below, key=lambda one: len(one.url), default=None)
 
     async def _outside(self, order: Order) -> Inbound:
         """Ask a host of ``--allow-host``."""
@@ -177,7 +170,7 @@ class LiveServices:
     async def _fetch(self, endpoint: Endpoint, order: Order, params: Data) -> Inbound:
         """Bytes of a service, for VoiceXML."""
         uri, method = str(order.data["to"]), str(order.data["method"])
-        where = endpoint.url if uri.startswith(SCHEME) else uri
+        where = endpoint.uri if uri.startswith(SCHEME) else uri
         repeats = method == "get" or endpoint.repeats
         body = await self._ask(endpoint, lambda: form_request(where, method, params), repeats)
         found = answer(order.app, serial_of(order), uri, body)
@@ -214,7 +207,9 @@ class LiveServices:
         Raises:
             Unfit: there is none.
         """
-        asking = ServiceRequests(endpoint, self._secrets[endpoint.name], self._hosts, check)
+        asking = ServiceRequests(
+            endpoint, self._secrets[endpoint.name, endpoint.application], self._hosts, check
+        )
         try:
             async with asyncio.timeout(endpoint.deadline / 1000):
                 return await asking.repeat(make, endpoint.retries if again else 0)
@@ -246,10 +241,10 @@ def _secrets(endpoint: Endpoint, environment: Mapping[str, str]) -> dict[str, tu
 def _request(endpoint: Endpoint, what: Data) -> Request:
     """A request that sends values: in the URL, or as JSON."""
     if endpoint.method == "get":
-        return form_request(endpoint.url, "get", what)
+        return form_request(endpoint.uri, "get", what)
     headers = {"User-Agent": "PRIMA", "Content-Type": "application/json"}
     body = json.dumps(dict(what), ensure_ascii=False).encode()
-    return Request(endpoint.url, body, headers, method=endpoint.method.upper())
+    return Request(endpoint.uri, body, headers, method=endpoint.method.upper())
 
 
 def _failed(order: Order, why: str) -> Inbound:

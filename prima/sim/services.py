@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from heapq import heappop, heappush
 from html import escape
+from typing import Generic, Protocol, TypeVar
 from urllib.parse import urlsplit
 
 from prima.language.values import shown
@@ -25,13 +26,66 @@ Web = Callable[[str, str, str, Data], Answering]
 and serial are open."""
 
 
+class Addressed(Protocol):
+    """What a service is found by."""
+
+    @property
+    def name(self) -> str:
+        """As ``<send>`` and ``service:NAME`` have it."""
+
+    @property
+    def application(self) -> str:
+        """The application that alone may ask it; empty where all may."""
+
+    @property
+    def uri(self) -> str:
+        """Where fetches reach it, and below; empty where they do by its name alone."""
+
+
+Found = TypeVar("Found", bound=Addressed)
+
+
+class Directory(Generic[Found]):
+    """Services, each for one application or for all."""
+
+    def __init__(self, services: Iterable[Found]) -> None:
+        self._services = {(one.name, one.application): one for one in services}
+        self._names = {name for name, _ in self._services}
+
+    def named(self, name: str, app: str) -> Found | None:
+        """The service of a name that an application may ask: its own, or that of all."""
+        return self._services.get((name, app)) or self._services.get((name, ""))
+
+    def of(self, uri: str, app: str) -> Found | None:
+        """The service that a URI is of: the one named, or the one with the longest address."""
+        if uri.startswith(SCHEME):
+            return self.named(uri.removeprefix(SCHEME), app)
+        below = [
+            one
+            for one in self._services.values()
+            if one.uri and is_below(uri, one.uri) and one.application in ("", app)
+        ]
+        return max(below, key=lambda one: (len(one.uri), one.application), default=None)
+
+    def for_order(self, order: Order) -> Found | None:
+        """The service that an order to it, or a fetch, is for."""
+        find = self.of if "method" in order.data else self.named
+        return find(str(order.data["to"]), order.app)
+
+    def lacking(self, name: str) -> str:
+        """Why an application gets no answer from a name."""
+        name = name.removeprefix(SCHEME)
+        if name in self._names:
+            return f'the service "{name}" is another application\'s'
+        return f'there is no service "{name}"'
+
+
 class Services:
     """Answers what applications send or fetch; one that the scenario does not name does not."""
 
     def __init__(self, services: Iterable[Service], web: Web | None = None, seed: int = 1) -> None:
         self._seed = seed
-        self._services = {(one.name, one.application): one for one in services}
-        self._names = {name for name, _ in self._services}
+        self._services = Directory(services)
         self._web = web
         self._asked: dict[tuple[str, str], int] = {}
         self._pending: list[tuple[int, int, Occurred | Fetched]] = []
@@ -42,14 +96,13 @@ class Services:
     def order(self, now: int, order: Order) -> None:
         """Take a message to a service, or a fetch."""
         fetches = "method" in order.data
-        name = order.data["to"]
-        service = self._of(name, order.app) if fetches else self._named(name, order.app)
+        service = self._services.for_order(order)
         if service is None and fetches:
             self._outside(now, order)
             return
         asked = 0
         if service is None:
-            reply = Reply(error=self._no_such(name))
+            reply = Reply(error=self._services.lacking(order.data["to"]))
         elif not service.replies:
             return  # it takes what it is sent and says nothing
         else:
@@ -60,27 +113,6 @@ class Services:
         after = max(reply.after.ms(self._seed, asked + 1), 1)
         self._later(now, after, fetched_of(order, reply) if fetches else event_of(order, reply))
 
-    def _named(self, name: str, app: str) -> Service | None:
-        """The service of a name that an application may ask: its own, or that of all."""
-        return self._services.get((name, app)) or self._services.get((name, ""))
-
-    def _of(self, uri: str, app: str) -> Service | None:
-        """The service that a URI is of: the one named, or the one with the longest address."""
-        if uri.startswith(SCHEME):
-            return self._named(uri.removeprefix(SCHEME), app)
-        below = [
-            one
-            for one in self._services.values()
-            if one.uri and is_below(uri, one.uri) and one.application in ("", app)
-        ]
-        return max(below, key=lambda one: (len(one.uri), one.application), default=None)
-
-    def _no_such(self, name: str) -> str:
-        """Why an application gets no answer from a name."""
-        if name in self._names:
-            return f'the service "{name}" is another application\'s'
-        return f'there is no service "{name}"'
-
     def _outside(self, now: int, order: Order) -> None:
         """What no service of the scenario answers: a host does, if it may be asked."""
         uri, data = order.data["to"], order.data
@@ -90,7 +122,7 @@ class Services:
             return
         problem = not_allowed(uri)
         if uri.startswith(SCHEME):
-            problem = self._no_such(uri.removeprefix(SCHEME))
+            problem = self._services.lacking(uri)
         self._later(now, 1, Fetched(order.app, serial_of(order), uri, problem=problem))
 
     def _wait(self, now: int) -> None:

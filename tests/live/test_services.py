@@ -251,6 +251,29 @@ def test_a_service_that_is_not_named_is_none(host: Host, tmp_path: Path) -> None
     assert "--allow-host" in fetched.problem
 
 
+@pytest.mark.parametrize("owner", ["a", "another"])
+def test_a_service_and_its_secret_are_for_the_application_that_it_belongs_to(
+    owner: str, host: Host, tmp_path: Path
+) -> None:
+    path = document(tmp_path, host, f'application="{owner}" url="URL/x" key="LIBRARY_KEY"/>')
+    secret = {"LIBRARY_KEY": SECRET}
+    found = send(path, secret, title="I")
+    assert found.name == ("reply.library" if owner == "a" else "error.service.library")
+    for uri in ("service:library", f"http://127.0.0.1:{host.server_address[1]}/x"):
+        fetched = asked(path, {"to": uri, "method": "get", "params": {}}, secret)
+        assert isinstance(fetched, Fetched) and (fetched.problem == "") == (owner == "a")
+    assert len(host.asked) == len(host.keys) == (3 if owner == "a" else 0)
+    if owner != "a":
+        assert 'the service "library" is another application\'s' in why(found)
+
+
+def test_an_applications_own_service_goes_before_that_of_all(host: Host, tmp_path: Path) -> None:
+    more = 'url="URL/all"/><service name="library" application="a" url="URL/own"/>'
+    send(document(tmp_path, host, more))
+    send(document(tmp_path, host, more.replace('"a"', '"b"')))
+    assert [one[1] for one in host.asked] == ["/own", "/all"]
+
+
 def test_voicexml_fetches_by_name_and_below_the_address(host: Host, tmp_path: Path) -> None:
     path = document(tmp_path, host, 'url="URL/garbage"/>')
     url = f"http://127.0.0.1:{host.server_address[1]}/garbage"
@@ -372,6 +395,12 @@ def test_a_mediated_run_replays_without_services(
     refused = prima(*words)
     assert (refused.returncode, journal.exists()) == (2, False)
     assert "LIBRARY_KEY is not set" in refused.stderr
+    right = path.read_text()
+    path.write_text(right.replace("<service ", '<service application="ask" '))
+    refused = prima(*words, LIBRARY_KEY=SECRET)
+    assert (refused.returncode, journal.exists()) == (1, False)
+    assert 'There is no application "ask". Did you mean "asks"?' in refused.stderr
+    path.write_text(right)
     ran = prima(*words, "--speed", "10", "--until", "60s", LIBRARY_KEY=SECRET)
     assert ran.returncode == 0, ran.stderr
     assert line in ran.stdout

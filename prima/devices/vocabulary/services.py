@@ -7,6 +7,7 @@ from prima.markup.vocabulary import Element, Instead, Vocabulary, attribute
 
 COMMON = (
     attribute("name", "id", "as `<send>` and `service:NAME` have it", "required"),
+    attribute("application", "id", "the application that alone may ask it; without, all may"),
     attribute("url", "text", "where it is asked: http or https", "required"),
     attribute("deadline", "duration", "how long all of an answer may take", default="3s", low=1),
     attribute(
