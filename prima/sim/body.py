@@ -67,6 +67,8 @@ class Body:
         """By the keys of their goals."""
         self.broken: dict[str, bool] = {}
         """Devices that fail, and whether they hang instead."""
+        self.arrived = False
+        """Whether a motion has come to where the world lets it end, when the body got on last."""
         self._now = 0
 
     # Calls ------------------------------------------------------------------------
@@ -243,7 +245,7 @@ class Body:
 
     def collect(self, now: int) -> list[Report]:
         """Let the body get on, and give what its devices report at ``now``."""
-        self._now = now
+        self._now, self.arrived = now, False
         reports: list[Report] = []
         # What goes somewhere sets the wheels first; a dance adds to it (X5).
         efforts = list(self.efforts.values())
@@ -257,7 +259,7 @@ class Body:
         """Let a goal set the wheels; gives its end, if it has come to that."""
         steers = None if effort.lost else effort.control
         if steers is not None and steers() and effort.ends is None and effort.tick is None:
-            effort.ends = max(now, effort.begin.spoken)
+            effort.ends, self.arrived = max(now, effort.begin.spoken), True
         if effort.tick is not None and effort.tick <= now:
             effort.tick += effort.begin.loop
             effort.looped = now

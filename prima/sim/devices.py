@@ -10,7 +10,7 @@ from prima.interpreter.elements import Document
 from prima.interpreter.sensors import sensors_read
 from prima.messages import ApplicationLoaded, Inbound, Order, Record
 from prima.session import AnyDocument
-from prima.sim.entrances import Entrances
+from prima.sim.entrances import Crossing, Entrances
 from prima.sim.map import Area, Map
 from prima.sim.people import People
 from prima.sim.robot import Robot
@@ -59,6 +59,11 @@ class SimulatedDevices:
         self._entrances = Entrances(cast.offers)
         self._said = False
         """Whether something of what came in last was the user's doing."""
+        self._stirred = True
+        """Whether the robot may have changed in more than its place since it said what is due."""
+        self._robot_due: int | None = None
+        self._told: int | None = 0
+        """When something is to be collected though nothing moves, as :meth:`due` has said."""
 
     @property
     def awaits(self) -> bool:
@@ -67,28 +72,48 @@ class SimulatedDevices:
 
     def due(self) -> int | None:
         """The next instant at which something is to be collected (ms), if ever."""
-        moves = self.world.moving or self.robot.body.moves_on
+        self._told = self._next()
+        if not (self.world.moving or self.robot.body.moves_on):
+            return self._told
+        moved = self.world.time + STEP_MS
+        return moved if self._told is None else min(moved, self._told)
+
+    def _next(self) -> int | None:
+        """The same, but for what comes of motion."""
+        if self._stirred:
+            self._stirred, self._robot_due = False, self.robot.due()
         due: int | None = None
         for time in (
             0 if self._entrances.unseen else None,
             self._loads[0][0] if self._loads else None,
-            self.robot.due(),
+            self._robot_due,
             self.people.due(),
             self.services.due(),
             self.telephone.due(),
-            self.world.time + STEP_MS if moves else None,
         ):
             if time is not None and (due is None or time < due):
                 due = time
         return due
 
     def collect(self, now: int) -> list[Inbound]:
-        """All that happens by ``now``, in order."""
+        """All that happens by ``now``, in order. Most instants only move the bodies on."""
         self.world.advance(now)
+        crossed = self._entrances.cross(self.world.position)
+        moved = self.robot.get_on(now)
+        told = self._told is not None and self._told <= now
+        inbound = self._happened(now, crossed) if moved or crossed or told else []
+        self.people.follow()
+        if self._watched:
+            inbound += self.robot.sense(self.people.sensors)
+        return inbound
+
+    def _happened(self, now: int, crossed: list[Crossing]) -> list[Inbound]:
+        """What is to be told of an instant in which the bodies did not only move on."""
+        self._stirred = True
         inbound: list[Inbound] = []
         while self._loads and self._loads[0][0] <= now:
             inbound.append(self._loaded(self._loads.pop(0)[2]))
-        for one in self._entrances.cross(self.world.position):
+        for one in crossed:
             inbound.append(
                 self._loaded(one.app, one.place) if isinstance(one, ApplicationLoaded) else one
             )
@@ -100,13 +125,11 @@ class SimulatedDevices:
                 self._loaded(value.app) if isinstance(value, ApplicationLoaded) else value
             )
         inbound += self.services.collect(now)
-        inbound += self.telephone.collect(now)
-        if self._watched:
-            inbound += self.robot.sense(self.people.sensors)
-        return inbound
+        return inbound + self.telephone.collect(now)
 
     def order(self, now: int, order: Order) -> None:
         """Give an order to whom it is for."""
+        self._stirred = True
         if order.verb != "send":
             self.robot.order(now, order)
         elif "transfer" in order.data:
@@ -116,6 +139,7 @@ class SimulatedDevices:
 
     def observe(self, now: int, records: list[Record]) -> None:
         """Let the user see what has happened; the robot listens on."""
+        self._stirred = True
         self.robot.settle(now)
         if self._said:
             self.robot.ear.listen_on(now)

@@ -11,6 +11,10 @@ THRESHOLD = 0.5
 """How far (m) outside an area the robot has left it."""
 
 
+Crossing = ApplicationLoaded | ApplicationUnloaded
+"""The application of an area that the robot has come into, or has left."""
+
+
 class Entrances:
     """Areas with the ids of the applications that they offer, and which the robot is in."""
 
@@ -29,12 +33,12 @@ class Entrances:
         """Take the robot to be in the areas of these applications."""
         self._inside = {area.id for area, name in self.offers if name in applications}
 
-    def cross(self, here: Point) -> list[ApplicationLoaded | ApplicationUnloaded]:
+    def cross(self, here: Point) -> list[Crossing]:
         """Load what an area offers that the robot has come into, and unload what it has left."""
         if here is self._crossed or not self.offers:
             return []
         self._crossed = here
-        crossed: list[ApplicationLoaded | ApplicationUnloaded] = []
+        crossed: list[Crossing] = []
         for area, name in self.offers:
             inside = area.id in self._inside
             if not inside and area.holds(here):

@@ -182,9 +182,12 @@ class People:
                 if script.left or script.speaking:
                     heappush(self._scripts, script)
             self._playing.clear()
+        return made
+
+    def follow(self) -> None:
+        """Let those who follow the robot go after it."""
         for who, keep in self._following.items():
             self._follow(who, keep)
-        return made
 
     def _go_on(self, script: TriggeredScript, now: int) -> list[Inbound]:
         made: list[Inbound] = []

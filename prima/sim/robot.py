@@ -22,6 +22,10 @@ class Robot:
         self.body = Body(profile, world, routes)
         self.conductor = Conductor(profile, world.pose, exclusive=exclusive)
         self.ear = self.conductor.ear
+        self._saw = False
+        """Whether the camera saw the user when the body got on last."""
+        self._reached: list[Inbound] = []
+        """Events of the corners that the body has come near to, still to be told."""
 
     def due(self) -> int | None:
         """The next instant at which something is to be reported, if one is known (ms)."""
@@ -43,15 +47,24 @@ class Robot:
         for report in reports:
             self.conductor.report(now, report)
 
+    def get_on(self, now: int) -> bool:
+        """Let the body get on to ``now``; whether anything has come of it but that it moved."""
+        reports = self.body.collect(now)
+        if reports:
+            self._report(now, reports)
+            self._carry_out(now)
+        self._reached += self.body.corners()
+        saw, self._saw = self._saw, self.world.sees_person()
+        return bool(reports or self._reached) or saw != self._saw or self.body.arrived
+
     def collect(self, now: int) -> list[Inbound]:
-        """Everything that the devices report at ``now``."""
-        self._report(now, self.body.collect(now))
-        self._carry_out(now)
+        """Everything that the devices report at ``now``, when the body has got on so far."""
         visible = self.world.sees_person()
         where = self.body.locomotion.whereabouts() if visible else {}
         told = self.conductor.collect(now, visible, where)
         self._carry_out(now)
-        return [*told, *self.body.corners()]
+        reached, self._reached = self._reached, []
+        return [*told, *reached]
 
     def settle(self, now: int) -> None:
         """All orders of an instant have been given."""

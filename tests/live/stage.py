@@ -168,6 +168,7 @@ class ScenarioDriver(SimDriver):
         super().sample(now)
         for value in self.people.collect(now):
             tell(value)  # type: ignore[arg-type]
+        self.people.follow()
         self._tell = tell
         for value in held:
             tell(value)
