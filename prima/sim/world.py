@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import pymunk
@@ -131,10 +131,10 @@ class World:
         if name == self._attended and len(self.people) > 1:
             self._attended = ""
 
-    def in_the_way(self) -> Iterator[Point]:
+    def in_the_way(self) -> list[Point]:
         """Where people are, those nearest to the robot first."""
         there = [one.at for one in self.people.values() if one.at is not None]
-        yield from sorted(there, key=lambda at: distance(self.position, at))
+        return sorted(there, key=lambda at: distance(self.position, at))
 
     # Seeing --------------------------------------------------------------------
 
@@ -179,17 +179,20 @@ class World:
         If it attends to nobody, it begins to attend to the nearest whom it sees. Seeing is
         computed anew only where somebody has moved or turned.
         """
-        looks = (self.position, self.heading, self.pan, self._attended, *self._watched())
+        looks = self._looks()
         if looks != self._looked:
-            if not self._attended and len(self.people) > 1:
-                self.find_somebody()
-            self._looked = (*looks[:3], self._attended, *self._watched())
+            if not self._attended and len(self.people) > 1 and self.find_somebody():
+                looks = self._looks()
+            self._looked = looks
             self._visible = self._look(self.person)
         return self._visible
 
-    def _watched(self) -> list[Point | None]:
-        """Where those are on whom it depends whether a person is seen."""
-        return [self.person] if self._attended else [one.at for one in self.people.values()]
+    def _looks(self) -> tuple[object, ...]:
+        """From where to where the camera looks, and how it is turned."""
+        view = (self.position, self.heading, self.pan, self._attended)
+        if self._attended:
+            return (*view, self.person)
+        return (*view, *(one.at for one in self.people.values()))
 
     def find_somebody(self) -> bool:
         """Whether the robot sees anybody; it attends to the nearest, unless it sees its own."""
