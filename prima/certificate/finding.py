@@ -288,11 +288,16 @@ def starving(own: Outline, theirs: Outline) -> list[Starving]:
     found += [_by_cycle(loop, held, floors, drives) for loop in loops(theirs)]
     found += [Starving(gap.place, gap.reason, "", everything, drives, True) for gap in theirs.gaps]
     told = [one for one in found if one is not None]
-    floors_kept = {(one.place, one.what) for one in told if one.everything}
-    return told + [
+    return told + _again(theirs, told, drives)
+
+
+def _again(theirs: Outline, told: list[Starving], drives: bool) -> list[Starving]:
+    """The reactions that bring their own event again, but what was told to keep the floor."""
+    kept = {(one.place, one.what) for one in told if one.everything}
+    return [
         Starving(gap.place, gap.reason, "F2", (), drives, True)
         for gap in reacting_again(theirs)
-        if (gap.place, gap.reason) not in floors_kept
+        if (gap.place, gap.reason) not in kept
     ]
 
 

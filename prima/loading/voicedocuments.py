@@ -115,9 +115,21 @@ def _not_there(
 
     The indices of the elements that name them are put into ``missing``.
     """
+    listed: dict[Path, list[Path]] = {}
+    for node, name, file in _files_named(page, answered):
+        if not file.startswith(("/", "../")) and exists(folder / file):
+            continue
+        spans = value_span(node, name, file.rpartition("/")[2])
+        missing.add(node.index)
+        few = len(missing) <= LIMITS.problems  # what is not listed needs no hint
+        hint = nearby(folder / file, *spans, listed=listed) if few else Hint()
+        yield NO_FILE_HERE.at(node.attribute_place(name), hint, file=file[:80])
+
+
+def _files_named(page: Page, answered: tuple[str, ...]) -> Iterator[tuple[Node, str, str]]:
+    """The files that elements name, with the attribute, but what is ``answered`` from elsewhere."""
     from urllib.parse import unquote
 
-    listed: dict[Path, list[Path]] = {}
     for node in page.root.walk():
         for name, tags in NAMING_FILES.items():
             uri = node.get(name).strip()
@@ -125,16 +137,9 @@ def _not_there(
                 continue
             whole = page.resolve(uri, node)
             file = unquote(whole.partition("#")[0].partition("?")[0])
-            inside = not file.startswith(("/", "../"))
-            if page.site is not None and page.site.whole(whole).startswith(answered):
-                continue
-            if SCHEME.match(whole) or not file or (inside and exists(folder / file)):
-                continue
-            spans = value_span(node, name, file.rpartition("/")[2])
-            missing.add(node.index)
-            few = len(missing) <= LIMITS.problems  # what is not listed needs no hint
-            hint = nearby(folder / file, *spans, listed=listed) if few else Hint()
-            yield NO_FILE_HERE.at(node.attribute_place(name), hint, file=file[:80])
+            elsewhere = page.site is not None and page.site.whole(whole).startswith(answered)
+            if file and not elsewhere and not SCHEME.match(whole):
+                yield node, name, file
 
 
 def _grammars_of(page: Page, folder: Path, missing: set[int]) -> Iterator[Problem]:

@@ -155,17 +155,9 @@ class Wiring:
 
     def _do(self, app: AnyApp, action: Action) -> None:
         """Do one thing that an application wants."""
-        if isinstance(action, (Request, OpenUnit)) and action.cause == PROMOTED:
-            action.cause = self._promoted
         match action:
-            case Request():
-                self.mediator.request(app.name, action)
-            case OpenUnit():
-                self.mediator.open_unit(app.name, action)
-            case CloseUnit():
-                self.mediator.close_unit(app.name, action)
-            case LeaveState():
-                self.mediator.leave_state(app.name, action)
+            case Request() | OpenUnit() | CloseUnit() | LeaveState():
+                self._ask(app, action)
             case Send():
                 self._send(app, action)
             case Say():
@@ -179,6 +171,20 @@ class Wiring:
                     app.go_on_entering(action.state)
             case Quit():
                 self._quit(app, action)
+
+    def _ask(self, app: AnyApp, action: Request | OpenUnit | CloseUnit | LeaveState) -> None:
+        """Ask the mediator for Commands, a unit or an end."""
+        if isinstance(action, (Request, OpenUnit)) and action.cause == PROMOTED:
+            action.cause = self._promoted
+        match action:
+            case Request():
+                self.mediator.request(app.name, action)
+            case OpenUnit():
+                self.mediator.open_unit(app.name, action)
+            case CloseUnit():
+                self.mediator.close_unit(app.name, action)
+            case LeaveState():
+                self.mediator.leave_state(app.name, action)
 
     def _send(self, app: AnyApp, action: Send) -> None:
         data = {"to": action.service, **action.data}

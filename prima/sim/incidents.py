@@ -29,14 +29,8 @@ def happen(doing: Doing, robot: Robot, sensors: dict[str, Json], now: int) -> li
             return [Occurred(values["name"], "environment", values["data"])]
         case "sensor":
             sensors[values["name"]] = sensor_value(values["value"])
-        case "fail":
-            device, hangs = values["device"], bool(values["hangs"])
-            how = "hangs" if hangs else "fails"
-            note = Narrated("environment", f"the {device} {how}")
-            return [note, *robot.broke(now, device, hangs)]
-        case "repair":
-            robot.body.broken.pop(values["device"], None)
-            return [Narrated("environment", f"the {values['device']} works again")]
+        case "fail" | "repair":
+            return _break(robot, now, doing)
         case "emergency":
             return [Emergency(True)]
         case "release":
@@ -46,3 +40,14 @@ def happen(doing: Doing, robot: Robot, sensors: dict[str, Json], now: int) -> li
         case "load":
             return [ApplicationLoaded(values["application"])]
     return []
+
+
+def _break(robot: Robot, now: int, doing: Doing) -> list[Inbound]:
+    """A device fails or hangs (E1), or works again."""
+    device = doing.values["device"]
+    if doing.name == "repair":
+        robot.body.broken.pop(device, None)
+        return [Narrated("environment", f"the {device} works again")]
+    hangs = bool(doing.values["hangs"])
+    note = Narrated("environment", f"the {device} {'hangs' if hangs else 'fails'}")
+    return [note, *robot.broke(now, device, hangs)]

@@ -19,6 +19,7 @@ from prima.messages import (
     Group,
     Halted,
     Heard,
+    Inbound,
     LeaveState,
     Listening,
     Notice,
@@ -220,31 +221,106 @@ class Requester:
             self.act(mediator, self.windows.pop(0))
 
 
-def drive(script: Script, policy: str = "prima", patience: int = PATIENCE_MS) -> Run:
-    """Run a script; it does what a session does, by rule V3."""
-    recorder = Recorder()
-    mediator = Mediator(policy_named(policy), script.world.table, recorder, patience=patience)
-    apps = {
-        name: Requester(name, windows) for name, windows in zip(APPS, script.windows, strict=False)
-    }
-    for name in apps:
-        mediator.load(name, "fa" if name == "fa" else "ea")
-    devices = Devices(script.world)
-    events = dict(enumerate(script.events, 1))
-    for serial, (time, _) in events.items():
-        devices.plan(time, Occurred("event", data={"serial": serial}))
-    for time, seen in script.views:
-        devices.plan(time, Occurred("human.found" if seen else "human.lost"))
-    for pressed, lasts, resume in script.emergencies:
-        devices.plan(pressed, Emergency(True))
-        devices.plan(pressed + lasts, Emergency(False, resume))
-    records: list[Record] = []
-    now = steps = 0
+class Driver:
+    """Runs a script; it does what a session does, by rule V3."""
 
-    def settle() -> None:
+    def __init__(self, script: Script, policy: str, patience: int) -> None:
+        self.recorder, self.devices = Recorder(), Devices(script.world)
+        self.mediator = Mediator(
+            policy_named(policy), script.world.table, self.recorder, patience=patience
+        )
+        self.apps = {
+            name: Requester(name, windows)
+            for name, windows in zip(APPS, script.windows, strict=False)
+        }
+        for name in self.apps:
+            self.mediator.load(name, "fa" if name == "fa" else "ea")
+        self.events = dict(enumerate(script.events, 1))
+        self._plan(script)
+
+    def _plan(self, script: Script) -> None:
+        plan = self.devices.plan
+        for serial, (time, _) in self.events.items():
+            plan(time, Occurred("event", data={"serial": serial}))
+        for time, seen in script.views:
+            plan(time, Occurred("human.found" if seen else "human.lost"))
+        for pressed, lasts, resume in script.emergencies:
+            plan(pressed, Emergency(True))
+            plan(pressed + lasts, Emergency(False, resume))
+
+    def run(self) -> Run:
+        """Drive it to its end."""
+        records: list[Record] = []
+        now = steps = 0
+        while steps < STEPS and (due := self._due(now)) is not None:
+            steps, now = steps + 1, due
+            self._instant(now, len(self.events) + steps)
+            records += self.recorder.drain()
+        return Run(records, steps < STEPS, orders_match(records, self.devices.starts))
+
+    def _due(self, now: int) -> int | None:
+        """The next instant; where nothing more happens by itself, a unit is concluded (U5)."""
+        known = (self.devices.due(), self.mediator.deadline())
+        times = [time for time in known if time is not None]
+        if times:
+            return max(now, min(times))
+        held = [app for app in self.apps.values() if app.unit is not None and not app.over]
+        if not held:
+            return None
+        self.recorder.now = now + 1
+        held[0].act(self.mediator, [Close()])
+        return now + 1
+
+    def _instant(self, now: int, serial: int) -> None:
+        self.recorder.now = now
+        values = self.devices.collect(now)
+        for value in sorted(values, key=lambda one: isinstance(one, Occurred | Emergency)):
+            if isinstance(value, Occurred):
+                self._occurred(value)
+            elif isinstance(value, Emergency):
+                self.mediator.emergency(value.pressed, value.resume, serial)
+            else:
+                self._reported(value)
+            self._settle()
+        self.mediator.expire()
+        self._settle()
+        self.mediator.select()
+        for order in self.mediator.drain_orders():
+            self.devices.order(now, order)
+
+    def _reported(self, value: Inbound) -> None:
+        mediator = self.mediator
+        match value:
+            case Ended():
+                mediator.ended(value.behavior, value.goal, value.data)
+            case Failed():
+                mediator.failed(value.behavior, value.device, value.reason)
+            case Halted():
+                mediator.interrupted(value.behavior, value.data)
+            case Listening():
+                self.recorder.add("listening", "robot", behavior=value.behavior)
+                mediator.listening(value.behavior)
+            case Heard():
+                question = mediator.question()
+                if question is not None and question.listening:
+                    mediator.orders.append(Order("abort", question.id))
+                    mediator.ended(question.id, True, {"outcome": "filled"}, inbound=False)
+
+    def _occurred(self, value: Occurred) -> None:
+        if value.name in ("human.found", "human.lost"):
+            self.recorder.add("event", "environment", event=value.name, inbound=True)
+            self.mediator.sees_user(value.name == "human.found")
+            return
+        serial = value.data["serial"]
+        self.recorder.add("event", "environment", event="message", serial=serial, inbound=True)
+        for app, deeds in zip(self.apps.values(), self.events[serial][1], strict=False):
+            app.act(self.mediator, deeds, serial)
+
+    def _settle(self) -> None:
+        mediator = self.mediator
         while mediator.told:
             told = mediator.told.popleft()
-            app = apps[told.app]
+            app = self.apps[told.app]
             if app.over:
                 continue
             mediator.open_window(told)
@@ -252,56 +328,15 @@ def drive(script: Script, policy: str = "prima", patience: int = PATIENCE_MS) ->
                 app.told(mediator, notice)
             mediator.close_window(told)
 
-    while steps < STEPS:
-        times = [time for time in (devices.due(), mediator.deadline()) if time is not None]
-        held = [app for app in apps.values() if app.unit is not None and not app.over]
-        if not times and not held:
-            break
-        steps, now = steps + 1, max(now, min(times, default=now + 1))
-        recorder.now = now
-        if not times:
-            held[0].act(mediator, [Close()])  # U5: a unit is concluded for certain
-        values = devices.collect(now)
-        for value in sorted(values, key=lambda one: isinstance(one, Occurred | Emergency)):
-            match value:
-                case Ended():
-                    mediator.ended(value.behavior, value.goal, value.data)
-                case Failed():
-                    mediator.failed(value.behavior, value.device, value.reason)
-                case Listening():
-                    recorder.add("listening", "robot", behavior=value.behavior)
-                    mediator.listening(value.behavior)
-                case Heard():
-                    question = mediator.question()
-                    if question is not None and question.listening:
-                        mediator.orders.append(Order("abort", question.id))
-                        mediator.ended(question.id, True, {"outcome": "filled"}, inbound=False)
-                case Halted():
-                    mediator.interrupted(value.behavior, value.data)
-                case Emergency():
-                    mediator.emergency(value.pressed, value.resume, len(events) + steps)
-                case Occurred(name="human.found" | "human.lost"):
-                    recorder.add("event", "environment", event=value.name, inbound=True)
-                    mediator.sees_user(value.name == "human.found")
-                case Occurred():
-                    serial = value.data["serial"]
-                    recorder.add(
-                        "event", "environment", event="message", serial=serial, inbound=True
-                    )
-                    for app, deeds in zip(apps.values(), events[serial][1], strict=False):
-                        app.act(mediator, deeds, serial)
-            settle()
-        mediator.expire()
-        settle()
-        mediator.select()
-        for order in mediator.drain_orders():
-            devices.order(now, order)
-        records += recorder.drain()
-    run = Run(records, steps < STEPS, orders_match(records, devices.starts))
-    if run.complete and not mediator.halted:
+
+def drive(script: Script, policy: str = "prima", patience: int = PATIENCE_MS) -> Run:
+    """Run a script; whatever stays in working memory for ever is a problem."""
+    driver = Driver(script, policy, patience)
+    run = driver.run()
+    if run.complete and not driver.mediator.halted:
         run.problems += [
             f"invariant 9: {ab.id} is {ab.state} for ever"
-            for ab in mediator.memory.behaviors.values()
+            for ab in driver.mediator.memory.behaviors.values()
         ]
     return run
 
