@@ -35,12 +35,7 @@ def format_certificate(one: Certificate) -> str:
     lines += [f"  {place}: a hold, for {lasts / 1000:g} s, with x3\n    waiting: all"
               for place, lasts in one.holds]  # fmt: skip
     lines += _others(one)
-    if one.long:
-        patience = f"a run's patience, {PATIENCE_MS // 1000} s by default (E6)"
-        lines += ["", f"What of {one.ea} is longer than {patience}"]
-    for price in one.long:
-        meets = "it ends then" if price.what == "unit" else "it may be refused"
-        lines.append(f"  {price.what} at {price.place}, {price.seconds}: {meets}")
+    lines += _long(one)
     lines += ["", f"Robots that can run {one.ea}"]
     for robot, lacking in sorted(one.lacks.items()):
         lines.append(f"  {robot}: {'all of it' if not lacking else f'not {_list(lacking)}'}")
@@ -148,6 +143,18 @@ def _others(one: Certificate) -> list[str]:
     longest = f"{one.others.lasts / 1000:.1f} s"
     nothing = "nothing else" if one.holds else "nothing"
     return [f"  {nothing}: others than reactions wait up to {longest} each time {one.ea} is busy"]
+
+
+def _long(one: Certificate) -> list[str]:
+    """What lasts longer than a run's patience (E6), if anything does."""
+    if not one.long:
+        return []
+    patience = f"a run's patience, {PATIENCE_MS // 1000} s by default (E6)"
+    found = ["", f"What of {one.ea} is longer than {patience}"]
+    for price in one.long:
+        meets = "it ends then" if price.what == "unit" else "it may be refused"
+        found.append(f"  {price.what} at {price.place}, {price.seconds}: {meets}")
+    return found
 
 
 def certificate_data(one: Certificate) -> dict[str, Any]:

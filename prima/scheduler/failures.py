@@ -130,7 +130,7 @@ def set_deadlines(mediation: Mediation) -> None:
         elif ab.group is not None and ab.group.longest is not None:
             longest = ab.group.longest
             if mediation.shared and "speaker" in ab.devices:
-                longest = min(longest, mediation.patience)
+                longest = min(longest, mediation.longest_turn)
             ab.late = mediation.now + longest
 
 

@@ -145,7 +145,8 @@ def test_e3_what_keeps_no_speaker_is_not_counted(command: Command) -> None:
     ("patience", "policy", "apps", "most"),
     [
         (60_000, "prima", {"ea": "ea", "fa": "fa"}, 60_000),
-        (5_000, "prima", {"ea": "ea", "fa": "fa"}, 5_000),
+        (5_000, "prima", {"ea": "ea", "fa": "fa"}, 60_000),
+        (90_000, "prima", {"ea": "ea", "fa": "fa"}, 90_000),
         (900_000, "prima", {"ea": "ea", "fa": "fa"}, LONGEST_TURN_MS),
         (0, "prima", {"ea": "ea", "fa": "fa"}, LONGEST_TURN_MS),
         (60_000, "fifo", {"ea": "ea", "fa": "fa"}, LONGEST_TURN_MS),
@@ -173,7 +174,7 @@ def test_e6_who_is_alone_again_may_speak_for_long() -> None:
 @pytest.mark.parametrize(
     ("content", "apps", "ends"),
     [
-        (say("One."), {"ea": "ea", "fa": "fa"}, 5_000),
+        (say("One."), {"ea": "ea", "fa": "fa"}, 70_000),
         (say("One."), {"ea": "ea"}, 90_000),
         (SILENT, {"ea": "ea", "fa": "fa"}, 90_000),
     ],
@@ -181,7 +182,7 @@ def test_e6_who_is_alone_again_may_speak_for_long() -> None:
 def test_e6_a_unit_keeps_the_speaker_no_longer_than_the_patience(
     content: Command, apps: dict[str, str], ends: int
 ) -> None:
-    stage = Stage(apps=apps, patience=5_000)
+    stage = Stage(apps=apps, patience=70_000)
     stage.request("ea", Group(chain(replace(content)), longest=90_000))
     stage.select()
     assert stage.mediator.deadline() == ends
