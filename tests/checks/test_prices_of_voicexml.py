@@ -84,11 +84,11 @@ def test_a_robot_has_to_have_the_commands_in_a_unit_of_voicexml(tmp_path: Path) 
 
 
 def test_a_unit_of_voicexml_ends_after_a_minute_as_in_primas_language(tmp_path: Path) -> None:
-    unit = ARRANGED["unit"].replace(" longest='40s'", "").replace("{0}", SPOKEN * 30)
+    unit = ARRANGED["cut"].replace(" longest='1s'", "").replace("{0}", SPOKEN * 10)
     body = f"<form><block>{prefixed(unit)}</block></form>"
     found, fa, ea = voiced(tmp_path, body)
     assert found.longest_unit is not None
-    assert found.longest_unit.lasts == 60_000 + lasting(SPOKEN * 30)
+    assert found.longest_unit.lasts == 60_000 + lasting(SPOKEN * 10)
     records = run(tmp_path, fa, ea, TOUCH, "300s")
     assert any(one.get("event") == "error.unit.timeout" for one in records)
 
