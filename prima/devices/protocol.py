@@ -15,7 +15,10 @@ class Devices(Protocol):
     """
 
     def due(self) -> int | None:
-        """The next instant at which something is to be collected; None if none is known."""
+        """The next instant at which something is to be collected; None if none is known.
+
+        It is asked before each :meth:`collect`.
+        """
 
     def collect(self, now: int) -> list[Inbound]:
         """Everything that has come in by ``now``, in order."""

@@ -24,6 +24,12 @@ class Sight:
             return self._unseen_since + self._lost_after
         return now + 1 if self._found and not visible else None
 
+    def heeds(self, visible: bool) -> bool:
+        """Whether to look is worth while: the user has come into view, or has just left it."""
+        if visible:
+            return not self._found or self._unseen_since is not None
+        return self._found and self._unseen_since is None
+
     def look(self, now: int, visible: bool, where: Data, searching: bool = False) -> list[Inbound]:
         """Take in whether the user is visible; gives ``human.found`` or ``human.lost``.
 

@@ -68,7 +68,7 @@ class Body:
         self.broken: dict[str, bool] = {}
         """Devices that fail, and whether they hang instead."""
         self.arrived = False
-        """Whether a motion has come to where the world lets it end, when the body got on last."""
+        """Whether a motion has come to its end at this instant, though what it says may go on."""
         self._now = 0
 
     # Calls ------------------------------------------------------------------------

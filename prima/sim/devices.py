@@ -62,8 +62,8 @@ class SimulatedDevices:
         self._stirred = True
         """Whether the robot may have changed in more than its place since it said what is due."""
         self._robot_due: int | None = None
-        self._told: int | None = 0
-        """When something is to be collected though nothing moves, as :meth:`due` has said."""
+        self._standing: int | None = 0
+        """When something is to be collected though nothing moves, as :meth:`due` has found."""
 
     @property
     def awaits(self) -> bool:
@@ -72,14 +72,14 @@ class SimulatedDevices:
 
     def due(self) -> int | None:
         """The next instant at which something is to be collected (ms), if ever."""
-        self._told = self._next()
+        self._standing = self._due_standing()
         if not (self.world.moving or self.robot.body.moves_on):
-            return self._told
+            return self._standing
         moved = self.world.time + STEP_MS
-        return moved if self._told is None else min(moved, self._told)
+        return moved if self._standing is None else min(moved, self._standing)
 
-    def _next(self) -> int | None:
-        """The same, but for what comes of motion."""
+    def _due_standing(self) -> int | None:
+        """The same without what motion brings about."""
         if self._stirred:
             self._stirred, self._robot_due = False, self.robot.due()
         due: int | None = None
@@ -96,12 +96,16 @@ class SimulatedDevices:
         return due
 
     def collect(self, now: int) -> list[Inbound]:
-        """All that happens by ``now``, in order. Most instants only move the bodies on."""
+        """All that happens by ``now``, in order, once :meth:`due` has been asked.
+
+        Most instants only move the bodies on.
+        """
+        self._said = False
         self.world.advance(now)
         crossed = self._entrances.cross(self.world.position)
         moved = self.robot.get_on(now)
-        told = self._told is not None and self._told <= now
-        inbound = self._happened(now, crossed) if moved or crossed or told else []
+        standing = self._standing is not None and self._standing <= now
+        inbound = self._happened(now, crossed) if moved or crossed or standing else []
         self.people.follow()
         if self._watched:
             inbound += self.robot.sense(self.people.sensors)
@@ -129,7 +133,6 @@ class SimulatedDevices:
 
     def order(self, now: int, order: Order) -> None:
         """Give an order to whom it is for."""
-        self._stirred = True
         if order.verb != "send":
             self.robot.order(now, order)
         elif "transfer" in order.data:

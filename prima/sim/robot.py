@@ -5,7 +5,7 @@ from __future__ import annotations
 from prima.devices.conductor import Conductor
 from prima.devices.goals import Report
 from prima.devices.profile import Profile
-from prima.messages import Data, Inbound, Order
+from prima.messages import Data, Inbound, Occurred, Order
 from prima.sim.body import Body
 from prima.sim.routes import Routes
 from prima.sim.world import World
@@ -22,10 +22,8 @@ class Robot:
         self.body = Body(profile, world, routes)
         self.conductor = Conductor(profile, world.pose, exclusive=exclusive)
         self.ear = self.conductor.ear
-        self._saw = False
-        """Whether the camera saw the user when the body got on last."""
-        self._reached: list[Inbound] = []
-        """Events of the corners that the body has come near to, still to be told."""
+        self._reached: list[Occurred] = []
+        """Events of the corners that the body has come near to at this instant."""
 
     def due(self) -> int | None:
         """The next instant at which something is to be reported, if one is known (ms)."""
@@ -48,23 +46,26 @@ class Robot:
             self.conductor.report(now, report)
 
     def get_on(self, now: int) -> bool:
-        """Let the body get on to ``now``; whether anything has come of it but that it moved."""
+        """Let the body get on to ``now``; whether there is more to collect than that it moved.
+
+        Whatever motion brings about is asked here: what time brings, :meth:`due` knows.
+        """
         reports = self.body.collect(now)
         if reports:
             self._report(now, reports)
             self._carry_out(now)
-        self._reached += self.body.corners()
-        saw, self._saw = self._saw, self.world.sees_person()
-        return bool(reports or self._reached) or saw != self._saw or self.body.arrived
+        self._reached = self.body.corners()
+        if reports or self._reached or self.body.arrived:
+            return True
+        return self.conductor.sight.heeds(self.world.sees_person())
 
     def collect(self, now: int) -> list[Inbound]:
-        """Everything that the devices report at ``now``, when the body has got on so far."""
+        """Everything that the devices report at ``now``, to which the body has got on."""
         visible = self.world.sees_person()
         where = self.body.locomotion.whereabouts() if visible else {}
         told = self.conductor.collect(now, visible, where)
         self._carry_out(now)
-        reached, self._reached = self._reached, []
-        return [*told, *reached]
+        return [*told, *self._reached]
 
     def settle(self, now: int) -> None:
         """All orders of an instant have been given."""

@@ -172,3 +172,18 @@ def test_only_sensors_that_somebody_looks_at_are_told_after_the_first_report(
     assert [one for one in everything.records if one["phase"] != "sensed"] == [
         one for one in few.records if one["phase"] != "sensed"
     ]
+
+
+def test_a_search_that_is_cut_short_leaves_it_to_the_camera_to_tell_whom_it_sees(
+    tmp_path: Path,
+) -> None:
+    """While a Command searches, it reports whom it finds; the user is in view when it is stopped."""
+    body = '<form id="a"><block><active-sensing-human/><speak>Found.</speak></block></form>'
+    script = """<person x="-3" y="0.2"/><when at="1s"><walk x="3" y="0.4"/></when>
+      <when at="4.7s"><emergency/></when>"""
+    found = [
+        one["time"]
+        for one in rehearse(tmp_path, body, script).records
+        if one.get("event") == "human.found"
+    ]
+    assert found == [4.75], "at the next step of the user, who walks on"
