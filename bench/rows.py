@@ -478,7 +478,7 @@ def experimenting() -> list[Row]:
             "two independent processes",
             Call(experiments.independent, (10_000,), (4,)),
             least=0.95,
-            rounds=3,
+            rounds=1,
         ),
         Row(
             "A sweep's rows, from the values to the table",
@@ -496,7 +496,7 @@ def experimenting() -> list[Row]:
             "two processes of this machine",
             Call(experiments.pooled, (10_000,), (4,)),
             least=0.85,
-            rounds=3,
+            rounds=1,
             needs="distributed",
         ),
         Row(
