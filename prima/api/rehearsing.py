@@ -35,6 +35,7 @@ def rehearse(
     patience: int | None = None,
     visits: bool = False,
     rows: bool = False,
+    folded: bool = False,
     seed: int | None = None,
 ) -> Transcript:
     """Run a scenario in simulation.
@@ -55,6 +56,7 @@ def rehearse(
             speaker, 0 for no bound; by default the scenario's own.
         visits: whether to keep the elements that applications reach in their documents.
         rows: whether to make the table's rows even if the records are not kept.
+        folded: whether to fold the run for :meth:`Transcript.run` even if the records are not kept.
         seed: what is drawn in the run depends on it alone; by default the scenario's own.
 
     Raises:
@@ -64,6 +66,7 @@ def rehearse(
     from collections import deque
 
     from prima.sim.rehearsal import Rehearsal
+    from prima.transcript.fold import Fold
     from prima.transcript.lines import finished, line
     from prima.transcript.measures import Measure
     from prima.transcript.record import Entry
@@ -78,7 +81,8 @@ def rehearse(
     web = fetcher(list(hosts), len(cast.documents))
     rehearsal = Rehearsal(cast, chosen, bound, web, isolate, patience)
     head = run_record(loaded, name, bound, patience)
-    measure = Measure()
+    fold = Fold() if folded else None
+    measure = Measure(fold.observer if fold is not None else None)
     made = Transcript([], cast.scenario.id, measure=measure)
 
     def entries() -> Iterator[Entry]:
@@ -86,6 +90,8 @@ def rehearse(
             for record in records:
                 entry = Entry(record, record["time"] / 1000)
                 measure.add(entry)
+                if fold is not None:
+                    fold.add(entry)
                 yield entry
                 if keep:
                     made.records.append(finished(record))
@@ -98,6 +104,7 @@ def rehearse(
         made.made = rows_of(made.name, entries())
     else:
         deque(entries(), maxlen=0)
+    made.folded = fold.run() if fold is not None else None
     made.failures = list(rehearsal.session.failures)
     made.defects = list(rehearsal.session.defects)
     made.outcome = rehearsal.outcome

@@ -45,7 +45,9 @@ class Transcript:
     """Counts made during the run."""
 
     made: list[Row] | None = None
-    """The rows, if the records were not kept."""
+    """The rows, if they were made during the run."""
+    folded: Run | None = field(default=None, repr=False, compare=False)
+    """The run, if it was folded as it was made."""
     _run: Run | None = field(default=None, repr=False, compare=False)
 
     def rows(self) -> list[Row]:
@@ -60,6 +62,8 @@ class Transcript:
         """
         from prima.transcript.run import run_of
 
+        if self.folded is not None:
+            return self.folded
         if self._run is None or len(self._run.entries) != len(self.records):
             self._run = run_of(self.records, self.name)
         return self._run

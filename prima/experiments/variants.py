@@ -186,11 +186,12 @@ class Stage:
             variant.policy or None,
             self.settings.bound,
             sink,
-            keep=keep or expects,
+            keep=keep,
             isolate=self.settings.isolate,
             patience=self.settings.patience,
             visits=expects,
             rows=True,
+            folded=expects,
         )
 
     def _run(self, variant: Variant) -> Made:
