@@ -187,6 +187,10 @@ nothing is said that was said before; it comes in reverse order; both say one an
 in half as many rows."""
 
 
+LASTS, BETWEEN = 0.4, 0.5
+"""How long (s) something takes to say, and after how long something else may be said."""
+
+
 def said(change: str, rows: int, second: bool) -> list[tuple[float, str]]:
     """What is said when (s), in the first or the second of two transcripts."""
     told = [(float(i), f"This is sentence number {i}.") for i in range(rows)]
@@ -214,11 +218,11 @@ def _few(told: list[tuple[float, str]]) -> list[tuple[float, str]]:
             continue
         made.append((time, text + " Indeed." if number % 400 == 150 else text))
         if number % 400 == 250:
-            made.append((time, "Something new."))
+            made.append((time + BETWEEN, "Something new."))
         if number % 400 == 350:
             later.append(made.pop()[1])
         if number % 400 == 390 and later:
-            made.append((time, later.pop()))
+            made.append((time + BETWEEN, later.pop()))
     return made
 
 
@@ -235,7 +239,7 @@ def lines(told: list[tuple[float, str]]) -> Iterator[str]:
         chosen = {"rule": "S1", "winner": name, "losers": [], "losers_count": 0}
         yield _line(time, "decision", "mediator", app="guide", **chosen)
         yield _line(time, "start", "robot", app="guide", **what, devices=["speaker"], rule="S1")
-        yield _line(time + 0.9, "end", "robot", app="guide", **what, outcome="done", inbound=True)
+        yield _line(time + LASTS, "end", "robot", app="guide", **what, outcome="done", inbound=True)
     yield _line(told[-1][0] + 1, "over", "mediator")
 
 

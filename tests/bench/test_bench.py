@@ -16,7 +16,7 @@ import pytest
 
 pytest.importorskip("resource")
 
-from bench import fresh, long, mediation, peers, processes, run, simulation, workloads
+from bench import fresh, long, matching, mediation, peers, processes, run, simulation, workloads
 from bench.fresh import Figure, WrongAnswer
 from bench.machines import Prima
 from bench.rows import SECTIONS, Call, Row
@@ -73,6 +73,11 @@ def test_peers_in_other_languages_do_the_same_work(system: str, guards: bool) ->
     if not peers.installed(system):
         pytest.skip(f"{system} is not installed: python -m bench.peers")
     assert workloads.rate(system, 3, SECONDS, guards) > 0
+
+
+@pytest.mark.parametrize("change", matching.CHANGES)
+def test_a_difference_is_that_which_was_made(change: str) -> None:
+    assert matching.difference(change, 400) > 0
 
 
 def test_processes_end_well() -> None:
