@@ -140,13 +140,13 @@ class _Crew(Generic[Item, Made]):
                 else:
                     held[taken[0]] = taken[1]
                     self._give(*taken)
+            while due in done:  # nobody is idle while the caller looks at results
+                yield held.pop(due), done.pop(due)
+                due += 1
             for pipe in wait(list(self.busy)) if self.busy else ():
                 worker = self.busy[pipe]  # type: ignore[index]
                 for made in self._take(worker):
                     done[worker.number] = made
-            while due in done:
-                yield held.pop(due), done.pop(due)
-                due += 1
 
     def _free(self) -> bool:
         """Whether a process is idle; starts another if there may be more.
