@@ -101,13 +101,14 @@ class Shell:
 
     def _advance(self) -> bool:
         """Carry out all that is due; false when the run is over."""
-        loop = self.loop
+        loop, late = self.loop, 0
         while not self._stopped:
             now, due = min(self.clock.now(), loop.until), loop.due()
-            if due is not None and due < now:
-                self._note_late(now - due)
+            if due is not None:
+                late = max(late, now - due)
             if loop.advance(now) is None:
                 break
+        self._note_late(late)
         if loop.outcome or loop.over:
             loop.finish(loop.now)
             return False
