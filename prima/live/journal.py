@@ -216,6 +216,10 @@ def lacking(broken: CutJournal, made: Iterable[Record]) -> list[Record]:
     return list(again)
 
 
+GOES_ON = "the run was cut off here, and goes on"
+"""What a run is told of its cut."""
+
+
 @dataclass(slots=True)
 class KnownAtCut:
     """What a run knew when it was cut off."""
@@ -229,15 +233,19 @@ class KnownAtCut:
     sensors: dict[str, Json]
     halted: bool
     """Whether the emergency stop was pressed."""
+    own: bool = False
+    """Whether it was so by going on after an earlier cut, and not by anybody."""
     asked: dict[str, Order] = field(default_factory=dict)
     """What applications had asked and had no answer to, by its name, the oldest first."""
 
 
 def known(records: list[Record]) -> KnownAtCut:
     """What a run knew at the end of its records."""
-    state = KnownAtCut(set(), set(), False, {}, False)
+    state, cut = KnownAtCut(set(), set(), False, {}, False), -1.0
     for record in records:
         match record["phase"]:
+            case "note" if record.get("inbound") and record["text"] == GOES_ON:
+                cut = record["time"]
             case "load" if record.get("inbound"):
                 state.loaded.add(record["app"])
                 if record.get("data", {}).get("place"):
@@ -249,7 +257,9 @@ def known(records: list[Record]) -> KnownAtCut:
             case "sensed":
                 state.sensors |= record["data"]
             case "emergency":
-                state.halted = record["outcome"] == "pressed"
+                pressed = record["outcome"] == "pressed"
+                state.own = pressed and not state.halted and record["time"] == cut
+                state.halted = pressed
         _note_asked(state.asked, record)
     return state
 
@@ -287,8 +297,12 @@ def _answered(asked: dict[str, Order], app: str, event: str) -> str:
 
 
 def going_on(state: KnownAtCut) -> Iterator[Inbound]:
-    """What a run is told when it goes on: all that ran was interrupted, and starts again (E5)."""
-    yield Narrated("environment", "the run was cut off here, and goes on")
+    """What a run is told when it goes on: all that ran was interrupted, and starts again (E5).
+
+    A stop that somebody has pressed stays so, until they release it.
+    """
+    yield Narrated("environment", GOES_ON)
     if not state.halted:
         yield Emergency(True)
+    if state.own or not state.halted:
         yield Emergency(False, True)

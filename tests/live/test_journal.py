@@ -104,6 +104,32 @@ def test_a_run_goes_on_wherever_it_was_cut_off(name: str, tmp_path: Path) -> Non
         check_going_on(cast, records, cut, tmp_path / "visit.jsonl")
 
 
+def test_a_run_goes_on_that_was_cut_off_while_it_went_on(tmp_path: Path) -> None:
+    """The stop that was pressed because of the first cut is nobody's: it is released after the second."""
+    cast, path = cast_of("touched-on-the-way"), tmp_path / "visit.jsonl"
+    records = carried_out(live_loop(cast))
+    speaks = next(at for at, one in enumerate(records) if one["phase"] == "start" and "text" in one)
+    path.write_text(written(records[: speaks + 1]))
+    once = gone_on(cast, path)
+    pressed = next(at for at, one in enumerate(once) if one["phase"] == "emergency")
+    for cut in range(speaks + 2, pressed + 6):
+        path.write_text(written(once[:cut]))
+        twice = gone_on(cast, path)
+        told = [one["outcome"] for one in twice if one["phase"] == "emergency"]
+        assert told[-1] == "released" and twice[-1]["phase"] == "over"
+        assert said(twice).keys() == said(once).keys(), "it goes on to its end"
+
+
+def test_a_stop_that_somebody_has_pressed_stays_so(tmp_path: Path) -> None:
+    cast, path = cast_of("touched-on-the-way"), tmp_path / "visit.jsonl"
+    records = carried_out(live_loop(cast))[:20]
+    stop = {"phase": "emergency", "actor": "mediator", "outcome": "pressed", "inbound": True}
+    path.write_text(written([*records, {"time": records[-1]["time"], **stop, "serial": 99}]))
+    state = known(read_broken(str(path)).records)
+    assert state.halted and not state.own
+    assert [type(one).__name__ for one in going_on(state)] == ["Narrated"]
+
+
 # Journals that cannot be gone on with --------------------------------------------------------
 
 
