@@ -47,7 +47,7 @@ class Transcript:
     made: list[Row] | None = None
     """The rows, if they were made during the run."""
     folded: Run | None = field(default=None, repr=False, compare=False)
-    """The run, if it was folded as it was made."""
+    """The run, if it was folded while it was made."""
     _run: Run | None = field(default=None, repr=False, compare=False)
 
     def rows(self) -> list[Row]:

@@ -33,7 +33,7 @@ ABSENCE_MS = 20_000
 """After how long without being seen, heard or felt the user is absent (rule K1), unless the
 profile says otherwise."""
 LONGEST_TURN_MS = 600_000
-"""How long one utterance, or one question, may keep the speaker where nobody waits (rule E3)."""
+"""How long one utterance, or one question, may keep the speaker without another application (rule E3)."""
 LETTER_MS = 50
 """How long a letter counts in that: less than it takes, so that whatever is refused is too long."""
 PATIENCE_MS = 60_000

@@ -217,7 +217,7 @@ def lacking(broken: CutJournal, made: Iterable[Record]) -> list[Record]:
 
 
 GOES_ON = "the run was cut off here, and goes on"
-"""What a run is told of its cut."""
+"""The note with which a resumed run begins."""
 
 
 @dataclass(slots=True)
@@ -234,7 +234,7 @@ class KnownAtCut:
     halted: bool
     """Whether the emergency stop was pressed."""
     own: bool = False
-    """Whether it was so by going on after an earlier cut, and not by anybody."""
+    """Whether resuming after an earlier cut pressed it, and nobody else."""
     asked: dict[str, Order] = field(default_factory=dict)
     """What applications had asked and had no answer to, by its name, the oldest first."""
 

@@ -60,7 +60,7 @@ class Protocol(LanguageServerProtocol):
     """Answers requests that are wrong, or come too early or late, with an error; pygls does not."""
 
     left_early = False
-    """Whether the editor has said ``exit`` without ``shutdown`` before."""
+    """Whether the editor sent ``exit`` without ``shutdown``."""
 
     def structure_message(self, data: dict[str, Any]) -> Any:
         """Read a message; errors in a request are sent back."""

@@ -186,7 +186,7 @@ def serve() -> bool:
     """Serve an editor over standard input and output until it disconnects.
 
     Returns:
-        Whether it did not say ``exit`` without ``shutdown`` before (LSP 3.17, Exit Notification).
+        False if the editor sent ``exit`` without ``shutdown`` (LSP 3.17, Exit Notification).
     """
     logging.basicConfig(level=logging.ERROR, format="prima lsp: %(message)s")
     logging.getLogger("pygls").setLevel(logging.CRITICAL)

@@ -112,7 +112,7 @@ class SimulatedDevices:
         return inbound
 
     def _happened(self, now: int, crossed: list[Crossing]) -> list[Inbound]:
-        """What is to be told of an instant in which the bodies did not only move on."""
+        """Everything that happens at ``now`` beside motion, in order."""
         self._stirred = True
         inbound: list[Inbound] = []
         while self._loads and self._loads[0][0] <= now:

@@ -46,7 +46,7 @@ class Robot:
             self.conductor.report(now, report)
 
     def get_on(self, now: int) -> bool:
-        """Let the body get on to ``now``; whether there is more to collect than that it moved.
+        """Let the body get on to ``now``; whether anything but motion came of it.
 
         Whatever motion brings about is asked here: what time brings, :meth:`due` knows.
         """

@@ -34,7 +34,7 @@ class Measure:
     """Measures during a run, without keeping records.
 
     Args:
-        observer: what sees the records anyway; by default one of its own.
+        observer: one that is given every record already; by default its own.
     """
 
     def __init__(self, observer: Observer | None = None) -> None:
