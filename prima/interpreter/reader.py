@@ -9,6 +9,7 @@ from prima.errors import Problem, few_guesses, in_order
 from prima.interpreter.build import Builder
 from prima.interpreter.elements import Document
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
+from prima.markup.collecting import seldom_collected
 from prima.markup.limits import LIMITS
 from prima.markup.reader import read_tree
 
@@ -58,7 +59,7 @@ def read_document(
     read = _kept.pop(file, None)
     if read is None or read.data != data or read.limits != limits:
         read = None  # the memory of the one before is free for this one
-        with few_guesses():
+        with few_guesses(), seldom_collected():
             document, problems, outside = _read(file, data, fetch)
         if outside:
             return document, problems

@@ -15,9 +15,9 @@ from prima.errors import (
     in_order,
 )
 from prima.loading.applications import digest
-from prima.loading.collecting import seldom_collected
 from prima.loading.files import path_of, read_file
 from prima.loading.reading import Reading
+from prima.markup.collecting import seldom_collected
 
 if TYPE_CHECKING:
     from pathlib import Path

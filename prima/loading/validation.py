@@ -16,7 +16,6 @@ from prima.errors import (
 from prima.interpreter.elements import Document
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.loading.applications import fetcher, in_folder, read_native, services_of
-from prima.loading.collecting import seldom_collected
 from prima.loading.files import path_of, read_file
 from prima.loading.folders import documents_folder
 from prima.loading.kinds import GRAMMAR_FILES, is_grammar, is_surely_ours, is_voicexml
@@ -24,6 +23,7 @@ from prima.loading.reading import Reading
 from prima.loading.scenarios import load_whole
 from prima.loading.voicedocuments import mapped_site, mappings, voicexml_problems
 from prima.markup.check import check_root
+from prima.markup.collecting import seldom_collected
 from prima.markup.limits import LIMITS
 from prima.markup.reader import parse
 

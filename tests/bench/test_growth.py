@@ -18,7 +18,6 @@ from prima.checks.ignores import Ignores
 from prima.errors import Place, Problem, did_you_mean, few_guesses, in_order
 from prima.errors.guesses import MANY_WORDS
 from prima.interpreter import reader
-from prima.loading.collecting import OBJECTS, seldom_collected
 from prima.lsp import naming
 from prima.lsp.complete import complete
 from prima.lsp.fixes import fixes
@@ -27,6 +26,7 @@ from prima.lsp.outline import outline
 from prima.lsp.problems import check, spots
 from prima.lsp.text import Lines
 from prima.lsp.workspace import Workspace
+from prima.markup.collecting import OBJECTS, seldom_collected
 from prima.markup.tree import Source
 from prima.script import names
 from prima.script.compile import compiled

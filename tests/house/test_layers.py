@@ -56,7 +56,7 @@ INSIDE = {
         {"__init__"},
     ],
     "markup": [
-        {"limits", "sniff", "uris", "vocabulary", "tree"},
+        {"collecting", "limits", "sniff", "uris", "vocabulary", "tree"},
         {"edits", "encodings", "hints", "spans", "wellformed"},
         {"build", "check"},
         {"reader"},
@@ -71,7 +71,7 @@ INSIDE = {
     ],
     "language": [{"values"}, {"commands", "distributions"}, {"arguments"}, {"__init__"}],
     "loading": [
-        {"collecting", "diagnoses", "files", "web", "writing"},
+        {"diagnoses", "files", "web", "writing"},
         {"folders"},
         {"kinds"},
         {"applications"},
