@@ -261,7 +261,7 @@ def limits() -> str:
         ),
         (
             "the same beside another application",
-            f"the run's `patience`, at least {PATIENCE_MS // 1000} s",
+            f"the run's `patience`, {PATIENCE_MS // 1000} s by default",
             "`long-turn`, `error.semantic`",
         ),
         (

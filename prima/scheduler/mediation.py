@@ -109,13 +109,8 @@ class Mediation:
 
     @property
     def longest_turn(self) -> int:
-        """How long (ms) one utterance or question may keep the speaker (E3, E6).
-
-        A patience of less than the usual one shortens no turn: a question may need as long.
-        """
-        if not self.shared:
-            return LONGEST_TURN_MS
-        return min(max(self.patience, PATIENCE_MS), LONGEST_TURN_MS)
+        """How long (ms) one utterance or question may keep the speaker (E3, E6)."""
+        return min(self.patience, LONGEST_TURN_MS) if self.shared else LONGEST_TURN_MS
 
     def has(self, extension: str) -> bool:
         """Whether an extension is on."""

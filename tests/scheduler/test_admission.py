@@ -145,7 +145,7 @@ def test_e3_what_keeps_no_speaker_is_not_counted(command: Command) -> None:
     ("patience", "policy", "apps", "most"),
     [
         (60_000, "prima", {"ea": "ea", "fa": "fa"}, 60_000),
-        (5_000, "prima", {"ea": "ea", "fa": "fa"}, 60_000),
+        (5_000, "prima", {"ea": "ea", "fa": "fa"}, 5_000),
         (90_000, "prima", {"ea": "ea", "fa": "fa"}, 90_000),
         (900_000, "prima", {"ea": "ea", "fa": "fa"}, LONGEST_TURN_MS),
         (0, "prima", {"ea": "ea", "fa": "fa"}, LONGEST_TURN_MS),

@@ -5,6 +5,8 @@ Each rule by its number, on the smallest case that shows it.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from prima.invariants import check
@@ -22,9 +24,10 @@ from tests.helpers.generated.plays import perform
 from tests.helpers.generated.scripts import Ask, Leave, Script, drive
 from tests.helpers.generated.world import World
 from tests.helpers.plays import NESTED, play, stepped, told
-from tests.helpers.stage import Stage, ask, chain, command, move, say
+from tests.helpers.stage import Stage, chain, command, move, say
 
 EVENT = 7
+BRIEF = Command("q-and-a", {"timeout": "500ms"}, "Well?")
 
 
 def test_e1_a_failing_device_ends_the_ab_and_the_rest_of_its_tree() -> None:
@@ -136,7 +139,7 @@ def test_e6_a_reaction_goes_first() -> None:
     ("then", "started"),
     [
         (say("Thank you."), ["ea#2"]),
-        (ask("And why?"), ["fa#1"]),
+        (BRIEF, ["fa#1"]),
         (command("move-head", pan=1), ["fa#1", "ea#2"]),
     ],
 )
@@ -144,12 +147,12 @@ def test_e6_after_an_answer_the_asker_has_the_first_word_but_no_question(
     then: Command, started: list[str]
 ) -> None:
     stage = Stage(patience=1000)
-    stage.request("ea", ask())
+    stage.request("ea", replace(BRIEF))
     stage.select()
     stage.at(1).request("fa", say("One."))
     stage.select()
     stage.at(5000).mediator.ended("ea#1", True, {"outcome": "filled"}, inbound=False)
-    stage.settle(lambda: stage.request("ea", then, say("More.")))
+    stage.settle(lambda: stage.request("ea", replace(then), say("More.")))
     assert stage.select() == started
     if started == ["ea#2"]:
         stage.at(6000).end("ea#2")
@@ -172,7 +175,7 @@ def test_e6_holds_other_devices_back_as_well() -> None:
 def test_e6_k1_stands_above_it() -> None:
     """What leaves the user waits for the conversation, however long that takes."""
     stage = Stage(patience=1000)
-    stage.request("ea", ask(), ask(), ask())
+    stage.request("ea", *(replace(BRIEF) for _ in range(3)))
     stage.select()
     stage.at(1).request("fa", move())
     stage.select()

@@ -44,8 +44,8 @@ LONG_TURN = Diagnosis(
     "Speech too long beside another",
     (
         "Beside another application, an utterance or a question keeps the speaker no longer than "
-        "the run's patience, which is 60 s by default and for this counts as no less, at 50 ms a "
-        "letter. A run refuses it as error.semantic then (rule E6)."
+        "the run's patience, 60 s by default, counted at 50 ms a letter. A run refuses it as "
+        "error.semantic then (rule E6)."
     ),
     rule="E6",
     severity="warning",
