@@ -9,7 +9,7 @@ from contextlib import contextmanager
 OBJECTS, YOUNG, OLDER = 100_000, 20, 2
 """Objects after which it looks at the new ones, and how often it does before it looks at older ones.
 
-A document of 2 MB is half a million objects, nearly all of which stay: with Python's own
+A document of 2 MB makes up to two million objects, nearly all of which stay: with Python's own
 thresholds the work grows faster than the document.
 """
 
