@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from prima.devices.protocol import Devices
+from prima.devices.protocol import Devices, earliest
 from prima.interpreter.bounds import ElementVisit
 from prima.messages import Record
 from prima.session import Session
@@ -95,8 +95,7 @@ class Loop:
 
     def due(self) -> int | None:
         """When the next instant is, if ever."""
-        due, deadline = self.devices.due(), self._deadline
-        return due if deadline is None else deadline if due is None else min(due, deadline)
+        return earliest(self.devices.due(), self._deadline)
 
     def step(self, now: int) -> list[Record]:
         """One instant. Where a body only moved on, nobody is told and nothing is decided."""

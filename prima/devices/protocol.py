@@ -7,6 +7,15 @@ from typing import Protocol
 from prima.messages import Inbound, Order, Record
 
 
+def earliest(*times: int | None) -> int | None:
+    """The first of some times (ms), None left out; None if there is no other."""
+    first: int | None = None
+    for time in times:
+        if time is not None and (first is None or time < first):
+            first = time
+    return first
+
+
 class Devices(Protocol):
     """A robot with its surroundings, simulated or real. Times are ms from the run's start.
 

@@ -31,6 +31,7 @@ from prima.devices.goals import (
     Stopped,
 )
 from prima.devices.profile import Profile
+from prima.devices.protocol import earliest
 from prima.devices.settings import DriverLimits
 from prima.grammar.answers import Answers
 from prima.live.carried import lacking, limits_of, route
@@ -137,15 +138,14 @@ class LiveDevices:
     def due(self) -> int | None:
         """The next instant at which something is to be collected, if one is known."""
         told = None if self._told is None else max(self._told, self._last + 1)
-        times = [
+        return earliest(
             self._last + 1 if self._loads or self._entrances.unseen else None,
             told,
             self.conductor.due(self._sees.visible),
             self._speech.too_long,
             self.services.due(),
             *(self._let(driver, driver.due) for driver in self.drivers),
-        ]
-        return min((time for time in times if time is not None), default=None)
+        )
 
     def collect(self, now: int) -> list[Inbound]:
         """All that has come in by ``now``, in order."""

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from prima.devices.profile import Profile
+from prima.devices.protocol import earliest
 from prima.interpreter.elements import Document
 from prima.interpreter.sensors import sensors_read
 from prima.messages import ApplicationLoaded, Inbound, Order, Record
@@ -60,8 +61,9 @@ class SimulatedDevices:
         self._said = False
         """Whether something of what came in last was the user's doing."""
         self._stirred = True
-        """Whether the robot may have changed in more than its place since it said what is due."""
-        self._robot_due: int | None = None
+        """Whether anything may have changed but places since it was found what is due."""
+        self._due: int | None = None
+        """What is due then, but for the user's doings."""
         self._standing: int | None = 0
         """When something is to be collected though nothing moves, as :meth:`due` has found."""
 
@@ -72,28 +74,22 @@ class SimulatedDevices:
 
     def due(self) -> int | None:
         """The next instant at which something is to be collected (ms), if ever."""
-        self._standing = self._due_standing()
-        if not (self.world.moving or self.robot.body.moves_on):
-            return self._standing
-        moved = self.world.time + STEP_MS
-        return moved if self._standing is None else min(moved, self._standing)
+        if self._stirred:
+            self._stirred, self._due = False, self._due_standing()
+        self._standing = earliest(self._due, self.people.due())
+        if self.world.moving or self.robot.body.moves_on:
+            return earliest(self._standing, self.world.time + STEP_MS)
+        return self._standing
 
     def _due_standing(self) -> int | None:
-        """The same without what motion brings about."""
-        if self._stirred:
-            self._stirred, self._robot_due = False, self.robot.due()
-        due: int | None = None
-        for time in (
+        """The same without what motion and the user bring about."""
+        return earliest(
             0 if self._entrances.unseen else None,
             self._loads[0][0] if self._loads else None,
-            self._robot_due,
-            self.people.due(),
+            self.robot.due(),
             self.services.due(),
             self.telephone.due(),
-        ):
-            if time is not None and (due is None or time < due):
-                due = time
-        return due
+        )
 
     def collect(self, now: int) -> list[Inbound]:
         """All that happens by ``now``, in order, once :meth:`due` has been asked.

@@ -172,12 +172,12 @@ class Locomotion:
     def _round(self, person: Point, heading: float, goal: Point) -> tuple[float, float] | None:
         """The direction and speed that pass a person, or None if they do not stand in the way."""
         world, profile = self.world, self.profile
-        if distance(person, goal) < 0.05:
-            return None
         gap = distance(world.position, person)
+        if gap > IN_THE_WAY or gap > distance(world.position, goal):
+            return None
         toward = bearing(world.position, person)
         aside = difference(heading, toward)
-        if gap > IN_THE_WAY or gap > distance(world.position, goal) or abs(aside) > PASSING:
+        if abs(aside) > PASSING or distance(person, goal) < 0.05:
             return None
         if gap < profile.radius + TOO_NEAR and abs(difference(toward, world.heading)) < 60.0:
             return toward + (PASSING if aside >= 0 else -PASSING), 0.0

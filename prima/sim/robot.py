@@ -5,6 +5,7 @@ from __future__ import annotations
 from prima.devices.conductor import Conductor
 from prima.devices.goals import Report
 from prima.devices.profile import Profile
+from prima.devices.protocol import earliest
 from prima.messages import Data, Inbound, Occurred, Order
 from prima.sim.body import Body
 from prima.sim.routes import Routes
@@ -27,8 +28,7 @@ class Robot:
 
     def due(self) -> int | None:
         """The next instant at which something is to be reported, if one is known (ms)."""
-        times = (self.body.due(), self.conductor.due(self.world.sees_person()))
-        return min((time for time in times if time is not None), default=None)
+        return earliest(self.body.due(), self.conductor.due(self.world.sees_person()))
 
     def order(self, now: int, order: Order) -> None:
         """Carry out an order of the mediator."""

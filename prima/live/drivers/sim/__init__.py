@@ -18,6 +18,7 @@ from prima.devices.goals import (
     Stopped,
 )
 from prima.devices.profile import Profile
+from prima.devices.protocol import earliest
 from prima.devices.settings import DriverSettings
 from prima.errors import UsageError
 from prima.language.values import BadValue, read_value
@@ -107,9 +108,8 @@ class SimDriver(Driver):
     def due(self) -> int | None:
         """When the body has something to tell."""
         moves = self.world.moving or self.body.moves_on
-        times = [self.body.due(), self.world.time + STEP_MS if moves else None]
-        times += [when for when, _ in self._later]
-        return min((time for time in times if time is not None), default=None)
+        moved = self.world.time + STEP_MS if moves else None
+        return earliest(self.body.due(), moved, *(when for when, _ in self._later))
 
     def sample(self, now: int) -> None:
         """Let the body get on, and tell what has come of it.
