@@ -229,13 +229,14 @@ def parquet_columns(path: Path, rows: int, columns: int, size: int) -> dict[str,
 
     Raises:
         UsageError: pyarrow is not installed.
+        OSError: it cannot be opened.
         ValueError: it is no such file, or has more than it may.
     """
     arrow = pyarrow_module()
     from pyarrow.parquet import ParquetFile
 
     try:
-        with ParquetFile(path) as file:
+        with path.open("rb") as stream, ParquetFile(stream) as file:
             schema, count = file.schema_arrow, file.metadata.num_rows
         for number, most, what in ((count, rows, "rows"), (len(schema), columns, "columns")):
             if number > most:
@@ -244,7 +245,7 @@ def parquet_columns(path: Path, rows: int, columns: int, size: int) -> dict[str,
             if arrow.types.is_nested(one.type):
                 raise ValueError(f'its column "{one.name[:100]}" holds lists or records')
         texts = [one.name for one in schema if arrow.types.is_string(one.type)]
-        with ParquetFile(path, read_dictionary=texts) as file:
+        with path.open("rb") as stream, ParquetFile(stream, read_dictionary=texts) as file:
             return _cells(file, schema.names, size)
     except (arrow.ArrowException, KeyError) as error:
         raise ValueError(f"it is no Parquet file that can be read: {error}") from None

@@ -79,5 +79,4 @@ def halt(mediation: Mediation, ab: Behavior) -> None:
         remove(mediation, ab)
     else:
         mediation.memory.release(ab)
-        ab.listening = False
         mediation.memory.wait(ab)

@@ -61,7 +61,7 @@ class WorkingMemory:
 
     def wait(self, ab: Behavior) -> None:
         """Let the AB compete. Commands inside a unit compete within it only."""
-        ab.state = WAITING
+        ab.state, ab.listening = WAITING, False
         ab.wait.blocked = ("", "")
         if ab.unit is None:
             self.waiting[ab.name] = ab

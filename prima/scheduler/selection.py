@@ -213,8 +213,9 @@ def run(mediation: Mediation, ab: Behavior, aside: bool = False) -> None:
 
 
 def _note_start(mediation: Mediation, ab: Behavior, aside: bool) -> None:
-    """F6, K1, C2: what the start of an AB changes for its stream."""
+    """F6, K1, C2, X4: what the start of an AB changes for itself and its stream."""
     stream = ab.stream
+    ab.connect = False  # its first word is said, though X7 may have let it go before the turn
     if ab.command is not None and "speaker" in ab.devices:
         stream.spoken = True
     if ab.engages:

@@ -135,8 +135,9 @@ def test_parquet_that_is_none_and_a_file_that_is_not_there(tmp_path: Path) -> No
     (tmp_path / "bad.parquet").write_text("PAR1 nothing")
     done = prima("report", "bad.parquet", "-o", "page.html", cwd=tmp_path)
     assert done.returncode == 2 and "it is no Parquet file that can be read" in done.stderr
-    done = prima("report", "gone.csv", "-o", "page.html", cwd=tmp_path)
-    assert done.returncode == 2 and "gone.csv: cannot be read: No such file" in done.stderr
+    for gone in ("gone.csv", "gone.parquet"):
+        done = prima("report", gone, "-o", "page.html", cwd=tmp_path)
+        assert done.returncode == 2 and f"{gone}: cannot be read: No such file" in done.stderr
 
 
 @pytest.mark.parametrize(

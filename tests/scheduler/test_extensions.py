@@ -13,7 +13,7 @@ from prima.messages import (
     Command,
     Step,
 )
-from tests.helpers.generated.scripts import Ask, Script, drive
+from tests.helpers.generated.scripts import Ask, Leave, Script, drive
 from tests.helpers.generated.world import TABLE, World
 from tests.helpers.stage import Stage, ask, command, inserted, move, restartable, say, search
 
@@ -259,3 +259,31 @@ def test_a_word_waits_for_the_user_also_while_the_way_back_is_gone() -> None:
     for policy in ("prima+x1+x4", "prima+all"):
         run = drive(script, policy)
         assert check(run.records, policy) + run.problems == []
+
+
+def test_x2_a_question_that_is_asked_again_is_said_to_its_end() -> None:
+    """It listened when it was broken off, and speaks when its state is left."""
+    question = Ask(("q-and-a",), ((),))
+    asks = (Ask(("move-head",), ((),)), replace(question, restartable=True))
+    script = Script(
+        ((), ()),
+        ((0, (asks, ())), (5000, ((), (question,))), (9000, ((Leave(),), ()))),
+        (),
+        World(),
+    )
+    run = drive(script, "prima+x2")
+    assert check(run.records, "prima+x2") == []
+    phases = [one["phase"] for one in run.records if one.get("behavior") == "fa#2"]
+    assert phases.index("listening") < phases.index("interrupt")
+    assert phases[-3:] == ["start", "listening", "cancel"], "as the state was left meanwhile"
+
+
+def test_x4_a_third_turn_that_was_broken_off_is_begun_already() -> None:
+    """X7 lets it go before the turn to the user; X2 breaks it off, and it goes on without."""
+    question = Ask(("q-and-a",), ((),))
+    word = Ask(("face-human-and-speak",), ((),), connect=True, restartable=True)
+    script = Script(((), ()), ((0, ((question, word), ())), (1, ((question,), ()))), (), World())
+    run = drive(script, ALL)
+    assert check(run.records, ALL) == []
+    assert any(one["phase"] == "interrupt" for one in run.records)
+    assert not any(one.get("inserted") for one in run.records)

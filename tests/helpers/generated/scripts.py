@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count
 from typing import Any
 
@@ -371,9 +371,27 @@ _opens = st.builds(
     ),
     st.one_of(st.none(), st.integers(1, 5000)),
 )
+_QUESTION = Ask(("q-and-a",), ((),))
+_TURNS = (
+    _QUESTION,
+    Ask(("speak",), ((),)),
+    Ask(("move-head", "speak"), ((), (0,))),
+    Ask(("speak", "turn"), ((), ())),
+    Ask((("speak", "turn"),), ((),)),
+    Ask(("face-human",), ((),)),
+)
+"""A question or an utterance, and little with it: what conversations are made of."""
+_talk = st.builds(
+    replace,
+    st.sampled_from(_TURNS),
+    hold=st.sampled_from((None, 6000)),
+    restartable=st.booleans(),
+)
 _deed: st.SearchStrategy[Deed] = st.integers(0, 19).flatmap(
     lambda kind: (
-        _asks()
+        _talk
+        if kind < 5
+        else _asks()
         if kind < 13
         else _opens
         if kind < 15
@@ -391,11 +409,15 @@ _deeds = st.lists(_deed, max_size=3).map(tuple)
 def scripts(draw: Any) -> Script:
     """Two or three requesters and what happens to them."""
     apps = draw(st.sampled_from((2, 2, 3)))
-    windows = tuple(
-        tuple(draw(_deeds) for _ in range(draw(st.integers(0, 4)))) for _ in range(apps)
-    )
+    windows = [tuple(draw(_deeds) for _ in range(draw(st.integers(0, 4)))) for _ in range(apps)]
     events = []
     time = 0
+    if draw(st.integers(1, 4)) == 4:  # a question, while which others come to speak (X7, X10)
+        asker = draw(st.integers(0, apps - 1))
+        windows[asker] = ((draw(st.sampled_from(_TURNS[1:3])),), *windows[asker])
+        for who, deed in ((asker, _QUESTION), (1 - asker if asker < 2 else 0, draw(_talk))):
+            time += draw(st.sampled_from((1, 50, 400)))
+            events.append((time, tuple((deed,) if one == who else () for one in range(apps))))
     for _ in range(draw(st.integers(1, 7))):
         time += draw(st.sampled_from((0, 1, 50, 400, 1500, 4000)))
         events.append((time, tuple(draw(_deeds) for _ in range(apps))))
@@ -411,4 +433,4 @@ def scripts(draw: Any) -> Script:
         lacks=draw(st.integers(1, 5)) == 5,
     )
     views = draw(st.lists(st.tuples(st.integers(1, 8000), st.booleans()), max_size=3))
-    return Script(windows, tuple(events), tuple(emergencies), world, tuple(views))
+    return Script(tuple(windows), tuple(events), tuple(emergencies), world, tuple(views))
