@@ -45,7 +45,7 @@ from prima.language.values import KINDS, LONGEST_MS
 from prima.lsp.descriptions import VOICEXML_ATTRIBUTES
 from prima.markup.limits import LIMITS
 from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
-from prima.scheduler import failures, starvation
+from prima.scheduler import admission, failures, starvation
 from prima.script import budget, evaluation, host, parse, sandbox, syntax
 from prima.sim.vocabulary.scenario import SCENARIO
 from prima.sim.vocabulary.user import USER
@@ -263,6 +263,11 @@ def limits() -> str:
             "the same beside another application",
             f"the run's `patience`, {PATIENCE_MS // 1000} s by default",
             "`long-turn`, `error.semantic`",
+        ),
+        (
+            "Commands of an application that wait beside one another",
+            f"{admission.MOST_AT_ONCE}",
+            "`error.semantic`",
         ),
         (
             "what an application says, logs and sends in one instant",

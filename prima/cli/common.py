@@ -33,6 +33,17 @@ class SuggestingChoice(click.Choice[str]):
         return str(value)
 
 
+class Number(click.FloatRange):
+    """A number in a range; NaN, which is in each of them for click, is none."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The number, or an error."""
+        number = super().convert(value, param, ctx)
+        if number != number:
+            self.fail(f"{value!r} is not a number.", param, ctx)
+        return number
+
+
 def suggesting(*words: str) -> Callable[[click.Context, click.Parameter, str], list[str]]:
     """A shell completion for an option whose values are checked later."""
     return lambda _context, _parameter, begun: [one for one in words if one.startswith(begun)]

@@ -88,6 +88,8 @@ def explore(
     raise_limits(limits)
     if resume and output is None:
         raise UsageError("--resume needs the folder: -o FOLDER.")
+    if step == 0:
+        raise UsageError("--step: write a time above 0.")
     plan = ExplorationPlan(
         scenario,
         moves,

@@ -11,6 +11,7 @@ from click.exceptions import Exit
 
 from prima.cli.common import (
     PATIENCE,
+    Number,
     bound_option,
     check_output,
     clean,
@@ -59,7 +60,7 @@ FASTEST = 1000.0  # as prima.api.live.FASTEST, which takes long to import
 )
 @click.option(
     "--speed",
-    type=click.FloatRange(0, FASTEST, min_open=True),
+    type=Number(0, FASTEST, min_open=True),
     default=1.0,
     help="Run so many times as fast as real time; for simulated robots.",
 )

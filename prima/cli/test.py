@@ -9,6 +9,7 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import (
+    Number,
     SuggestingChoice,
     check_output,
     coloured,
@@ -58,7 +59,7 @@ MOST_JOBS = 64
 @click.option("--coverage-xml", type=click.Path(), help="Write coverage here (Cobertura).")
 @click.option(
     "--fail-under",
-    type=click.FloatRange(0, 100),
+    type=Number(0, 100),
     metavar="PERCENT",
     help="Exit with 1 if less of the documents was reached.",
 )

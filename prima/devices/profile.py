@@ -78,7 +78,13 @@ def _read_parts(reader: Reader, profile: Profile) -> None:
     for node in reader.root.all("voice"):
         profile.voices[node.get("lang").lower()] = reader.get(node, "rate") or 14.0
     for node in reader.root.all("gesture"):
-        profile.gestures[node.get("name")] = reader.get(node, "duration") or 1000
+        profile.gestures[node.get("name")] = _lasts(reader, node)
+
+
+def _lasts(reader: Reader, node: Node) -> int:
+    """How long a gesture or an added Command takes (ms)."""
+    lasts: int | None = reader.get(node, "duration")
+    return 1000 if lasts is None else lasts
 
 
 def read_robot(file: str, data: bytes) -> Profile:
@@ -157,7 +163,7 @@ def _add(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Prof
             or f'Add <device name="{device}"/>.'
         )
         reader.problem(node, "no-such-name", message, "devices", remedy)
-    profile.durations[name] = max(reader.get(node, "duration") or 1000, 1)
+    profile.durations[name] = max(_lasts(reader, node), 1)
     motion = _motion(reader, node)
     if motion is not None:
         profile.motions[name] = motion

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import repeat
 
-from prima.errors import DocumentError, Problem, UsageError
+from prima.errors import DocumentError, Place, Problem, UsageError
 from prima.loading.applications import read_application
 from prima.loading.files import path_of, read_file
 from prima.loading.folders import documents_folder
 from prima.loading.reading import other_kind
 from prima.loading.scenarios import Loaded, load_whole, without_ignored
 from prima.loading.voicedocuments import mappings
+
+STAGE = "stage.xml"
+"""The name of the scenario that is made: nobody has such a file."""
 
 
 def stage(
@@ -47,15 +50,23 @@ def stage(
     robot = robot or str(demo / "robots" / "papero.xml")
     inside = f"{_standing(world)}{_applications(given, maps)}{_answers(says)}"
     try:
-        loaded = load_whole(path_of("stage.xml"), _scenario(world, robot, entrances, inside))
+        loaded = load_whole(path_of(STAGE), _scenario(world, robot, entrances, inside))
     except DocumentError as error:
-        own = (one.code for one in error.problems if one.place.file == "stage.xml")
+        own = (one.code for one in error.problems if one.place.file == STAGE)
         if "duplicate-id" in own:
             _refuse_same_id(given)
-        raise
+        raise DocumentError([_in_its_file(one) for one in error.problems]) from None
     problems = [one for one in loaded.problems if one.code != "other-kind"]
     loaded.problems = sorted([*problems, *_other_kinds(given, loaded)])
     return without_ignored(loaded)
+
+
+def _in_its_file(problem: Problem) -> Problem:
+    """A document of the wrong kind, which the scenario names, at its own beginning."""
+    if problem.place.file != STAGE or problem.code != "wrong-namespace":
+        return problem
+    name, _, message = problem.message.removeprefix('"').partition('": ')
+    return problem._replace(place=Place(name, 1, 1), message=message)
 
 
 def _other_kinds(given: list[tuple[str, str]], loaded: Loaded) -> Iterator[Problem]:
@@ -95,6 +106,7 @@ def _answers(says: Iterable[str]) -> str:
     return "".join(
         f'<when asked="" count="{number}" after="1s"><say>{escape(text)}</say></when>'
         for number, text in enumerate(says, 1)
+        if text.strip()
     )
 
 

@@ -13,6 +13,10 @@ from prima.scheduler.behavior import GONE, Application, AwaitedRun, Behavior, In
 Table = Mapping[str, CommandType]
 
 
+MOST_AT_ONCE = 500
+"""Commands of an application that may wait at the same time, beside one another."""
+
+
 class CommandRefused(Exception):
     """A Command is refused before it enters working memory (rule E3)."""
 
@@ -99,6 +103,22 @@ def check_steps(
     for command in commands_of(steps):
         check_command(command, app, table, most)
     check_units(steps, table, owned)
+
+
+def check_number(steps: list[Step], waiting: int) -> None:
+    """E3: refuse what would let too many Commands wait at once: each is ranked again and again.
+
+    Args:
+        steps: what is asked for; each step that no other follows counts as one branch.
+        waiting: how many of the application's Commands wait already.
+
+    Raises:
+        CommandRefused: there are more than :data:`MOST_AT_ONCE`.
+    """
+    branches = len(steps) - len({index for step in steps for index in step.after})
+    if waiting + branches > MOST_AT_ONCE:
+        message = f"At most {MOST_AT_ONCE} Commands of an application wait beside one another."
+        raise CommandRefused("error.semantic", message, next(commands_of(steps), None))
 
 
 def commands_of(steps: list[Step]) -> Iterator[Command]:

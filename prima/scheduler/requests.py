@@ -6,6 +6,7 @@ from prima.messages import NO_DEVICES, Command, LeaveState, Notice, OpenUnit, Re
 from prima.scheduler.admission import (
     CommandRefused,
     check_command,
+    check_number,
     check_steps,
     link,
     parent_in,
@@ -23,6 +24,7 @@ def u3(mediation: Mediation, app: Application, asked: Request) -> None:
     unit = app.units.get(asked.unit) if asked.unit is not None else None
     try:
         most = mediation.longest_turn
+        check_number(asked.steps, sum(one.app is app for one in mediation.memory.waiting.values()))
         check_steps(asked.steps, app, mediation.table, unit.devices if unit else None, most)
         if asked.words is not None and asked.words.type in mediation.table:
             check_command(asked.words, app, mediation.table, most)

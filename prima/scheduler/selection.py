@@ -143,7 +143,9 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
         held: devices that those above it hold back.
     """
     policy, memory = mediation.policy, mediation.memory
-    rivals = able(mediation, lower, held)
+    # What takes no device and no floor keeps nobody from starting.
+    taking = bool(ab.devices) or ab.reaction is not None
+    rivals = able(mediation, lower, held) if taking else []
     composed = mediation.has("x5") and rules.x5(ab, memory)
     why = _admitted_by(mediation, ab, composed)
     reaction, ab.reaction, ab.stale = ab.reaction, None, None
@@ -167,8 +169,8 @@ def _outdone(
     """Of those that could have started in an AB's place, those that cannot beside it."""
     if not mediation.has("x5") and all(other.devices & ab.devices for _, other in rivals):
         return rivals
-    still = able(mediation, lower, held)
-    return [one for one in rivals if one not in still]
+    still = {other.name for _, other in able(mediation, lower, held)}
+    return [one for one in rivals if one[1].name not in still]
 
 
 def _admitted_by(mediation: Mediation, ab: Behavior, composed: bool) -> str:

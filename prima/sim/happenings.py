@@ -161,7 +161,7 @@ def _doing(draws: Draws, node: Node) -> Doing:
     if node.tag == "event":
         values["data"] = _data(node)
     if node.tag == "say":
-        values["told"] = _recognised(reader, node)
+        return _said(reader, node)
     return Doing(node.tag, node.text, values)
 
 
@@ -172,6 +172,15 @@ def _one_of(draws: Draws, node: Node) -> Doing:
         remedy = "Put into it what may happen, such as <say>Yes.</say><say>No.</say>."
         draws.reader.problem(node, "empty", "<one-of> holds nothing.", "", remedy)
     return Doing("one-of", "", {"several": several, "choice": draws.choice(node)})
+
+
+def _said(reader: Reader, node: Node) -> Doing:
+    """What the user says; without words they stay silent."""
+    if not node.text:
+        message = f"<{node.tag}> holds no words: the user stays silent."
+        remedy = f"Write the words into it, or remove <{node.tag}>."
+        reader.problem(node, "empty", message, "", remedy, "warning")
+    return Doing("say", node.text, {"told": _recognised(reader, node)})
 
 
 def _recognised(reader: Reader, node: Node) -> dict[str, Json]:
@@ -213,7 +222,7 @@ def read_answer(draws: Draws, node: Node) -> When:
         draws.amount(node, "after", 1000),
         reader.get(node, "times") or 1,
         1,
-        [Doing("say", node.text, {"told": _recognised(reader, node)})],
+        [_said(reader, node)],
         draws.chance(node),
         node.get("person"),
         node,

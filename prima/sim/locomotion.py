@@ -84,11 +84,13 @@ class Locomotion:
     def blocked(self, plan: LocomotionMemory) -> bool:
         """Whether a move has not got on for too long; another try may find another way."""
         position, heading = self.world.position, self.world.heading
-        if plan.last is not None:
-            moved = distance(position, plan.last[0]) > 0.02
-            turned = abs(difference(heading, plan.last[1])) > 2.0
-            plan.stuck = 0 if moved or turned else plan.stuck + self.profile.loop
-        plan.last = (position, heading)
+        before = plan.last or (position, heading)
+        moved = distance(position, before[0]) > 0.02
+        turned = abs(difference(heading, before[1])) > 2.0
+        if plan.last is None or moved or turned:
+            plan.last, plan.stuck = (position, heading), 0
+        else:
+            plan.stuck += self.profile.loop
         if plan.stuck < BLOCKED_MS:
             return False
         self.stand()

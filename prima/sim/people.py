@@ -218,6 +218,8 @@ class People:
             case "one-of":
                 chosen = values["choice"].of(values["several"], self._seed, script.number)
                 script.left.insert(0, chosen)
+            case "say" if not doing.text:
+                return []
             case "say":
                 self.world.attend(who)
                 self._speak(doing.text, script, now)

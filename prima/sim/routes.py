@@ -13,6 +13,9 @@ from prima.sim.world import World, distance
 if TYPE_CHECKING:
     from networkx import Graph
 
+SHORTEST = 0.001
+"""The length (m) of a way between places on one spot: without one, each would lead to the other."""
+
 
 class Routes:
     """Shortest ways between places, each looked for once."""
@@ -31,7 +34,7 @@ class Routes:
         graph.add_nodes_from(self._map.places)
         for a, b in self._map.ways:
             length = distance(self._map.places[a], self._map.places[b])
-            graph.add_edge(a, b, weight=length)
+            graph.add_edge(a, b, weight=max(length, SHORTEST))
         return graph
 
     def route(self, world: World, to: str) -> list[Point] | None:

@@ -131,7 +131,9 @@ def _arguments(row: CommandType | None, given: Record) -> str:
     known = row.arguments if row else {}
     times = {name for name, argument in known.items() if argument.kind == "duration"}
     return ", ".join(
-        f"{name} {value / 1000:g}s" if name in times else f"{name} {_value(value)}"
+        f"{name} {value / 1000:g}s"
+        if name in times and isinstance(value, int | float)
+        else f"{name} {_value(value)}"
         for name, value in given.items()
         if name not in known or value != known[name].default
     )

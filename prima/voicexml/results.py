@@ -7,7 +7,7 @@ from prima.voicexml.state import TakenUtterance
 
 RESULTS = """(function (all) {
   const best = all[0];
-  for (const name of Object.keys(best)) all[name] = best[name];
+  for (const name in best) all[name] = best[name];  // without globals, which documents may change
   return all;
 })($results)"""
 """Makes ``lastresult$`` of ``$results``: an array that has the best result's properties itself."""

@@ -223,6 +223,7 @@ def test_ctrl_c_prints_what_was_found_without_a_folder() -> None:
         (["--move", "touch", "--move", "touch.at"], "are the same value"),
         (["--within", "soon"], "--within"),
         (["--within", "0s"], "write a time above 0"),
+        (["--step", "0s"], "write a time above 0"),
         (["--depth", "9"], "--depth"),
         (["--resume"], "--resume needs the folder"),
         (["-o", "visit.xml"], "cannot be written"),

@@ -7,7 +7,8 @@ from dataclasses import replace
 import pytest
 
 from prima.language.commands import LETTER_MS, LONGEST_TURN_MS, TABLE_4_2
-from prima.messages import Command, Cue, Group
+from prima.messages import Command, Cue, Group, Step
+from prima.scheduler.admission import MOST_AT_ONCE
 from tests.helpers.stage import Stage, ask, chain, move, say
 
 LOUD = dict(TABLE_4_2, speak=replace(TABLE_4_2["speak"], extra=frozenset({"volume"})))
@@ -162,6 +163,17 @@ def test_e6_beside_another_nobody_speaks_longer_than_the_patience(
         assert bool(stage.select()) == (heard == [])
         assert stage.told("ea") == heard
     assert all(record["rule"] == "E3" for record in stage.phases("fail"))
+
+
+def test_e3_so_many_commands_wait_beside_one_another_and_no_more() -> None:
+    stage = Stage()
+    stage.request("fa", *(say("On.") for _ in range(3 * MOST_AT_ONCE)))  # one after the other
+    stage.request("ea", steps=[Step(say("Hi.")) for _ in range(MOST_AT_ONCE)])
+    stage.settle()
+    assert stage.told("fa") == stage.told("ea") == []
+    stage.request("ea", say("One more."))
+    stage.settle()
+    assert stage.told("ea") == ["error.semantic"]
 
 
 def test_e6_who_is_alone_again_may_speak_for_long() -> None:

@@ -119,3 +119,19 @@ def test_a_japanese_application(tmp_path: Path) -> None:
     assert '"kidodeへ行きましょう。"' in told(transcript)
     question = next(r["time"] for r in transcript.records if r["phase"] == "listening")
     assert 1.5 < question < 2.5, "thirteen kana take about two seconds"
+
+
+@pytest.mark.parametrize(
+    "script",
+    ['<answer to="A drink"/>', '<when asked="A drink"><say> </say></when>'],
+    ids=["answer", "say"],
+)
+def test_who_says_nothing_stays_silent(tmp_path: Path, script: str) -> None:
+    body = """<form id="f"><field name="d" type="boolean"><prompt>A drink?</prompt>
+      <noinput count="2"><exit/></noinput></field></form>"""
+    person = '<person x="0.9" y="0.5"/>'
+    silent = rehearse(tmp_path, body, person)
+    spoken = rehearse(tmp_path, body, person + script)
+    assert [row.key for row in spoken.rows()] == [row.key for row in silent.rows()]
+    (problem,) = api.validate([tmp_path / "scenario.xml"])
+    assert (problem.severity, problem.code) == ("warning", "empty")

@@ -219,3 +219,31 @@ def test_whenever_touch_and_message_come_the_room_is_reached(
     transcript = api.rehearse(tmp_path / "s.xml")
     assert transcript.records[-1]["outcome"] == "quiet"
     assert '"I\'ve just reached the goal."' in told(transcript)
+
+
+def moved(folder: Path, world: str, robot: str) -> api.Transcript:
+    """A move from ``a`` to ``d`` in a world of its own, by a robot of its own."""
+    texts = {
+        "world": f'<world xmlns="urn:prima:world:1" version="1.0" id="w">{world}</world>',
+        "robot": f'<robot xmlns="urn:prima:robot:1" version="1.0" id="r"{robot}>'
+        '<device name="locomotion"/><device name="localization"/></robot>',
+        "app": HEAD.format("ea", "mv", "en")
+        + '<form id="f"><block><topological-move to="d"/><exit/></block></form></prima>',
+        "scenario": '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" until="900s"'
+        ' world="world.xml" robot="robot.xml"><robot at="a"/><application src="app.xml"/></scenario>',
+    }
+    for name, text in texts.items():
+        (folder / f"{name}.xml").write_text(text)
+    return api.rehearse(folder / "scenario.xml")
+
+
+def test_places_on_one_spot_do_not_lead_round_and_round(tmp_path: Path) -> None:
+    world = """<place id="a" x="0" y="0"/><place id="b" x="4" y="0"/><place id="c" x="4" y="0"/>
+      <place id="d" x="8" y="0"/><way from="a" to="b"/><way from="b" to="c"/><way from="b" to="d"/>"""
+    assert told(moved(tmp_path, world, ""))[-1] == "ends mv: exit"
+
+
+@pytest.mark.parametrize("robot", [' speed="0.01"', ' loop="10ms"', ' speed="0.02" loop="20ms"'])
+def test_who_is_slow_is_not_blocked(tmp_path: Path, robot: str) -> None:
+    world = '<place id="a" x="0" y="0"/><place id="d" x="3" y="0"/><way from="a" to="d"/>'
+    assert told(moved(tmp_path, world, robot))[-1] == "ends mv: exit"

@@ -101,6 +101,25 @@ case(
     logs=["undefined"],
 )
 case(
+    "a variable may have the name of what every object has",
+    "5.1",
+    f"""<var name="toString" expr="1"/><form><var name="constructor" expr="'mine'"/>
+    <field name="valueOf"><prompt>Where?</prompt>{CITIES}<filled><assign name="constructor" expr="constructor + valueOf"/>
+    <log expr="constructor"/><log expr="dialog.constructor + toString"/></filled></field></form>
+    """,
+    "Kyoto",
+    logs=["mineKyoto", "mineKyoto1"],
+)
+case(
+    "a field may have the name of a global that the platform itself uses",
+    "5.1.5",
+    f"""<form><field name="Object"><prompt>Where?</prompt>{CITIES}</field><block>
+    <script>Object = null; x = 1;</script><log expr="x"/>
+    <log expr="application.lastresult$.utterance"/></block></form>""",
+    "Kyoto",
+    logs=["1", "Kyoto"],
+)
+case(
     "a document's variables last from dialog to dialog",
     "5.1.2",
     """<var name="x" expr="1"/><form><block><assign name="x" expr="2"/><goto next="#t"/></block></form>

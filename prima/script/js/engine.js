@@ -2,10 +2,13 @@
 const give = globalThis['\u01c0give'], Text = String;
 const stringify = JSON.stringify, isArray = Array.isArray, text = String, parse = JSON.parse;
 const number = Number, own = Object.hasOwn, freeze = Object.freeze, keys = Object.keys;
-const prototype = Object.getPrototypeOf, plain = Object.prototype, Known = Map, List = Array;
+const prototype = Object.getPrototypeOf, base = Object.prototype, Known = Map, List = Array;
+// Scopes inherit nothing: a variable may have any name, also "constructor".
+const empty = Object.create.bind(null, null);
+const plain = (v) => isArray(v) || prototype(v) === base || prototype(v) === null;
 // Data as a copy, also data that holds itself; what is no plain data stays what it is.
 const copy = (v, done) => {
-  if (typeof v !== 'object' || v === null || !(isArray(v) || prototype(v) === plain)) return v;
+  if (typeof v !== 'object' || v === null || !plain(v)) return v;
   if (done.has(v)) return done.get(v);
   const made = isArray(v) ? new List(v.length) : {};
   done.set(v, made);
@@ -26,7 +29,7 @@ const look = {
   preventExtensions: refuse,
 };
 const view = (v) => {
-  if (typeof v !== 'object' || v === null || !(isArray(v) || prototype(v) === plain)) return v;
+  if (typeof v !== 'object' || v === null || !plain(v)) return v;
   let made = views.get(v);
   if (made === undefined) {
     made = new View(v, look);
@@ -39,11 +42,11 @@ const marks = ['NaN', 'Infinity', '-Infinity'];
 const unmarked = (_, v) => typeof v === 'object' && v !== null && own(v, '\0')
   && marks.includes(v['\0']) && keys(v).length === 1 ? number(v['\0']) : v;
 return {
-  scope: function () { return {}; },
-  nothing: function () { return freeze({}); },
-  named: function (name) { const made = {}; made[name] = made; return made; },
+  scope: function () { return empty(); },
+  nothing: function () { return freeze(empty()); },
+  named: function (name) { const made = empty(); made[name] = made; return made; },
   event: function (name, message, data) {
-    return { event: { name, message, data: data === null ? {} : data },
+    return { __proto__: null, event: { name, message, data: data === null ? {} : data },
       _event: name, _message: message };
   },
   clock: function (o, t) { o.session = { time: t }; },

@@ -1,0 +1,29 @@
+"""Applications without a scenario, and what is wrong with them: nobody sees the scenario that is made."""
+
+from __future__ import annotations
+
+import pytest
+
+from prima import api
+from prima.errors import DocumentError
+
+WORLD, EA = "documents/worlds/room.xml", "documents/ea/library.xml"
+
+
+@pytest.mark.parametrize(
+    ("eas", "robot", "needed"),
+    [([WORLD], None, "an application"), ([EA], WORLD, "a robot")],
+)
+def test_a_document_of_the_wrong_kind_is_named_itself(
+    eas: list[str], robot: str | None, needed: str
+) -> None:
+    with pytest.raises(DocumentError) as error:
+        api.stage([], eas, robot=robot)
+    (problem,) = [one for one in error.value.problems if one.severity == "error"]
+    assert str(problem.place) == f"{WORLD}:1:1"
+    assert problem.message == f"This is a world; {needed} is needed here."
+
+
+def test_an_answer_without_words_is_silence() -> None:
+    silent, answered = (api.rehearse(api.stage([], [EA], says)) for says in ([], ["", " "]))
+    assert answered.table() == silent.table()
