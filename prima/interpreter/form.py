@@ -176,14 +176,16 @@ class Algorithm:
 
     def _process(self, frame: Frame, fiber: Fiber, item: Item, own: Sequence[Filled]) -> Content:
         """Run the filled elements that an answer has satisfied (VoiceXML 2.4)."""
-        for filled in own:
-            fiber.local = None
-            self.owner.note(filled.node)
-            yield from self.owner.execute.run(filled.content, fiber)
 
         def is_defined(name: str) -> bool:
             return self.owner.engine.defined(frame.dialog, name)
 
+        for filled in own:
+            if not is_defined(item.name):
+                break  # one before has cleared it, and it is filled no more
+            fiber.local = None
+            self.owner.note(filled.node)
+            yield from self.owner.execute.run(filled.content, fiber)
         inputs = [
             one.name for one in all_items(frame.form.items) if isinstance(one, Field | Subdialog)
         ]

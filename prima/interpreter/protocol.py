@@ -72,6 +72,10 @@ class App(Bounds[Evaluator], ABC):
     def sensed(self, now: int, values: Data) -> list[str]:
         """Sensor values changed: gives the events whose conditions turned true (C6)."""
 
+    def heeds(self, text: str) -> bool:
+        """Whether what the user says comes in a way that is listened to: words, or keys."""
+        return True
+
     @abstractmethod
     def answer(self, run: int, said: Sequence[Hypothesis]) -> Understood | None:
         """What the question of a run makes of what the user said, or None if it takes none of it."""

@@ -132,4 +132,4 @@ def satisfied(
     """Whether a form's ``filled`` for some items runs, once others have been filled (2.4)."""
     if not any(item in filled for item in items):
         return False
-    return mode == "any" or all(map(is_defined, items))
+    return (any if mode == "any" else all)(map(is_defined, items))

@@ -58,7 +58,8 @@ class Cue:
     a recording that the device has made. ``rate``: from here on ``value`` times the usual rate. ``lasts``: what stands before its
     ``end`` takes ``value`` ms. ``mark``: a place named ``value``, to be told as passed.
     ``earlier``: marks of what the application said just before count for this question.
-    ``hotword``: what the user says breaks off this question only if it is understood.
+    ``hotword``: what the user says breaks off this question only if it is understood; with a
+    ``value``, ``voice`` or ``dtmf``, what comes otherwise than so is not listened to.
     ``record``: the answer is a recording, of which the device tells how long it is; one of
     ``value`` ms is the longest, and 0 is without end. ``finalsilence``: it is over after so many
     ms of silence. ``longest``: the device listens no longer than ``value`` ms to what the user

@@ -99,7 +99,11 @@ class Hearing:
 
     def _refuse(self, question: Behavior, value: Heard) -> None:
         """What nobody has taken is the question's nomatch; a hotword is listened for further."""
-        if question.command is None or not question.command.cued("hotword"):
+        cues = question.command.cues if question.command is not None else ()
+        hotword = next((cue for cue in cues if cue.kind == "hotword"), None)
+        if hotword is None or (
+            hotword.value and self.wiring.apps.named[question.app.name].heeds(value.text)
+        ):
             data = {"outcome": "nomatch", "utterance": value.text, **value.data}
             self._conclude(question.id, data)
 

@@ -152,6 +152,11 @@ class VoiceInterpreter(App[AnyEngine]):
         value = found if found is not None else heard.utterance
         return Understood(value, heard.utterance, heard.confidence)
 
+    def heeds(self, text: str) -> bool:
+        """Whether what the user says comes in a way that is listened to (VoiceXML 6.3.6)."""
+        context = self._machine.context
+        return context is not None and self._machine.inputs.noted(context, text) is not None
+
     def answers(self, run: int) -> Answers | None:
         """What can be said to the question of a run."""
         context = self._machine.context

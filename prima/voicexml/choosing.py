@@ -19,8 +19,12 @@ class ItemSelection:
 
     def declare(self, context: Context, item: Node) -> None:
         """Give an item's variable its first value; one without a name is but visited or not."""
-        if item.get("name"):
-            self._owner.content.declare(item, context.dialog, context, self._owner.local())
+        if name := item.get("name"):
+            self._owner.content.check_name(item)
+            self._owner.engine.unset(context.dialog, name)  # also what a var has declared (C)
+            if "expr" in item.attributes:
+                local = self._owner.local()
+                self._owner.content.put(context.dialog, name, item, "expr", context, local)
             return
         if "expr" in item.attributes:
             guard, name = self._owner.local(), "guard"

@@ -266,7 +266,8 @@ class Content(Speaker):
 
     def data(self, node: Node, scope: Scope, context: Context, local: Scope) -> Flow:
         """Fetch an XML document as a read-only DOM (VoiceXML 2.1, 5)."""
-        self.check_name(node)
+        if node.get("name"):
+            self.check_name(node)
         request = UriRequest(node.get("method"), self.named(node, context, local))
         uri = context.page.resolve(self.word(node, "src", context, local), node)
         content = yield from fetch(self.owner, uri, node, request)

@@ -10,6 +10,7 @@ from prima.messages import Json
 from prima.script.evaluation import Scope, ScriptError, statement_place
 from prima.voicexml.owner import MachineOwner
 from prima.voicexml.state import Context
+from prima.voicexml.variablenames import wrong_name
 
 SHOWN = """function (v) { return v === undefined ? 'undefined'
   : v === null || typeof v !== 'object' ? v : v.nodeType !== undefined ? v.textContent
@@ -110,11 +111,14 @@ class VoiceEvaluator:
 
     @staticmethod
     def check_name(node: Node, attribute: str = "name") -> None:
-        """Refuse to declare a variable by a name that says its scope."""
+        """Refuse to declare a variable by a name that says its scope, or is no name (5.1)."""
         name = node.get(attribute)
         if "." in name:
             message = f'"{name}" names a scope; declare it there'
             raise Thrown.at(node, "error.semantic", message)
+        if wrong := wrong_name(name):
+            why = "is not a name" if wrong == "not a name" else "is a name of the platform's"
+            raise Thrown.at(node, "error.semantic", f'"{name}" {why}')
 
     def text(self, node: Node, context: Context, local: Scope) -> str:
         """What a value says (4.1.4)."""

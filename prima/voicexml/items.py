@@ -121,6 +121,8 @@ class Items:
             if node in filled:
                 context.item = node
                 for action in node.all("filled"):
+                    if not self.owner.selection.guarded(context, node):
+                        break  # one before has cleared it, and it is filled no more
                     yield from self.owner.content.run(action, context, self.owner.local())
             elif node.tag == "filled":
                 context.item = None

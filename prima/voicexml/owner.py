@@ -98,6 +98,9 @@ class VoiceContentRunner(Protocol):
     ) -> None:
         """Set a variable to the value of an attribute's expression."""
 
+    def check_name(self, node: Node) -> None:
+        """Refuse a name that no variable can have."""
+
     def declare(self, node: Node, scope: Scope, context: Context, local: Scope) -> None:
         """Declare a variable."""
 
@@ -107,9 +110,7 @@ class VoiceContentRunner(Protocol):
     def data(self, node: Node, scope: Scope, context: Context, local: Scope) -> Flow:
         """Fetch data (VoiceXML 2.1, 5)."""
 
-    def question_cues(
-        self, asked: Command | None, before: Sequence[Queued], hotword: bool
-    ) -> tuple[Cue, ...]:
+    def question_cues(self, asked: Command | None, before: Sequence[Queued]) -> tuple[Cue, ...]:
         """The cues of a question."""
 
 

@@ -85,14 +85,12 @@ class Speaker(VoiceEvaluator):
         elif last is None and len(self.ahead) < MAX_CUES:
             self.ahead += later(cues, 0)
 
-    def question_cues(
-        self, asked: Command | None, before: Sequence[Queued], hotword: bool
-    ) -> tuple[Cue, ...]:
+    def question_cues(self, asked: Command | None, before: Sequence[Queued]) -> tuple[Cue, ...]:
         """The cues of a question: those of the prompt that it is, and what counts for it."""
         marked = any(cue.kind == "mark" for one in before for cue in one.cues)
         earlier = (Cue(0, "earlier"),) if marked else ()
         own, self.ahead = (asked.cues if asked is not None else self.ahead), ()
-        return (*((Cue(0, "hotword"),) if hotword else ()), *earlier, *own)
+        return (*earlier, *own)
 
     @staticmethod
     def lang(node: Node, context: Context) -> str:

@@ -46,10 +46,14 @@ class Questions:
             return own or setting(context, name)
 
         timeout, bargein = milliseconds(wanted("timeout"), 5000), wanted("bargein") != "false"
-        hotword = bargein and wanted("bargeintype") == "hotword"
-        cues = self.owner.content.question_cues(asked, self.owner.queue, hotword)
+        modes = self.owner.inputs.modes(context)
+        cues = self.owner.content.question_cues(asked, self.owner.queue)
+        if bargein and wanted("bargeintype") == "hotword":
+            cues = (Cue(0, "hotword"), *cues)
+        elif bargein and len(set(modes)) == 1 and item.tag != "record":
+            cues = (Cue(0, "hotword", modes[0]), *cues)  # what comes otherwise breaks off nothing
         longest = milliseconds(setting(context, "maxspeechtimeout"), 0)
-        spoken = item.tag != "record" and "voice" in self.owner.inputs.modes(context)
+        spoken = item.tag != "record" and "voice" in modes
         if longest and spoken:  # a recording has its own maxtime
             cues = (Cue(0, "longest", longest), *cues)
         own = item.get("xml:lang") if item.tag != "menu" else ""

@@ -142,7 +142,10 @@ INSIDE = {
         {"__init__"},
     ],
     "voicexml": [
-        {"caught", "cues", "dom", "elements", "recordings", "site", "upgrade", "vocabulary"},
+        {
+            *("caught", "cues", "dom", "elements", "recordings", "site", "upgrade"),
+            *("variablenames", "vocabulary"),
+        },
         {"arranging", "speech"},
         {"acting", "checks"},
         {"document"},

@@ -146,7 +146,8 @@ def test_rows_come_above_the_line_that_is_typed(tmp_path: Path) -> None:
     terminal = Terminal(str(room(tmp_path, TICKS)), folder=tmp_path, NO_COLOR="1")
     terminal.until("> ")
     terminal.type("/note a\r/hel")  # the note's row comes while the next line is typed
-    terminal.until("> /hel")
+    terminal.until("a\r\n")
+    terminal.until("/hel")
     terminal.type("p walk\r")
     terminal.until("walks to a place or thing")
     terminal.type("/quit\r")

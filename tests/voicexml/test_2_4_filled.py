@@ -66,6 +66,16 @@ case(
     ended="exit",
 )
 case(
+    "a filled does not run once one before has cleared its item",
+    "C",
+    f"""<form><field name="a">{CITIES}<filled><log>one</log>
+    <if cond="a == 'Nara'"><clear namelist="a"/></if></filled><filled><log>two</log></filled></field>
+    <filled mode="any" namelist="a"><log>any</log></filled></form>""",
+    "nara",
+    "kyoto",
+    logs=["one", "one", "two", "any"],
+)
+case(
     "an item with a first value counts as filled for the others",
     "2.4",
     f"""<form><field name="a" expr="'x'">{CITIES}</field><field name="b">{CITIES}</field>

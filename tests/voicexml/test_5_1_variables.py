@@ -120,6 +120,26 @@ case(
     logs=["1", "Kyoto"],
 )
 case(
+    "a form item begins undefined, whatever a variable of its name had",
+    "C",
+    f"""<form><var name="f" expr="'before'"/><script>var g = 1;</script>
+    <field name="f"><prompt>Where?</prompt>{CITIES}</field><field name="g">{CITIES}</field>
+    <block><log expr="f + g"/></block></form>""",
+    "Kyoto",
+    "Nara",
+    logs=["KyotoNara"],
+)
+for name in ("_x", "x$", "class", "true", "1a", "a b", "a-b"):
+    item = f'<field name="{name}">{CITIES}</field>'
+    for declared in (f'<var name="{name}"/>', item, f'<block><var name="{name}"/></block>'):
+        case(
+            f"{name} is no name of a variable: {declared[1:4]}",
+            "5.1",
+            f"""<form>{declared}<block><log>on</log></block>
+            <catch event="error.semantic"><log>wrong</log><exit/></catch></form>""",
+            logs=["wrong"],
+        )
+case(
     "a document's variables last from dialog to dialog",
     "5.1.2",
     """<var name="x" expr="1"/><form><block><assign name="x" expr="2"/><goto next="#t"/></block></form>

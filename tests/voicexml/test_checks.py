@@ -47,6 +47,17 @@ def test_a_variable_that_nothing_declares_is_told(tmp_path: Path, content: str, 
     assert f'undeclared-variable The variable "{name}" is not declared' in one
 
 
+@pytest.mark.parametrize(
+    "holder",
+    ['<menu><choice next="#a">{}a</choice></menu>', '<link event="e">{}</link>'],
+    ids=["choice", "link"],
+)
+def test_a_grammar_of_a_choice_or_link_has_no_scope(tmp_path: Path, holder: str) -> None:  # 3.1.3
+    grammar = RULES.format(' scope="document"')
+    (one,) = told(tmp_path, holder.format(grammar) + '<form id="a"><block/></form>')
+    assert "unknown-attribute <grammar> in <" in one and 'has no "scope"' in one
+
+
 FIELD = '<field name="a"{}><prompt>Q?</prompt>{}</field>'
 RULES = '<grammar version="1.0" root="r"{}><rule id="r">a</rule></grammar>'
 UNIVERSALS = '<property name="universals" value="all"/>'

@@ -110,6 +110,30 @@ def test_keys_alone_as_input_have_no_limit(played: Played) -> None:  # 6.3.6
     assert logs(made) == ["silence"]
 
 
+@pytest.mark.parametrize(
+    ("said", "logged"),
+    [
+        ([(500, "yes")], ["nothing"]),
+        ([(500, "yes"), (3000, "1")], ["true"]),
+        ([(1000, "1")], ["true"]),
+        ([(1000, "7"), (3500, "1")], ["no match", "true"]),
+    ],
+)
+def test_what_inputmodes_leave_out_breaks_off_nothing(
+    played: Played, said: list[tuple[int, str]], logged: list[str]
+) -> None:  # 6.3.6, 4.1.5
+    made = played(
+        f"""<property name="inputmodes" value="dtmf"/><form><field name="f" type="boolean">
+        <prompt>{SECOND} {SECOND} {SECOND}</prompt><filled><log expr="f"/></filled>
+        <nomatch><log>no match</log></nomatch><noinput><log>nothing</log><exit/></noinput>
+        </field></form>""",
+        *said,
+    )
+    assert logs(made) == logged
+    if said[0][1] == "yes":
+        assert texts(made)[0] == f"{SECOND} {SECOND} {SECOND}"
+
+
 def test_another_question_than_was_asked_does_not_limit_what_was_said(played: Played) -> None:
     text = LIMITED.replace(
         "</field></form>",

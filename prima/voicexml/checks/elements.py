@@ -19,7 +19,9 @@ INPUT_ITEMS = ("field", "record", "object", "subdialog", "transfer")
 FORM_ITEMS = (*INPUT_ITEMS, "block", "initial")
 
 NUMBERED = EXCLUSIVE.says("This menu numbers its choices itself: a choice may add *, # or 0 alone.")
-OF_ITEM = UNKNOWN_ATTRIBUTE.says('<{tag}> in <{item}> has no "{name}": it is of this item.')
+OF_ITEM = UNKNOWN_ATTRIBUTE.says(
+    '<{tag}> in <{item}> has no "{name}": it belongs to this <{item}>.'
+)
 TWO_ITEMS = DUPLICATE_NAME.says('Two items of the form have the name "{name}".')
 NO_INPUT_ITEM = NO_SUCH_ITEM.says('The form has no input item "{name}".')
 BEHIND_ELSE = AFTER_ELSE.says("<{tag}> comes after <else>.")
@@ -80,6 +82,6 @@ RULES: dict[str, Callable[[Node], Iterator[Problem]]] = {
     "menu": _check_menu,
     "if": _check_if,
     "say-as": _check_say_as,
-    **dict.fromkeys(INPUT_ITEMS, _check_item),
+    **dict.fromkeys((*INPUT_ITEMS, "choice", "link"), _check_item),
 }
 """What checks an element, by its key."""

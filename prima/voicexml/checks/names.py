@@ -7,19 +7,17 @@ from collections.abc import Iterator
 from prima.errors import Place, Problem
 from prima.errors.diagnoses.values import BAD_VALUE
 from prima.markup.tree import Node
-from prima.script.globals import IDENTIFIER, RESERVED
 from prima.script.names import script_names
 from prima.script.walk import OBJECTS
 from prima.voicexml.arranging import UNIT
 from prima.voicexml.checks.elements import FORM_ITEMS
+from prima.voicexml.variablenames import wrong_name
 
 HIDING = {
     "session": "the session variables, which are read-only",
     **{name: f"the variables of the {name}" for name in sorted(OBJECTS)},
 }
 """Names that variables should not have, and what they make unreachable (5.1.2)."""
-SOMETIMES = frozenset(["async", "await", "let", "of", "static", "yield"])
-"""Words that are names, too, in the ECMAScript of documents."""
 NAMING = {
     **dict.fromkeys([*FORM_ITEMS, UNIT, "var", "data"], "name"),
     **dict.fromkeys(["foreach", "said-foreach"], "item"),
@@ -28,12 +26,12 @@ NAMING = {
 
 HIDES = BAD_VALUE.says('The variable "{name}" hides {what}.', "Write another name.", "warning")
 NOT_A_NAME = BAD_VALUE.says(
-    '"{name}" is not a name in ECMAScript: no expression can read it.',
+    '"{name}" is not a name in ECMAScript: a run throws error.semantic.',
     "Write letters, digits and _, and no word that ECMAScript has for itself.",
     "warning",
 )
 RESERVED_NAME = BAD_VALUE.says(
-    '"{name}" is reserved: names that begin with _ or end with $ are the platform\'s.',
+    '"{name}" is reserved, as names that begin with _ or end with $: a run throws error.semantic.',
     "Write another name.",
     "warning",
 )
@@ -61,7 +59,5 @@ def check_name(node: Node) -> Iterator[Problem]:
     place = node.attribute_place(attribute)
     if name in HIDING:
         yield _hides(place, name)
-    elif not IDENTIFIER.fullmatch(name) or name in RESERVED - SOMETIMES:
-        yield NOT_A_NAME.at(place, name=name)
-    elif name.startswith("_") or name[1:].endswith("$"):  # $ alone is not a shadow variable
-        yield RESERVED_NAME.at(place, name=name)
+    elif wrong := wrong_name(name):
+        yield (NOT_A_NAME if wrong == "not a name" else RESERVED_NAME).at(place, name=name)

@@ -1,0 +1,18 @@
+"""The names that variables of documents may have (VoiceXML 2.0, 5.1)."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from prima.script.globals import IDENTIFIER, RESERVED
+
+SOMETIMES = frozenset(["async", "await", "let", "of", "static", "yield"])
+"""Words that are names, too, in the ECMAScript of documents."""
+
+
+def wrong_name(name: str) -> Literal["", "not a name", "reserved"]:
+    """Why a variable cannot have a name: no expression can read it, or it is the platform's."""
+    if not IDENTIFIER.fullmatch(name) or name in RESERVED - SOMETIMES:
+        return "not a name"
+    # $ alone is not a shadow variable.
+    return "reserved" if name.startswith("_") or name[1:].endswith("$") else ""
