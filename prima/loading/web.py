@@ -144,7 +144,7 @@ class _Fetching:
     def wait(self) -> Fetched | None:
         """The answer; None where there is none by the deadline."""
         began = time.monotonic()
-        told = self.done.wait(max(self.ends - began, 0))
+        told = self.done.wait(max(self.ends - began, 0)) and self.found is not None
         self.hosts.took(self.app, self.uri, time.monotonic() - began, self.size if told else None)
         if not told:
             self.close()
@@ -162,7 +162,11 @@ class _Fetching:
             self.found = Fetched("", 0, self.uri, status=error.code, problem=problem)
             error.close()
         except URLError as error:
-            self.found = Fetched("", 0, self.uri, problem=silence(error.reason))
+            # A connection may time out a moment before the deadline: the host is silent all the same.
+            if not isinstance(error.reason, TimeoutError):
+                self.found = Fetched("", 0, self.uri, problem=silence(error.reason))
+        except TimeoutError:
+            pass
         except (OSError, HTTPException, ValueError) as error:
             why = "the answer breaks off" if isinstance(error, IncompleteRead) else error
             self.found = Fetched("", 0, self.uri, problem=f"it cannot be fetched: {why}")
