@@ -94,6 +94,7 @@ class _AbnfReader:
 
     def FORMATURI(self, token: Token) -> None:
         self.document.tag_format = self._uri(token)
+        self.document.formatted = self._where(token)
         self._once("tag-format", token)
 
     def BASEURI(self, token: Token) -> None:

@@ -118,7 +118,7 @@ class Library:
         elif document.tags or document.globals:
             message = f'The tag format "{document.tag_format[:80]}" is not known.'
             known = "Known are semantics/1.0 and semantics/1.0-literals."
-            where = document.where
+            where = document.formatted or document.where
             self.problems.unsupported(UnsupportedFormat, where, "tag-format", message, known)
 
     # References

@@ -147,6 +147,8 @@ class GrammarDocument:
     root: str = ""
     base: str = ""
     tag_format: str = ""
+    formatted: Where | None = None
+    """Where the tag format is declared, if it is."""
     rules: dict[str, Rule] = field(default_factory=dict)
     globals: list[Tag] = field(default_factory=list)
     """Tags of the header, run once before those of rules."""

@@ -68,6 +68,7 @@ class _Reader(GrammarChecker):
         self._language(node)
         document = self.document
         document.tag_format = node.get("tag-format").strip()
+        document.formatted = partial(node.place_of, "tag-format")
         document.base = node.get("xml:base")
         document.root = node.get("root").strip()
         self._children(node)

@@ -49,6 +49,8 @@ def reason(text: str, seconds: float) -> str:
         return "it used too much memory"
     if message.startswith("(Failed obtaining"):
         return "it threw a value that cannot be shown"
+    if message.startswith("Unknown quickjs tag"):
+        return "its value is of a type that is absent here, such as BigInt"
     if message == "[object Object]":
         return "it threw an object that is no Error"
     return message

@@ -91,7 +91,8 @@ class Inputs:
                 break
             for words, mode in self._ways(context, text):
                 active, found = self._taken(context, words, mode, sure, first)
-                results += [one for one in found if one.means not in {r.means for r in results}]
+                known = {(one.utterance, one.means) for one in results}
+                results += [one for one in found if (one.utterance, one.means) not in known]
                 first = first or active
                 if found:
                     break

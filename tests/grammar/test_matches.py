@@ -135,6 +135,23 @@ def test_an_element_with_text_in_abnf() -> None:
         load(inside("<grammar><![CDATA[#JSGF V1.0;]]></grammar>"))
 
 
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("#ABNF 1.0;\nlanguage en;\nroot $r;\ntag-format <foo/1.0>;\n$r = a {x};\n", (4, 12)),
+        (xml("<rule id='r'>a<tag>x</tag></rule>", '\n tag-format="foo/1.0"'), (2, 14)),
+    ],
+    ids=["ABNF", "XML"],
+)
+def test_an_unknown_tag_format_is_told_where_it_is_declared(
+    text: str, place: tuple[int, int]
+) -> None:
+    with pytest.raises(UnsupportedFormat) as error:
+        load(text)
+    (one,) = error.value.problems
+    assert (one.place.line, one.place.column) == place
+
+
 def test_problems_of_an_element_have_the_places_of_its_document() -> None:
     with pytest.raises(GrammarError) as error:
         load(

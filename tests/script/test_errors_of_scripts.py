@@ -8,6 +8,9 @@ import sys
 
 import pytest
 
+from prima.script.engine import Engine
+from prima.script.evaluation import SCOPES, ScriptError
+
 LOOP = "function () { for (;;); }"
 LATE = "it took longer than 0.05 s"
 THROWN = [
@@ -117,3 +120,10 @@ def test_what_a_grammars_script_declares_is_there_for_its_tags() -> None:
     code = "out = [typeof hidden, typeof Inner, typeof i, typeof drinks]"
     box = sandbox.rule(code, sandbox.environment("x", False))
     assert sandbox.json(box) == ["undefined"] * 4
+
+
+def test_a_bigint_is_told_in_words() -> None:
+    engine = Engine()
+    scopes = tuple(engine.named(name) for name in SCOPES)
+    with pytest.raises(ScriptError, match="of a type that is absent here, such as BigInt"):
+        engine.value("10n", scopes)

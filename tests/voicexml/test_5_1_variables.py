@@ -315,7 +315,7 @@ def test_lastresult_has_the_n_best_as_many_as_maxnbest_says() -> None:  # 5.1.5
 
 N_BEST = """<property name="maxnbest" value="{}"/><form><field name="f"><prompt>Well?</prompt>
 <option value="B">Boston</option><option value="A">Austin</option><option value="H">Houston</option>
-<nomatch><foreach item="one" array="application.lastresult$"><log expr="'no ' + one.utterance + ' '
+<option value="A">Aston</option><nomatch><foreach item="one" array="application.lastresult$"><log expr="'no ' + one.utterance + ' '
  + one.confidence"/></foreach></nomatch>
 <filled><foreach item="one" array="application.lastresult$"><log expr="one.utterance + ' ' +
  one.confidence + ' ' + one.interpretation + ' ' + one.inputmode"/></foreach>
@@ -337,6 +337,7 @@ N_BEST = """<property name="maxnbest" value="{}"/><form><field name="f"><prompt>
             ["Boston 0.7 B voice", "Austin 0.6 A voice"],
         ),
         (1, ("Boston", {"Austin": 0.6}), ["Boston 0.7 B voice"]),
+        (3, ("Austin", {"Aston": 0.6}), ["Austin 0.7 A voice", "Aston 0.6 A voice"]),
         (3, ("Bosten", {"Houston": 0.6, "Austin": 0.3}), ["Houston 0.6 H voice"]),
     ],
 )

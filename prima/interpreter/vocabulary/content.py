@@ -89,7 +89,7 @@ ACTS = (
     ),
     Element(
         "value",
-        "The value of an expression, as text.",
+        "The value of an expression, as text; that of a variable without a value is null.",
         (attribute("expr", "expression", "the expression", "required"),),
         source="VoiceXML 4.1.4",
     ),
