@@ -176,7 +176,8 @@ def _one_of(draws: Draws, node: Node) -> Doing:
 
 def _said(reader: Reader, node: Node) -> Doing:
     """What the user says; without words they stay silent."""
-    if not node.text:
+    known = reader.vocabulary.attributes[node.key]
+    if not node.text and node.attributes.keys() <= known.keys():
         message = f"<{node.tag}> holds no words: the user stays silent."
         remedy = f"Write the words into it, or remove <{node.tag}>."
         reader.problem(node, "empty", message, "", remedy, "warning")
