@@ -7,6 +7,7 @@ unreadable input; 3 a run ended by an error or a limit; 130 Ctrl-C.
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from importlib import import_module
 
@@ -88,6 +89,19 @@ def cli() -> None:
     """
 
 
+def interrupt_again(lost: sys.UnraisableHookArgs) -> None:
+    """Press Ctrl-C again where its exception came in a place that lets none out.
+
+    Such are a library's callbacks from C, and what Python calls while it frees an object.
+    """
+    if not isinstance(lost.exc_value, KeyboardInterrupt):
+        sys.__unraisablehook__(lost)
+        return
+    from threading import Timer
+
+    Timer(0.01, os.kill, (os.getpid(), signal.SIGINT)).start()
+
+
 def main() -> None:
     """Run the command line; each ending has its exit code and no traceback."""
     if sys.stdout is None:
@@ -95,6 +109,7 @@ def main() -> None:
     if sys.stderr is None:
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
     escape_for_people()
+    sys.unraisablehook = interrupt_again
     try:
         code = cli.main(standalone_mode=False)
         sys.stdout.flush()

@@ -149,6 +149,30 @@ def test_ctrl_c_while_python_is_still_importing_ends_quietly() -> None:
         assert (done.returncode, done.stderr.lstrip()) == (130, "prima: interrupted\n"), module
 
 
+def test_ctrl_c_in_a_place_that_lets_no_exception_out_ends_the_run_as_well() -> None:
+    """Such as a callback of physics, or the end of an object's life."""
+    code = (
+        "import sys\n"
+        "from prima.__main__ import main\n"
+        "from prima.sim import world\n"
+        "class Freed:\n"
+        "    def __del__(self): raise KeyboardInterrupt\n"
+        "step = world.World.advance\n"
+        "def advance(self, to):\n"
+        "    if to > 5000 and lost: lost.pop()\n"
+        "    step(self, to)\n"
+        "lost = [Freed()]\n"
+        "world.World.advance = advance\n"
+        "main()\n"
+    )
+    busy = ["test", "documents/scenarios", "-j", "1"]
+    done = subprocess.run(
+        [sys.executable, "-c", code, *busy],
+        capture_output=True, text=True, timeout=60, check=False, cwd=ROOT,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr.lstrip()) == (130, "prima: interrupted\n")
+
+
 def test_ctrl_c_leaves_what_was_written_readable(tmp_path: Path) -> None:
     app = tmp_path / "busy.xml"
     app.write_text(
