@@ -106,6 +106,7 @@ def test_exit_codes(tmp_path: Path) -> None:
     assert wrong.returncode == 2 and "fair" in wrong.stderr
     assert prima("test", "--fail-under", "100", cwd=tmp_path).returncode == 0
     assert prima("test", "--fail-under", "nan", cwd=tmp_path).returncode == 2
+    assert prima("live", "scenario.xml", "--speed", "nan", cwd=tmp_path).returncode == 2
     write(tmp_path, "", DESK.replace("</form>\n</prima>", "<help/></form></prima>"))
     under = prima("test", "--fail-under", "100", cwd=tmp_path)
     assert under.returncode == 1 and "less than 100%" in under.stderr

@@ -13,7 +13,7 @@ from prima.devices import voice
 from prima.messages import Record
 from prima.transcript.diff import compare, format_difference, summary_line
 from prima.transcript.lines import finished, line
-from prima.transcript.row import Row
+from prima.transcript.row import Row, describe
 from prima.transcript.table import format_rows, read_table, width
 from tests import ROOT
 
@@ -183,3 +183,8 @@ def test_speech_is_timed_by_language_and_script(lang: str, text: str, low: int, 
 def test_a_profiles_voice_counts() -> None:
     slow = voice.duration("Where are you going?", "en", {"en": 7.0})
     assert slow > voice.duration("Where are you going?", "en-GB", {"en": 14.0})
+
+
+def test_an_argument_that_is_no_time_is_shown_as_it_is() -> None:
+    assert describe("pause", None, {"time": "robot"}) == "Pause (time robot)"
+    assert describe("pause", None, {"time": 500}) == "Pause (time 0.5s)"
