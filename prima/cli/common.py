@@ -34,7 +34,7 @@ class SuggestingChoice(click.Choice[str]):
 
 
 class Number(click.FloatRange):
-    """A number in a range; NaN, which is in each of them for click, is none."""
+    """A number in a range. NaN is refused; click takes it to be in every range."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The number, or an error."""

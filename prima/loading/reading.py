@@ -53,6 +53,9 @@ if TYPE_CHECKING:
 
 Made = TypeVar("Made")
 
+STAGE = "stage.xml"
+"""The name of the scenario that is made for applications without one: nobody has such a file."""
+
 
 @dataclass(slots=True)
 class Reading:
@@ -248,7 +251,12 @@ def other_kind(
 
 
 def _named_wrongly(name: str, place: Place, problem: Problem, content: bytes) -> Problem:
-    """A document of another kind than the scenario needs is the mistake of who names it."""
+    """A document of another kind than the scenario needs is the mistake of who names it.
+
+    Where no author wrote the scenario, it is told at the document.
+    """
+    if place.file == STAGE:
+        return problem
     if problem.code != "wrong-namespace" or not kind_of(parse(name, content)):
         return problem
     return problem._replace(place=place, message=f'"{name}": {problem.message}', fixes=())

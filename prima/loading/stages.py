@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import repeat
 
-from prima.errors import DocumentError, Place, Problem, UsageError
+from prima.errors import DocumentError, Problem, UsageError
 from prima.loading.applications import read_application
 from prima.loading.files import path_of, read_file
 from prima.loading.folders import documents_folder
-from prima.loading.reading import other_kind
+from prima.loading.reading import STAGE, other_kind
 from prima.loading.scenarios import Loaded, load_whole, without_ignored
 from prima.loading.voicedocuments import mappings
-
-STAGE = "stage.xml"
-"""The name of the scenario that is made: nobody has such a file."""
 
 
 def stage(
@@ -55,18 +52,10 @@ def stage(
         own = (one.code for one in error.problems if one.place.file == STAGE)
         if "duplicate-id" in own:
             _refuse_same_id(given)
-        raise DocumentError([_in_its_file(one) for one in error.problems]) from None
+        raise
     problems = [one for one in loaded.problems if one.code != "other-kind"]
     loaded.problems = sorted([*problems, *_other_kinds(given, loaded)])
     return without_ignored(loaded)
-
-
-def _in_its_file(problem: Problem) -> Problem:
-    """A document of the wrong kind, which the scenario names, at its own beginning."""
-    if problem.place.file != STAGE or problem.code != "wrong-namespace":
-        return problem
-    name, _, message = problem.message.removeprefix('"').partition('": ')
-    return problem._replace(place=Place(name, 1, 1), message=message)
 
 
 def _other_kinds(given: list[tuple[str, str]], loaded: Loaded) -> Iterator[Problem]:

@@ -120,7 +120,7 @@ class Syntax:
         try:
             self._declare(json.dumps(body))
         except (quickjs.JSException, quickjs.StackOverflow) as error:
-            raise _placed(script_error(error), str(error), code) from None
+            raise _placed(str(error) or type(error).__name__, code) from None
 
 
 def column_in(code: str, line: int, column: int) -> int:
@@ -132,18 +132,16 @@ def column_in(code: str, line: int, column: int) -> int:
     return len(seen.decode(errors="ignore")) + 1
 
 
-def _placed(failure: ScriptError, said: str, code: str) -> ScriptError:
-    """An error with its place in code, around which there are lines of ours; those are no place."""
-    failure.places, failure.line, failure.column = [], 0, 0
+def _placed(said: str, code: str) -> ScriptError:
+    """What the engine said, with its place in code; the lines of ours around that do not count."""
     place = PLACE.search(said)
     line, column = (int(place[1]) - 3, int(place[2])) if place else (0, 0)
-    if line <= 0:
-        return failure
     lines = code.split("\n")
     if line > len(lines):
         failure = ScriptError("it ends too early")
-        line, column = len(lines), len(lines[-1]) + 1
-    else:
-        column = column_in(code, line, column)
-    failure.line, failure.column = line, column
+        failure.line, failure.column = len(lines), len(lines[-1]) + 1
+        return failure
+    failure = ScriptError(reason(said, TIME_LIMIT))
+    if line > 0:
+        failure.line, failure.column = line, column_in(code, line, column)
     return failure

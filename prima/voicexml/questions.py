@@ -50,7 +50,7 @@ class Questions:
         cues = self.owner.content.question_cues(asked, self.owner.queue)
         if bargein and wanted("bargeintype") == "hotword":
             cues = (Cue(0, "hotword"), *cues)
-        elif bargein and len(set(modes)) == 1 and item.tag != "record":
+        elif len(set(modes)) == 1 and item.tag != "record":
             cues = (Cue(0, "hotword", modes[0]), *cues)  # what comes otherwise breaks off nothing
         longest = milliseconds(setting(context, "maxspeechtimeout"), 0)
         spoken = item.tag != "record" and "voice" in modes

@@ -20,7 +20,7 @@ def test_a_document_of_the_wrong_kind_is_named_itself(
     with pytest.raises(DocumentError) as error:
         api.stage([], eas, robot=robot)
     (problem,) = [one for one in error.value.problems if one.severity == "error"]
-    assert str(problem.place) == f"{WORLD}:1:1"
+    assert str(problem.place) == f"{WORLD}:3:1"
     assert problem.message == f"This is a world; {needed} is needed here."
 
 

@@ -111,6 +111,13 @@ case(
     logs=["mineKyoto", "mineKyoto1"],
 )
 case(
+    "a scope is an object, as text and with the method that says what it has",
+    "5.1.2",
+    """<form><var name="x"/><block><log expr="1 + dialog"/>
+    <log expr="dialog.hasOwnProperty('x') + ' ' + dialog.hasOwnProperty('y')"/></block></form>""",
+    logs=["1[object Object]", "true false"],
+)
+case(
     "a field may have the name of a global that the platform itself uses",
     "5.1.5",
     f"""<form><field name="Object"><prompt>Where?</prompt>{CITIES}</field><block>
@@ -133,7 +140,7 @@ for name in ("_x", "x$", "class", "true", "1a", "a b", "a-b"):
     item = f'<field name="{name}">{CITIES}</field>'
     for declared in (f'<var name="{name}"/>', item, f'<block><var name="{name}"/></block>'):
         case(
-            f"{name} is no name of a variable: {declared[1:4]}",
+            f"{name} cannot name the variable of {declared[1:4]}",
             "5.1",
             f"""<form>{declared}<block><log>on</log></block>
             <catch event="error.semantic"><log>wrong</log><exit/></catch></form>""",

@@ -3,9 +3,13 @@ const give = globalThis['\u01c0give'], Text = String;
 const stringify = JSON.stringify, isArray = Array.isArray, text = String, parse = JSON.parse;
 const number = Number, own = Object.hasOwn, freeze = Object.freeze, keys = Object.keys;
 const prototype = Object.getPrototypeOf, base = Object.prototype, Known = Map, List = Array;
-// Scopes inherit nothing: a variable may have any name, also "constructor".
-const empty = Object.create.bind(null, null);
-const plain = (v) => isArray(v) || prototype(v) === base || prototype(v) === null;
+// Scopes inherit next to nothing: a variable may have any name, also "constructor".
+const root = Object.create(null, {
+  hasOwnProperty: { value: base.hasOwnProperty, writable: true },
+  [Symbol.toPrimitive]: { value: () => '[object Object]' },
+});
+const empty = Object.create.bind(null, root);
+const plain = (v) => isArray(v) || prototype(v) === base || prototype(v) === root;
 // Data as a copy, also data that holds itself; what is no plain data stays what it is.
 const copy = (v, done) => {
   if (typeof v !== 'object' || v === null || !plain(v)) return v;
@@ -46,7 +50,7 @@ return {
   nothing: function () { return freeze(empty()); },
   named: function (name) { const made = empty(); made[name] = made; return made; },
   event: function (name, message, data) {
-    return { __proto__: null, event: { name, message, data: data === null ? {} : data },
+    return { __proto__: root, event: { name, message, data: data === null ? {} : data },
       _event: name, _message: message };
   },
   clock: function (o, t) { o.session = { time: t }; },
