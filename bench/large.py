@@ -173,7 +173,7 @@ FAMILIES: dict[str, Family] = {
     "handlers of the document": _ours(lambda i, n: f'<on event="e{i}"><speak>Yes.</speak></on>\n', after=FORM),
     "events sent": _inside("form block", lambda i, n: f'<send event="e{i}" delay="1s"/>\n'),
     "events thrown": _inside("form block", lambda i, n: f'<throw event="e{i}"/>\n'),
-    "watches": _ours(lambda i, n: f'<watch when="sensor.s{i} == {i}" event="e{i}"/>\n'),
+    "watches": _ours(lambda i, n: f'<watch when="sensor.s{i} == {i}" name="e{i}"/>\n'),
     "links": _ours(lambda i, n: f'<link event="e{i}"><grammar><item>number {i}</item></grammar></link>\n'),
     "links to forms": _ours(lambda i, n: f'<link next="#f{i}"><grammar><item>number {i}</item></grammar></link>\n'),
     "conditions": _inside("form block", lambda i, n: f'<if cond="v{i} == {i}"><speak>Yes.</speak></if>\n'),
