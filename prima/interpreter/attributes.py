@@ -55,7 +55,8 @@ class AttributeReader:
         self.expressions: list[Expression] = []
         self.words: list[str] = []
         """Code and names of variables that are no expressions."""
-        self.scripted = self.counting = False
+        self.scripts: list[str] = []
+        self.assigns_parts = self.counting = False
         self._unnamed = 0
         self._runs = 0
         """How many runs of Commands have been built."""

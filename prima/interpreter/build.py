@@ -91,7 +91,8 @@ class Builder(ContentBuilder):
             properties=self.properties(parts),
             node=root,
             expressions=self.expressions,
-            scripted=self.scripted,
+            scripts=self.scripts,
+            assigns_parts=self.assigns_parts,
             counting=self.counting,
             curious=self.any_has(EVENT),
         )

@@ -112,7 +112,7 @@ class ContentBuilder(AttributeReader):
     def script(self, node: Node) -> Script:
         """A script."""
         code = "".join(item for item in node.content if isinstance(item, str))
-        self.scripted = True
+        self.scripts.append(code)
         self.words.append(code)
         return Script(Expression(code, node, ""), node)
 
@@ -253,7 +253,7 @@ class ContentBuilder(AttributeReader):
             self.words.append(name)
         if "." in name:
             scope, _, part = name.partition(".")
-            self.scripted = self.scripted or "." in (part if scope in SCOPES else name)
+            self.assigns_parts = self.assigns_parts or "." in (part if scope in SCOPES else name)
         return Assign(name, self.code(node.get("expr"), node, "expr"), node)
 
     def condition(self, node: Node) -> If:

@@ -166,8 +166,10 @@ class Document:
     node: Node
     expressions: list[Expression] = field(default_factory=list)
     """All its code, but for scripts."""
-    scripted: bool = False
-    """Whether there is a script, or something is assigned to a part of a variable."""
+    scripts: list[str] = field(default_factory=list)
+    """The code of its scripts."""
+    assigns_parts: bool = False
+    """Whether something is assigned to a part of a variable."""
     counting: bool = False
     """Whether any handler looks at how often its event has occurred."""
     python: bool | None = None

@@ -8,7 +8,6 @@ from prima.interpreter.acts import Declare, Expression, Pause, Script, Text
 from prima.interpreter.frame import Fiber
 from prima.interpreter.owner import Owner
 from prima.interpreter.places import where
-from prima.interpreter.pyengine import PythonEngine
 from prima.interpreter.transfers import failure
 from prima.markup.tree import Node
 from prima.messages import Cue, Json
@@ -120,7 +119,6 @@ class Evaluator:
 
     def script(self, act: Script, scope: Scope, fiber: Fiber) -> None:
         """Run a script; what it declares belongs to the scope."""
-        assert not isinstance(self.engine, PythonEngine), "a document with a script has an engine"
         try:
             self.engine.script(act.code.code, scope, self.scopes(fiber))
         except ScriptError as error:

@@ -96,18 +96,20 @@ class Algorithm:
 
     def select_item(self, frame: Frame, fiber: Fiber, items: Sequence[Item]) -> Item | None:
         """The item that a goto names, else the first undefined one whose condition holds."""
-        item = select_item(items, frame.next_item, holds, lambda one: self._is_open(fiber, one))
+
+        def first_undefined(some: Sequence[Item]) -> int:
+            names = (one.name for one in some)
+            return self.owner.engine.first_undefined(frame.dialog, *names) if some else 0
+
+        def is_wanted(one: Item) -> bool:
+            return one.cond is None or self.owner.execute.condition(one.cond, fiber)
+
+        item = select_item(items, frame.next_item, holds, first_undefined, is_wanted)
         if item is not None:
             self.owner.note(item.node)
             if item.name == frame.next_item:
                 frame.next_item = ""
         return item
-
-    def _is_open(self, fiber: Fiber, item: Item) -> bool:
-        """Whether an item's variable is undefined and its condition holds."""
-        if self.owner.engine.defined(fiber.frame.dialog, item.name):
-            return False
-        return item.cond is None or self.owner.execute.condition(item.cond, fiber)
 
     def _visit(self, frame: Frame, fiber: Fiber, item: Item) -> Content:
         match item:
@@ -141,8 +143,8 @@ class Algorithm:
         if outcome != "filled":
             data = {**_shadow(notice), "command": command.type}
             raise Thrown(outcome, "", command.source, data)
-        self.owner.engine.set(frame.dialog, field.name, notice.data["value"])
-        self.owner.engine.set(frame.dialog, f"{field.name}$", _shadow(notice))
+        given = {field.name: notice.data["value"], f"{field.name}$": _shadow(notice)}
+        self.owner.engine.fill(frame.dialog, given)
         yield from self._process(frame, fiber, field, field.filled)
 
     def _question(self, frame: Frame, fiber: Fiber, field: Field) -> Command:

@@ -1,18 +1,19 @@
-"""The evaluator of documents all of whose expressions Python can evaluate.
+"""The evaluator of documents all of whose code Python can evaluate.
 
-An application that has no others (:func:`is_python`) is evaluated here: each expression is a Python
-function of the scopes that it sees (:mod:`prima.script.compile`); any other application runs
-in an :class:`~prima.script.engine.Engine`.
+An application that has no other (:func:`is_python`) is evaluated here: each expression is a Python
+function of the scopes that it sees (:mod:`prima.script.compile`), and scripts only declare data
+(:mod:`prima.script.data`). Any other application runs in an :class:`~prima.script.engine.Engine`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
 from prima.interpreter.elements import Document
 from prima.script.compile import Compiled, Function, compiled
+from prima.script.data import ScriptData, declared
 from prima.script.ecmascript import (
     UNDEFINED,
     Named,
@@ -26,6 +27,7 @@ from prima.script.ecmascript import (
     truth,
 )
 from prima.script.evaluation import MAX_SCRIPT_SECONDS, ScriptError, bounded
+from prima.script.literals import fresh
 from prima.script.operations import holder_of
 from prima.script.surrogates import well_formed
 
@@ -49,16 +51,18 @@ MOST_PIECES = 50_000
 def is_python(document: Document) -> bool:
     """Whether all the code of a document can be evaluated here."""
     if document.python is None:
-        document.python = not document.scripted and _are_python(
-            {one.code: None for one in document.expressions}
-        )
+        codes: dict[str, Callable[[str], Compiled | ScriptData | None]] = {
+            **dict.fromkeys((one.code for one in document.expressions), compiled),
+            **dict.fromkeys(document.scripts, declared),
+        }
+        document.python = not document.assigns_parts and _are_python(codes)
     return document.python
 
 
-def _are_python(codes: Iterable[str]) -> bool:
+def _are_python(codes: Mapping[str, Callable[[str], Compiled | ScriptData | None]]) -> bool:
     pieces = 0
-    for code in codes:
-        found = compiled(code)
+    for code, read in codes.items():
+        found = read(code)
         pieces += found.pieces if found else 0
         if found is None or pieces > MOST_PIECES:
             return False
@@ -81,7 +85,7 @@ def weighed(found: Compiled) -> Function:
 
 
 class PythonEngine:
-    """Does what an :class:`~prima.script.engine.Engine` does, for applications without scripts."""
+    """Does what an :class:`~prima.script.engine.Engine` does, for such applications."""
 
     nothing = Scope()
     """A scope in which nothing is declared."""
@@ -143,9 +147,15 @@ class PythonEngine:
         """Give a variable of a scope a value from outside."""
         scope[name] = inward(value)
 
-    def unset(self, scope: Scope, name: str) -> None:
-        """Make a variable of a scope undefined."""
-        scope[name] = UNDEFINED
+    def fill(self, scope: Scope, values: Mapping[str, Json]) -> None:
+        """Give several variables of a scope values from outside."""
+        for name, value in values.items():
+            scope[name] = inward(value)
+
+    def unset(self, scope: Scope, *names: str) -> None:
+        """Make variables of a scope undefined."""
+        for name in names:
+            scope[name] = UNDEFINED
 
     def has(self, scope: Scope, name: str) -> bool:
         """Whether a scope has a variable of that name."""
@@ -154,6 +164,13 @@ class PythonEngine:
     def defined(self, scope: Scope, name: str) -> bool:
         """Whether a variable of a scope has a value other than undefined."""
         return scope.get(name, UNDEFINED) is not UNDEFINED
+
+    def first_undefined(self, scope: Scope, *names: str) -> int:
+        """The index of the first of some variables that is undefined; if none is, their number."""
+        for at, name in enumerate(names):
+            if scope.get(name, UNDEFINED) is UNDEFINED:
+                return at
+        return len(names)
 
     def condition(self, code: str, scopes: Scopes) -> bool:
         """Evaluate an expression as a condition."""
@@ -203,6 +220,15 @@ class PythonEngine:
         self.put(
             scope, name.rpartition(".")[2], (self._functions.get(code) or self._call(code))(scopes)
         )
+
+    def script(self, code: str, scope: Scope, _scopes: Scopes) -> None:
+        """Run a script; what it declares becomes variables of ``scope``."""
+        data = declared(code)
+        if data is None:
+            raise ScriptError("SyntaxError: a script needs an engine")
+        self.work(PIECE * data.pieces)
+        for name, value in data.values.items():
+            self.put(scope, name, fresh(value))
 
     def put(self, scope: Scope, name: str, value: Any) -> None:
         """Give a variable one of the values that there are here.

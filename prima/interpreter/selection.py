@@ -111,7 +111,11 @@ def of_highest_count(found: Iterable[tuple[int, T]]) -> list[T]:
 
 
 def select_item(
-    items: Sequence[T], wanted: str, named: Callable[[T, str], bool], is_open: Callable[[T], bool]
+    items: Sequence[T],
+    wanted: str,
+    named: Callable[[T, str], bool],
+    first_undefined: Callable[[Sequence[T]], int],
+    holds: Callable[[T], bool],
 ) -> T | None:
     """The item to visit: that a goto names, or the first that is open (2.1.6.2).
 
@@ -119,11 +123,17 @@ def select_item(
         items: form items, and units with items inside.
         wanted: the name of one of these.
         named: whether an item has a name, or is a unit around the one that has.
-        is_open: whether its variable is undefined and its condition holds.
+        first_undefined: the index of the first item whose variable is undefined, or their number.
+        holds: whether an item's condition holds; it may change what is defined.
     """
     if wanted:
         return next((item for item in items if named(item, wanted)), None)
-    return next(filter(is_open, items), None)
+    at = first_undefined(items)
+    while at < len(items):
+        if holds(items[at]):
+            return items[at]
+        at += 1 + first_undefined(items[at + 1 :])
+    return None
 
 
 def satisfied(

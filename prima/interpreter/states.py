@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from itertools import count
+from itertools import count, groupby
 from typing import TYPE_CHECKING, Any
 
 from prima.interpreter.acts import Declare, Script
@@ -303,8 +303,12 @@ class States(App["AnyEngine | PythonEngine"]):
             act for act in frame.form.setup if not (isinstance(act, Declare) and act.name in given)
         ]
         self._set_up(setup, frame.dialog, fiber)
-        for item in all_items(frame.form.items):
-            self.execute.declare(Declare(item.name, item.expr, item.node), frame.dialog, fiber)
+        for empty, items in groupby(all_items(frame.form.items), lambda one: one.expr is None):
+            if empty:
+                self.engine.unset(frame.dialog, *(one.name for one in items))
+                continue
+            for one in items:
+                self.execute.declare(Declare(one.name, one.expr, one.node), frame.dialog, fiber)
 
 
 def evaluator_of(document: Document, engines: Engines) -> AnyEngine | PythonEngine:

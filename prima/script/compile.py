@@ -12,7 +12,7 @@ from typing import Any
 
 from prima.script.ecmascript import UNDEFINED, Scopes, index_of, kind_of, number_text, truth
 from prima.script.globals import BUILT_IN, INHERITED, METHODS, RESERVED
-from prima.script.literals import WORDS, Beyond, literal, number, string
+from prima.script.literals import WORDS, Beyond, fresh, literal, number, string
 from prima.script.operations import (
     Operation,
     add,
@@ -21,9 +21,11 @@ from prima.script.operations import (
     divided,
     equal,
     found,
+    has_member,
     identical,
     less,
     member,
+    member_of,
     more,
     multiply,
     numeric,
@@ -155,7 +157,7 @@ class _Builder:
         """A number, text, word, array or object: the latter are new ones at every evaluation."""
         value = literal(self.code, node)
         if isinstance(value, list | dict):
-            return _Piece(lambda _scopes: value.copy())
+            return _Piece(lambda _scopes: fresh(value))
         return _Piece(lambda _scopes: value)
 
     def name(self, node: Node, _depth: int) -> _Piece:
@@ -210,6 +212,9 @@ class _Builder:
         second = self.build(held, depth).call
         if logical:
             return _Piece(self._logical(operator.type, first, second))
+        if operator.type == "in":
+            place = self.last
+            return _Piece(lambda scopes: has_member(first(scopes), second(scopes), *place, scopes))
         if operator.type not in OPERATIONS:
             raise Beyond
         act = OPERATIONS[operator.type]
@@ -253,7 +258,7 @@ class _Builder:
     # Members ----------------------------------------------------------------------------------
 
     def member(self, node: Node, depth: int) -> _Piece:
-        """``a.b``, ``a["b"]`` and ``a?.b``; which member it is must be written out."""
+        """``a.b``, ``a["b"]``, ``a[b]`` and ``a?.b``."""
         piece = self._chain(node, depth)
         if not piece.optional:
             return piece
@@ -267,42 +272,48 @@ class _Builder:
 
     def _chain(self, node: Node, depth: int) -> _Piece:
         """A chain of members; ``?.`` ends it where there is no value."""
-        holder, key = node.child_by_field_name("object"), self._key(node)
-        if holder is None or depth > DEEPEST:
+        holder = node.child_by_field_name("object")
+        part = node.child_by_field_name("property") or node.child_by_field_name("index")
+        if holder is None or part is None or depth > DEEPEST:
             raise Beyond
         inside = self._chain if holder.type in MEMBERS else self.build
         value = inside(holder, depth + 1)
-        index, (line, column) = index_of(key), self.last
+        look = self._look(part, depth)
         asks, cuts = node.child_by_field_name("optional_chain") is not None, value.optional
         call = value.call
-
-        def look(scopes: Scopes) -> Any:
-            held = call(scopes)
-            if type(held) is dict and key in held:
-                return held[key]
-            return member(held, key, index, line, column, scopes)
 
         def look_on(scopes: Scopes) -> Any:
             held = call(scopes)
             if held is CUT or (asks and (held is None or held is UNDEFINED)):
                 return CUT
+            return look(held, scopes)
+
+        if asks or cuts:
+            return _Piece(look_on, True)
+        return _Piece(lambda scopes: look(call(scopes), scopes))
+
+    def _look(self, part: Node, depth: int) -> Callable[[Any, Scopes], Any]:
+        """What finds the member of a value: that of a name, or that whose name is computed."""
+        if part.type not in ("number", "string", "property_identifier"):
+            name = self.build(part, depth + 1).call
+            place = self.last
+            return lambda held, scopes: member_of(held, name(scopes), *place, scopes)
+        key = self._key(part)
+        index, (line, column) = index_of(key), self.last
+
+        def look(held: Any, scopes: Scopes) -> Any:
+            if type(held) is dict and key in held:
+                return held[key]
             return member(held, key, index, line, column, scopes)
 
-        return _Piece(look_on if asks or cuts else look, asks or cuts)
+        return look
 
-    def _key(self, node: Node) -> str:
-        """The name of the member."""
-        part = node.child_by_field_name("property") or node.child_by_field_name("index")
-        if part is None:
-            raise Beyond
+    def _key(self, part: Node) -> str:
+        """The name of the member, where it is written out."""
         if part.type == "number":
             key = number_text(number(self.code, part))
-        elif part.type == "string":
-            key = string(self.code, part)
-        elif part.type == "property_identifier":
-            key = self.code.of(part)
         else:
-            raise Beyond
+            key = string(self.code, part) if part.type == "string" else self.code.of(part)
         if key in INHERITED or key in METHODS or "\\" in key or not key.isprintable():
             raise Beyond
         return key

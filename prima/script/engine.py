@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from time import thread_time
 from typing import TYPE_CHECKING, Any
 
@@ -151,8 +151,7 @@ class Engine:
     def scope(self, **values: Json) -> Scope:
         """A new, empty scope object."""
         scope = self._call(self._help["scope"], ())
-        for name, value in values.items():
-            self.set(scope, name, value)
+        self.fill(scope, values)
         return scope
 
     def named(self, name: str) -> Scope:
@@ -197,9 +196,15 @@ class Engine:
         """Give a variable of a scope a value from outside."""
         self._call(self._help["set"], (scope, name, self.into(value)))
 
-    def unset(self, scope: Scope, name: str) -> None:
-        """Make a variable of a scope undefined."""
-        self._call(self._help["unset"], (scope, name))
+    def fill(self, scope: Scope, values: Mapping[str, Json]) -> None:
+        """Give several variables of a scope values from outside."""
+        for name, value in values.items():
+            self.set(scope, name, value)
+
+    def unset(self, scope: Scope, *names: str) -> None:
+        """Make variables of a scope undefined."""
+        for name in names:
+            self._call(self._help["unset"], (scope, name))
 
     def has(self, scope: Scope, name: str) -> bool:
         """Whether a scope has a variable of that name."""
@@ -208,6 +213,11 @@ class Engine:
     def defined(self, scope: Scope, name: str) -> bool:
         """Whether a variable of a scope has a value other than undefined."""
         return bool(self._call(self._help["defined"], (scope, name)))
+
+    def first_undefined(self, scope: Scope, *names: str) -> int:
+        """The index of the first of some variables that is undefined; if none is, their number."""
+        each = enumerate(names)
+        return next((at for at, name in each if not self.defined(scope, name)), len(names))
 
     def raw(self, code: str, scopes: tuple[Scope, ...]) -> Any:
         """Evaluate an expression and give the engine's own value."""

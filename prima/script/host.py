@@ -34,8 +34,8 @@ METHODS: Mapping[str, Mapping[str, int]] = {
     "Engine": {
         "compile": GIVES_NOTHING, "lenient": GIVES_DATA, "scope": GIVES_VALUE,
         "named": GIVES_VALUE, "view": GIVES_VALUE, "event": GIVES_VALUE, "clock": GIVES_NOTHING,
-        "set": GIVES_NOTHING, "unset": GIVES_NOTHING, "has": GIVES_DATA, "defined": GIVES_DATA,
-        "raw": GIVES_VALUE, "condition": GIVES_DATA, "text": GIVES_DATA, "value": GIVES_DATA,
+        "set": GIVES_NOTHING, "fill": GIVES_NOTHING, "unset": GIVES_NOTHING, "has": GIVES_DATA,
+        "defined": GIVES_DATA, "first_undefined": GIVES_DATA, "raw": GIVES_VALUE, "condition": GIVES_DATA, "text": GIVES_DATA, "value": GIVES_DATA,
         "get": GIVES_DATA, "listed": GIVES_VALUE, "length": GIVES_DATA, "pick": GIVES_NOTHING,
         "assign": GIVES_NOTHING, "assign_declared": GIVES_NOTHING, "detach": GIVES_NOTHING,
         "hand": GIVES_NOTHING, "script": GIVES_NOTHING,

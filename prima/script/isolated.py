@@ -6,7 +6,7 @@ engine are :class:`~prima.script.worker.Handle` here.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 from prima.messages import Json
@@ -61,8 +61,8 @@ class IsolatedEngine(Remote):
     def scope(self, **values: Json) -> Scope:
         """See :meth:`Engine.scope`."""
         scope = self._call("scope")
-        for name, value in values.items():
-            self.set(scope, name, value)
+        if values:
+            self.fill(scope, values)
         return scope
 
     def named(self, name: str) -> Scope:
@@ -86,9 +86,13 @@ class IsolatedEngine(Remote):
         given = as_value(value) if isinstance(value, Handle) else as_data(value)
         self._call("set", as_value(scope), as_data(name), given)
 
-    def unset(self, scope: Scope, name: str) -> None:
+    def fill(self, scope: Scope, values: Mapping[str, Json]) -> None:
+        """See :meth:`Engine.fill`."""
+        self._call("fill", as_value(scope), as_data(values))
+
+    def unset(self, scope: Scope, *names: str) -> None:
         """See :meth:`Engine.unset`."""
-        self._call("unset", as_value(scope), as_data(name))
+        self._call("unset", as_value(scope), *map(as_data, names))
 
     def has(self, scope: Scope, name: str) -> bool:
         """See :meth:`Engine.has`."""
@@ -97,6 +101,10 @@ class IsolatedEngine(Remote):
     def defined(self, scope: Scope, name: str) -> bool:
         """See :meth:`Engine.defined`."""
         return bool(self._call("defined", as_value(scope), as_data(name)))
+
+    def first_undefined(self, scope: Scope, *names: str) -> int:
+        """See :meth:`Engine.first_undefined`."""
+        return int(self._call("first_undefined", as_value(scope), *map(as_data, names)))
 
     def raw(self, code: str, scopes: tuple[Scope, ...]) -> Any:
         """See :meth:`Engine.raw`."""

@@ -12,6 +12,8 @@ NUMBER = frozenset("0123456789.eE+-")
 ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v"}
 UNCOMMON = frozenset("ux0123456789\n\r\u2028\u2029")
 """Behind a backslash: what is not the character itself, or a white space."""
+DEEPEST = 50
+"""Arrays and objects inside each other."""
 
 
 class Beyond(Exception):
@@ -19,14 +21,21 @@ class Beyond(Exception):
 
 
 def literal(code: Code, node: Node) -> Any:
-    """The value of a literal.
+    """The value of a literal, of which every evaluation makes a copy (:func:`fresh`).
 
     Raises:
         Beyond: it needs an engine.
     """
-    if node.type == "array":
-        return _array(code, node)
-    return _object(code, node) if node.type == "object" else _plain(code, node)
+    return _item(code, node, 0)
+
+
+def fresh(value: Any) -> Any:
+    """A copy of a literal's value, with all that is in it."""
+    if isinstance(value, list):
+        return [fresh(one) for one in value]
+    if isinstance(value, dict):
+        return {name: fresh(one) for name, one in value.items()}
+    return value
 
 
 def number(code: Code, node: Node) -> float:
@@ -70,8 +79,14 @@ def _plain(code: Code, node: Node) -> Any:
     raise Beyond
 
 
-def _item(code: Code, node: Node) -> Any:
-    """A value in an array or object, which is not computed."""
+def _item(code: Code, node: Node, depth: int) -> Any:
+    """A value in so many arrays and objects, which is not computed."""
+    if depth > DEEPEST:
+        raise Beyond
+    if node.type == "array":
+        return _array(code, node, depth)
+    if node.type == "object":
+        return _object(code, node, depth)
     if node.type == "unary_expression" and node.children[0].type == "-":
         operand = node.children[1]
         if operand.type == "number":
@@ -79,14 +94,14 @@ def _item(code: Code, node: Node) -> Any:
     return _plain(code, node)
 
 
-def _array(code: Code, node: Node) -> list[Any]:
+def _array(code: Code, node: Node, depth: int) -> list[Any]:
     children = node.children
     if any(one.type in ("[", ",") and two.type == "," for one, two in pairwise(children)):
         raise Beyond  # an element is left out
-    return [_item(code, one) for one in node.named_children]
+    return [_item(code, one, depth + 1) for one in node.named_children]
 
 
-def _object(code: Code, node: Node) -> dict[str, Any]:
+def _object(code: Code, node: Node, depth: int) -> dict[str, Any]:
     values: dict[str, Any] = {}
     for pair in node.named_children:
         key, value = pair.child_by_field_name("key"), pair.child_by_field_name("value")
@@ -97,5 +112,5 @@ def _object(code: Code, node: Node) -> dict[str, Any]:
         name = string(code, key) if key.type == "string" else code.of(key)
         if name.isdigit() or name == "__proto__" or "\\" in name or not name.isascii():
             raise Beyond
-        values[name] = _item(code, value)
+        values[name] = _item(code, value, depth + 1)
     return values

@@ -17,6 +17,7 @@ from prima.script.ecmascript import (
     Scope,
     Scopes,
     alike,
+    index_of,
     number,
     order,
     primitive,
@@ -26,11 +27,14 @@ from prima.script.ecmascript import (
     units,
 )
 from prima.script.evaluation import SCOPES, ScriptError
+from prima.script.globals import INHERITED, METHODS
 
 Operation = Callable[[Any, Any, Scopes], Any]
 
 LONGEST = 100_000
 """Characters that a text may have; nothing longer could leave the scopes."""
+LONGEST_KEY = 63
+"""Characters that the engine's messages give of a member's name."""
 SHORT = 200
 """Characters up to which work with a text is not counted."""
 HIGH, LOW = frozenset(map(chr, range(0xD800, 0xDC00))), frozenset(map(chr, range(0xDC00, 0xE000)))
@@ -93,6 +97,57 @@ def member(value: Any, key: str, index: int, line: int, column: int, scopes: Sco
     if key == "length":
         return float(len(value))
     return value[index] if 0 <= index < len(value) else UNDEFINED
+
+
+def member_of(value: Any, name: Any, line: int, column: int, scopes: Scopes) -> Any:
+    """A member of a value, whose name is a value itself.
+
+    Raises:
+        ScriptError: there is no value, or the name means what all such values have: here there
+            are no functions that it could give.
+    """
+    if value is None or value is UNDEFINED:
+        key = "{}" if isinstance(name, list | dict) else text(name)[:LONGEST_KEY]
+        message = f"TypeError: cannot read property '{key}' of {text(value)}"
+        raise ScriptError(message, [(line, column)])
+    key = _key(name, scopes)
+    if type(value) is dict and key in value:
+        return value[key]
+    if _is_built_in(key, value):
+        raise _built_in(key, line, column)
+    return member(value, key, index_of(key), line, column, scopes)
+
+
+def has_member(name: Any, value: Any, line: int, column: int, scopes: Scopes) -> bool:
+    """``in``: whether a value has a member of a name.
+
+    Raises:
+        ScriptError: the value is neither an array nor an object, or as :func:`member_of`.
+    """
+    if not isinstance(value, list | dict):
+        raise ScriptError("TypeError: invalid 'in' operand", [(line, column)])
+    key = _key(name, scopes)
+    if isinstance(value, dict) and (key in value or key == getattr(value, "name", None)):
+        return True
+    if _is_built_in(key, value):
+        raise _built_in(key, line, column)
+    if isinstance(value, dict):
+        return False
+    return key == "length" or 0 <= index_of(key) < len(value)
+
+
+def _key(name: Any, scopes: Scopes) -> str:
+    work(scopes, name)
+    return text(primitive(name))
+
+
+def _is_built_in(key: str, value: Any) -> bool:
+    return key in INHERITED or (key in METHODS and not isinstance(value, dict))
+
+
+def _built_in(key: str, line: int, column: int) -> ScriptError:
+    message = f"TypeError: '{key}' is the name of a function that all such values have"
+    return ScriptError(message, [(line, column)])
 
 
 def work(scopes: Scopes, value: Any) -> None:

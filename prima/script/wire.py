@@ -13,10 +13,11 @@ from typing import Any
 HEADER = struct.Struct("!I")
 LONGEST_REQUEST, LONGEST_REPLY = 64 * 1024 * 1024, 4 * 1024 * 1024
 """Bytes that a message may have."""
-CHUNK = 1024 * 1024
-"""Bytes that are read at once."""
+FIRST, CHUNK = 4096, 1024 * 1024
+"""Bytes that are read at once, of a message's beginning and of what follows."""
 
 _encode = json.JSONEncoder(separators=(",", ":"), check_circular=False).encode
+_decode = json.JSONDecoder().decode
 
 
 class TooMuch(Exception):
@@ -32,7 +33,7 @@ def send(pipe: int, message: Any, longest: int) -> None:
 
     Raises:
         TooMuch: it is too long, or nested too deep.
-        Broken: the other side has gone.
+        WireBroken: the other side has gone.
     """
     try:
         body = _encode(message).encode("ascii")
@@ -49,28 +50,32 @@ def send(pipe: int, message: Any, longest: int) -> None:
 
 
 def receive(pipe: int, longest: int) -> Any:
-    """Wait for a message.
+    """Wait for a message: each is answered before the next is sent.
 
     Raises:
-        Broken: there will be none.
+        WireBroken: there will be none.
     """
-    size: int = HEADER.unpack(_read(pipe, HEADER.size))[0]
+    found = os.read(pipe, FIRST)
+    while len(found) < HEADER.size:
+        found += _more(pipe)
+    size: int = HEADER.unpack_from(found)[0]
     if size > longest:
         raise WireBroken(f"a message of {size:,} bytes")
+    missing = HEADER.size + size - len(found)
+    pieces = [found]
+    while missing > 0:
+        pieces.append(_more(pipe))
+        missing -= len(pieces[-1])
+    if missing < 0:
+        raise WireBroken("more than a message")
     try:
-        return json.loads(_read(pipe, size))
+        return _decode(str(b"".join(pieces)[HEADER.size :], "ascii"))
     except (ValueError, RecursionError) as error:
         raise WireBroken(str(error)) from None
 
 
-def _read(pipe: int, size: int) -> bytes:
-    first = os.read(pipe, size)
-    if len(first) == size:
-        return first
-    found = bytearray(first)
-    while len(found) < size:
-        piece = os.read(pipe, min(size - len(found), CHUNK))
-        if not piece:
-            raise WireBroken("it has gone")
-        found += piece
-    return bytes(found)
+def _more(pipe: int) -> bytes:
+    piece = os.read(pipe, CHUNK)
+    if not piece:
+        raise WireBroken("it has gone")
+    return piece

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from prima.interpreter.selection import select_item, select_prompts
 from prima.markup.tree import Node
 from prima.voicexml.arranging import holds, is_unit
@@ -35,15 +37,19 @@ class ItemSelection:
     def select(self, context: Context, wanted: str) -> Node | None:
         """The item that a goto names, or its unit; else the first unfilled one whose condition holds."""
         items = self._next_to(context)
-        return select_item(items, wanted, holds, lambda one: self._is_open(context, one))
 
-    def _is_open(self, context: Context, item: Node) -> bool:
-        """Whether an item's guard is not set and its condition holds; a menu always is."""
-        if item.tag == "menu":
-            return True
-        if self.guarded(context, item):
-            return False
-        return self._owner.content.holds(item, context, self._owner.local())
+        def first_undefined(some: Sequence[Node]) -> int:
+            each = enumerate(some)
+            return next((at for at, one in each if not self._is_over(context, one)), len(some))
+
+        def is_wanted(one: Node) -> bool:
+            return self._owner.content.holds(one, context, self._owner.local())
+
+        return select_item(items, wanted, holds, first_undefined, is_wanted)
+
+    def _is_over(self, context: Context, item: Node) -> bool:
+        """Whether an item's guard is set; a menu has none."""
+        return item.tag != "menu" and self.guarded(context, item)
 
     def _next_to(self, context: Context) -> list[Node]:
         """The items that may be visited next: of the unit, or of the dialog with its units."""

@@ -99,7 +99,7 @@ INSIDE = {
         {"choices", "ecmascript", "known", "literals", "walk"},
         {"names", "operations"},
         {"hoisting", "syntax"},
-        {"compile", "tagengine", "wrapping"},
+        {"compile", "data", "tagengine", "wrapping"},
         {"engine"},
         {"host"},
         {"worker"},
