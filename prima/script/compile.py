@@ -1,7 +1,7 @@
-"""Expressions that need no engine, as functions of Python: names, members, literals and operators.
+"""Expressions that need no engine, as functions of Python: names, members, literals, operators.
 
-Most expressions of documents are of this kind. Whatever could mean more (calls, functions,
-assignments, members that prototypes have) is left to the engine.
+Most expressions of documents are of this kind. Whatever could mean more (functions, assignments,
+members that prototypes have, calls but of ``Number``, ``String`` and ``Boolean``) is left to the engine.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from prima.script.ecmascript import UNDEFINED, Scopes, index_of, kind_of, number_text, truth
+from prima.script.evaluation import ScriptError
 from prima.script.globals import BUILT_IN, INHERITED, METHODS, RESERVED
 from prima.script.literals import WORDS, Beyond, fresh, literal, number, string
 from prima.script.operations import (
@@ -32,6 +33,7 @@ from prima.script.operations import (
     remaining,
     sought,
     subtract,
+    textual,
 )
 from prima.script.parse import Code, Node, inner, parse_bracketed
 
@@ -255,6 +257,25 @@ class _Builder:
             raise Beyond
         return _Piece(made[operator])
 
+    def conversion(self, node: Node, depth: int) -> _Piece:
+        """``Number(a)``, ``String(a)`` and ``Boolean(a)``."""
+        called, given = (node.child_by_field_name(name) for name in ("function", "arguments"))
+        if called is None or given is None or len(node.children) != 2:
+            raise Beyond
+        name, values = self.code.of(called), given.named_children
+        if name not in CONVERSIONS or len(values) != 1:
+            raise Beyond
+        convert, call = CONVERSIONS[name], self.build(values[0], depth).call
+        place = self.last
+
+        def converted(scopes: Scopes) -> Any:
+            value = call(scopes)
+            if found(name, scopes) is not UNDEFINED:
+                raise ScriptError("TypeError: not a function", [place])  # a variable hides it
+            return convert(value, scopes)
+
+        return _Piece(converted)
+
     # Members ----------------------------------------------------------------------------------
 
     def member(self, node: Node, depth: int) -> _Piece:
@@ -319,6 +340,12 @@ class _Builder:
         return key
 
 
+CONVERSIONS: dict[str, Callable[[Any, Scopes], Any]] = {
+    "Number": numeric,
+    "String": textual,
+    "Boolean": lambda value, _scopes: truth(value),
+}
+"""Functions of the engine that are the same here."""
 BEYOND = RESERVED | INHERITED | BUILT_IN
 BRACKETS = "parenthesized_expression"
 MEMBERS = ("member_expression", "subscript_expression")
@@ -330,6 +357,7 @@ MAKERS: dict[str, Callable[[_Builder, Node, int], _Piece]] = {
     "ternary_expression": _Builder.conditional,
     "binary_expression": _Builder.binary,
     "unary_expression": _Builder.unary,
+    "call_expression": _Builder.conversion,
     "member_expression": _Builder.member,
     "subscript_expression": _Builder.member,
 }

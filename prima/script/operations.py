@@ -186,6 +186,12 @@ def numeric(value: Any, scopes: Scopes) -> float:
     return number(value)
 
 
+def textual(value: Any, scopes: Scopes) -> str:
+    """A value as text, with the work counted."""
+    work(scopes, value)
+    return text(value)
+
+
 def add(first: Any, second: Any, scopes: Scopes) -> Any:
     """``+``, which joins texts as well."""
     if type(first) is float and type(second) is float:

@@ -249,7 +249,7 @@ class Body:
         reports: list[Report] = []
         # What goes somewhere sets the wheels first; a dance adds to it (X5).
         efforts = list(self.efforts.values())
-        if self.profile.motions:
+        if len(efforts) > 1 and self.profile.motions:
             efforts.sort(key=lambda one: one.begin.kind in self.profile.motions)
         for effort in efforts:
             reports += self._get_on(now, effort)

@@ -165,7 +165,7 @@ class Locomotion:
 
     def _round_person(self, heading: float, goal: Point) -> tuple[float, float]:
         """The direction and speed that pass a person who stands in the way, if one does."""
-        for person in self.world.in_the_way():
+        for person in self.world.people_within(IN_THE_WAY):
             found = self._round(person, heading, goal)
             if found is not None:
                 return found
@@ -175,7 +175,7 @@ class Locomotion:
         """The direction and speed that pass a person, or None if they do not stand in the way."""
         world, profile = self.world, self.profile
         gap = distance(world.position, person)
-        if gap > IN_THE_WAY or gap > distance(world.position, goal):
+        if gap > distance(world.position, goal):
             return None
         toward = bearing(world.position, person)
         aside = difference(heading, toward)

@@ -131,10 +131,12 @@ class World:
         if name == self._attended and len(self.people) > 1:
             self._attended = ""
 
-    def in_the_way(self) -> list[Point]:
-        """Where people are, those nearest to the robot first."""
-        there = [one.at for one in self.people.values() if one.at is not None]
-        return sorted(there, key=lambda at: distance(self.position, at))
+    def people_within(self, reach: float) -> list[Point]:
+        """Where people are as near as that (m), those nearest to the robot first."""
+        here = self.position
+        there = (one.at for one in self.people.values() if one.at is not None)
+        near = [(gap, at) for at in there if (gap := distance(here, at)) <= reach]
+        return [at for _, at in sorted(near, key=lambda one: one[0])]
 
     # Seeing --------------------------------------------------------------------
 

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from prima import api
-from prima.interpreter import states
 from prima.interpreter.pyengine import MOST_HELD, PythonEngine, is_python
 from prima.interpreter.reader import read_document
 from prima.script import compile as compiling
@@ -21,7 +18,6 @@ from prima.script.engine import Engine
 from prima.script.evaluation import SCOPES, ScriptError
 from prima.script.globals import BUILT_IN, INHERITED, METHODS, STRANGE, VARIABLES
 from prima.script.isolated import Engines
-from tests import ROOT
 
 ENGINE = Engine()
 VALUES: dict[str, Any] = {
@@ -137,6 +133,7 @@ def codes() -> st.SearchStrategy[str]:
                 st.sampled_from(OPERATORS),
                 operand,
             ),
+            st.builds("{}({})".format, st.sampled_from(["Number", "String", "Boolean"]), inner),
             st.builds("{}\n {} {}".format, operand, st.sampled_from(OPERATORS), operand),
         )
 
@@ -162,6 +159,8 @@ def test_both_evaluators_agree(code: str) -> None:
         "list[n]", "list [ n - 2 ] [ 0 ]", "nil[n + n]", "(nil)[t]", "o.q[ (t) ]", "u[\nt\n][n]", "o[n][t]", "nil[list]", "nil[o]", "missing[n]", "list[missing]", "o.q?.[missing]", "list[-0]",
         "t[1 - 1]", "smile[1 + 1]", "o['1' + '0']", "n[t]", "yes[t]", "[[1]][0][0]", "{a: [1]}['a' + ''][0]", "o['le' + 'ngth']", "dialog['dia' + 'log'] == dialog", "dialog[t]", "document[missing]",
         "'t' in o", "n in list", "3 in list", "4 in list", "'length' in list", "u in o", "2 in o", "'n' in n", "nil in nil", "t  in   t", "'x' in missing", "missing in o", "'n' in dialog", "'dialog' in dialog",
+        "Number(digits)", "Number(t).x.y", "String ( n ).x.y", "Boolean(n).x.y", "Number(o)", "String(o)", "Number(list)", "Number(missing)", "String(u)", "String(nil)", "Boolean(empty)", "typeof Number(n)",
+        "nil[Number(n)]", "Number(n) in n", "-Number(digits)", "Number(\nn).x.y", "String(1e21)", "String(document)", "Number(n) + String(n)",
         "'-5' * 1", "'.5' * 1", "'5.' * 1", "'.' * 1", "'1_0' * 1", "'１' * 1", "'\u3000 7\ufeff' * 1", "'0b11' * 1", "1e5", "12345678.125", "1e-6", "1.5e-7", "-1e21", "1e300",
     ],
 )  # fmt: skip
@@ -172,6 +171,8 @@ def test_an_expression_means_the_same(code: str) -> None:
 @pytest.mark.parametrize(
     "code",
     [
+        *("Number()", "Number(n, 1)", "Number(...list)", "Number", "new Number(n)", "o.Number(1)"),
+        *("Number?.(n)", "(Number)(n)", "Number(n)(n)", "Number(n = 1)", "Number`1`", "Symbol(n)"),
         *("f()", "n = 1", "n += 1", "n++", "--n", "a, b", "x => x", "`${n}`", "/a/", "n & 1", "n | 1"),
         *("n ** 2", "n << 1", "n >> 1", "~n", "a ?? b", "a?.()", "a?.b()", "a?.", "a?.toString", "new X", "this", "[...a]", "[-[1]]"),
         *("o['a\nb']", "nil['\xa0']", "n\u2028 + t"),
@@ -276,30 +277,6 @@ def test_values_from_outside_are_copies() -> None:
         "message": "",
         "data": {"rooms": [1, 2]},
     }
-
-
-DOCUMENTS = ROOT / "documents"
-SCENARIOS = sorted((DOCUMENTS / "scenarios").rglob("*.xml"))
-
-
-@pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda path: path.stem)
-def test_a_run_is_the_same_whoever_evaluates(
-    scenario: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    loaded = api.load_scenario(scenario)
-    plain = api.rehearse(loaded).dumps()
-    monkeypatch.setattr(states, "evaluator_of", lambda _document, _shared: Engine())
-    assert api.rehearse(loaded).dumps() == plain
-
-
-def test_simple_documents_are_python() -> None:
-    kinds = {}
-    for path in sorted((DOCUMENTS / "fa").glob("*.xml")):
-        kinds[path.stem] = is_python(read_document(path.name, path.read_bytes())[0])
-    assert kinds["follow"]
-    assert kinds["dance"], "its script declares data"
-    assert not kinds["video-timer"], "its script declares functions"
-    assert not kinds["scheduler"], "it calls Number"
 
 
 @pytest.mark.parametrize(

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from prima.interpreter.pyengine import PythonEngine
+from prima import api
+from prima.interpreter import states
+from prima.interpreter.pyengine import PythonEngine, is_python
+from prima.interpreter.reader import read_document
 from prima.script.data import MOST_CODE, declared
 from prima.script.engine import Engine
 from prima.script.evaluation import ScriptError
 from prima.script.globals import INHERITED, METHODS
+from tests import ROOT
 
 ENGINE = Engine()
+DOCUMENTS = ROOT / "documents"
+SCENARIOS = sorted((DOCUMENTS / "scenarios").rglob("*.xml"))
 
 
 def scopes_of(engine: Any) -> tuple[Any, ...]:
@@ -101,3 +108,29 @@ def test_long_names_are_work() -> None:
     with pytest.raises(ScriptError, match="too long"):
         for _ in range(10_000):
             engine.value("table[name]", scopes)
+
+
+@pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda path: path.stem)
+def test_a_run_is_the_same_whoever_evaluates(
+    scenario: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loaded = api.load_scenario(scenario)
+    plain = api.rehearse(loaded).dumps()
+    monkeypatch.setattr(states, "evaluator_of", lambda _document, _shared: Engine())
+    assert api.rehearse(loaded).dumps() == plain
+
+
+@pytest.mark.parametrize(
+    ("path", "simple"),
+    [
+        ("fa/follow.xml", True),
+        ("fa/dance.xml", True),
+        ("fa/scheduler.xml", True),
+        ("ea/museum.xml", True),
+        ("fa/video-timer.xml", False),
+        ("ea/library.xml", False),
+    ],
+)
+def test_documents_without_functions_of_their_own_need_no_engine(path: str, simple: bool) -> None:
+    document, _ = read_document(path, (DOCUMENTS / path).read_bytes())
+    assert is_python(document) == simple
