@@ -133,10 +133,12 @@ class World:
 
     def people_within(self, reach: float) -> list[Point]:
         """Where people are as near as that (m), those nearest to the robot first."""
-        here = self.position
-        there = (one.at for one in self.people.values() if one.at is not None)
-        near = [(gap, at) for at in there if (gap := distance(here, at)) <= reach]
-        return [at for _, at in sorted(near, key=lambda one: one[0])]
+        near: list[tuple[float, Point]] = []
+        for one in self.people.values():
+            if one.at is not None and (gap := distance(self.position, one.at)) <= reach:
+                near.append((gap, one.at))
+        near.sort(key=lambda one: one[0])
+        return [at for _, at in near]
 
     # Seeing --------------------------------------------------------------------
 
