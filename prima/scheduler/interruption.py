@@ -16,13 +16,13 @@ def x2(mediation: Mediation, reaction: Behavior, ways: list[Behavior], held: Hel
     Args:
         mediation: what is shared.
         reaction: a waiting AB.
-        ways: the running ABs on its devices.
+        ways: the running ABs on its devices, one at least.
         held: devices that others hold back from it (S3).
 
     Returns:
         Whether all its devices are free now.
     """
-    if reaction.reaction is None or any(device in held for device in reaction.devices):
+    if any(device in held for device in reaction.devices):
         return False
     if not all(yields(ab, reaction) for ab in ways):
         return False

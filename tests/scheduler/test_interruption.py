@@ -71,6 +71,18 @@ def test_x2_nothing_is_interrupted_where_that_would_not_be_enough() -> None:
     assert stage.phases("interrupt") == []
 
 
+def test_x2_nothing_is_interrupted_on_a_device_that_is_held_back_for_another() -> None:
+    stage = Stage("prima+x2")
+    story = restartable(say("A story."))
+    stage.request("ea", steps=[Step(story), Step(command("turn", angle=90))])
+    stage.select()
+    stage.request("fa", command("turn-and-speak", "Here!", angle=10), cause=EVENT + 1)
+    stage.request("fa", ask("Yes?"), cause=EVENT)
+    assert stage.select() == []
+    assert (stage.holds("fa#1"), stage.holds("fa#2")) == (["S1"], ["S1"])
+    assert stage.phases("interrupt") == []
+
+
 def test_x2_the_application_is_told_how_much_was_heard() -> None:
     stage = Stage("prima+x2")
     stage.request("ea", restartable(say("A long story.")))

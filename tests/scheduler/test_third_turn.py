@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from copy import deepcopy
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from prima.invariants import check
+from prima.language.commands import TABLE_4_2, CommandType
 from prima.messages import Command
 from tests.helpers.stage import TRACK, Stage, ask, command, move, say
 
@@ -21,12 +24,14 @@ def answer(stage: Stage, behavior: str, then: Any = None, outcome: str = "filled
     stage.settle(then)
 
 
-def touched_while_asked(policy: str = "prima+x7", wants: Command | None = None) -> Stage:
+def touched_while_asked(
+    policy: str = "prima+x7", table: Mapping[str, CommandType] = TABLE_4_2
+) -> Stage:
     """The EA asks, and the user strokes the robot: the FA wants to say something to that."""
-    stage = Stage(policy)
+    stage = Stage(policy, table=table)
     stage.request("ea", ask())
     stage.select()
-    stage.at(1000).request("fa", wants or say("That feels good."), cause=TOUCH)
+    stage.at(1000).request("fa", say("That feels good."), cause=TOUCH)
     assert stage.select() == []
     return stage
 
@@ -96,6 +101,31 @@ def test_x7_what_may_last_is_not_waited_for(then: tuple[Command, ...]) -> None:
     stage = touched_while_asked()
     answer(stage.at(2000), "ea#1", lambda: stage.request("ea", *deepcopy(then)))
     assert "fa#1" in stage.select()
+
+
+def test_x7_what_leaves_the_user_is_not_waited_for_even_if_it_makes_no_loops() -> None:
+    go = replace(TABLE_4_2["topological-move"], feedback=False)
+    stage = touched_while_asked(table={**TABLE_4_2, "topological-move": go})
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", move(), say("Here we are.")))
+    assert "fa#1" in stage.select()
+
+
+def test_x7_a_unit_of_questions_is_not_waited_for() -> None:
+    stage = touched_while_asked()
+    answer(stage.at(2000), "ea#1", lambda: stage.open("ea", 5, "speaker"))
+    assert stage.select() == ["fa#1"]
+
+
+def test_x7_inside_a_unit_the_unit_keeps_the_speaker() -> None:
+    stage = Stage("prima+x7")
+    stage.open("ea", 5, "speaker", "speech-recognition")
+    stage.request("ea", ask(), unit=5)
+    assert stage.select() == ["ea#1", "ea#2"]
+    stage.at(1000).request("fa", say("That feels good."), cause=TOUCH)
+    assert stage.select() == []
+    answer(stage.at(2000), "ea#2", lambda: stage.request("ea", say("Thank you."), unit=5))
+    assert stage.select() == ["ea#3"]
+    assert stage.holds("fa#1") == ["S1"]
 
 
 def test_x7_who_says_nothing_to_an_answer_keeps_nobody() -> None:
