@@ -15,24 +15,13 @@ from prima.script.evaluation import ScriptError
 from prima.script.globals import BUILT_IN, INHERITED, METHODS, RESERVED
 from prima.script.literals import WORDS, Beyond, fresh, literal, number, string
 from prima.script.operations import (
-    Operation,
-    add,
-    at_least,
-    at_most,
-    divided,
-    equal,
+    OPERATIONS,
     found,
     has_member,
-    identical,
-    less,
     member,
     member_of,
-    more,
-    multiply,
     numeric,
-    remaining,
     sought,
-    subtract,
     textual,
 )
 from prima.script.parse import Code, Node, inner, parse_bracketed
@@ -49,12 +38,6 @@ AS_LONG = 200
 """Characters of kept code that is beyond all this which count for one piece more."""
 MOST_KEPT = 100_000
 """Pieces of code of all expressions that are kept compiled; each is some hundred bytes then."""
-OPERATIONS: dict[str, Operation] = {
-    "==": equal, "===": identical, "<": less, ">": more, "<=": at_most, ">=": at_least,
-    "+": add, "-": subtract, "*": multiply, "/": divided, "%": remaining,
-    "!=": lambda first, second, scopes: not equal(first, second, scopes),
-    "!==": lambda first, second, scopes: not identical(first, second, scopes),
-}  # fmt: skip
 
 
 @dataclass(slots=True)

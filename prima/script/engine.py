@@ -31,17 +31,12 @@ from prima.script.evaluation import (
 )
 from prima.script.hoisting import Hoisted, hoisted
 from prima.script.names import script_names
-from prima.script.surrogates import well_formed, well_formed_json
+from prima.script.surrogates import as_json, well_formed, well_formed_json
 from prima.script.syntax import FAILURES, TIME_LIMIT, Syntax, column_in, script_error
 from prima.script.wrapping import Helpers, assignment, guarded, head, wrapped
 
 if TYPE_CHECKING:
     from prima.messages import Json
-
-
-def _json(value: Json) -> str:
-    """Plain data as JSON that the engine can read: texts in it are UTF-8."""
-    return well_formed(json.dumps(value, ensure_ascii=False, allow_nan=False))
 
 
 class Engine:
@@ -63,7 +58,6 @@ class Engine:
         """Seconds of evaluations since the owner last set it to nought."""
         # Functions by their code, for each use that is made of it.
         self._compiled: dict[str, Any] = {}
-        self._lenient: dict[str, str] = {}
         self._conditions: dict[tuple[str, int], Any] = {}
         self._giving: dict[str, Any] = {}
         self._assigning: dict[tuple[str, str, int], Any] = {}
@@ -124,16 +118,8 @@ class Engine:
         return function
 
     def lenient(self, code: str) -> str:
-        """An expression of other platforms as one of ECMAScript: ``x = 1; x + 1``, or nothing.
-
-        Several statements give the value of the last, no statement gives undefined.
-        """
-        kept = self._lenient.get(code)
-        if kept is None:
-            several = self._syntax.has_statements(code)
-            # Its lines are counted as those of any (``statement_place``).
-            kept = self._lenient[code] = f"eval({json.dumps(chr(10) + code)})" if several else code
-        return kept
+        """See :meth:`Syntax.lenient`."""
+        return self._syntax.lenient(code)
 
     def _compile(self, body: str, scopes: tuple[str, ...] | None = None) -> Any:
         """A function of scopes: of all of them, if nothing is said."""
@@ -182,9 +168,9 @@ class Engine:
         """
         if isinstance(value, dict | list | tuple):
             try:
-                return self._call(self._context.parse_json, (_json(value),))
+                return self._call(self._context.parse_json, (as_json(value),))
             except ValueError:  # JSON has no such numbers
-                return self._call(self._help["parse"], (_json(marked(value)),))
+                return self._call(self._help["parse"], (as_json(marked(value)),))
             except RecursionError:
                 raise ScriptError("it is nested too deep") from None
         if isinstance(value, str):

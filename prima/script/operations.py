@@ -258,3 +258,11 @@ subtract, multiply = _arithmetic(operator.sub), _arithmetic(operator.mul)
 divided, remaining = _arithmetic(divide), _arithmetic(remainder)
 less, more = _comparison(operator.lt), _comparison(operator.gt)
 at_most, at_least = _comparison(operator.le), _comparison(operator.ge)
+
+OPERATIONS: dict[str, Operation] = {
+    "==": equal, "===": identical, "<": less, ">": more, "<=": at_most, ">=": at_least,
+    "+": add, "-": subtract, "*": multiply, "/": divided, "%": remaining,
+    "!=": lambda first, second, scopes: not equal(first, second, scopes),
+    "!==": lambda first, second, scopes: not identical(first, second, scopes),
+}  # fmt: skip
+"""Operators of two values."""

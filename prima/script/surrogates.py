@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import re
+from typing import Any
 
 SURROGATE = re.compile("[\ud800-\udfff]")
 """Half of a letter, as ECMAScript has them in texts."""
@@ -13,6 +15,15 @@ def well_formed(text: str) -> str:
     if text.isascii() or SURROGATE.search(text) is None:
         return text
     return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
+
+
+def as_json(value: Any) -> str:
+    """Plain data as JSON, all texts of which are well-formed.
+
+    Raises:
+        ValueError: JSON has no such numbers.
+    """
+    return well_formed(json.dumps(value, ensure_ascii=False, allow_nan=False))
 
 
 HALF_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\ud[89a-f][0-9a-f]{2}")

@@ -62,6 +62,7 @@ class Syntax:
         self._declare = context.eval(DECLARE)
         self._sound: set[str] = set()
         """Expressions that have compiled."""
+        self._lenient: dict[str, str] = {}
 
     def expression(self, code: str) -> None:
         """Compile an expression by itself, so that no bracket in it closes one of ours.
@@ -88,6 +89,18 @@ class Syntax:
             raise ScriptError(f"it declares {len(declared):,} names, more than {MOST_NAMES:,}")
         self._compile(code, f"return [function () {{\n{code}\n}}]")
         self._compile(code, f"return (function () {{\n{code}\n}})")
+
+    def lenient(self, code: str) -> str:
+        """An expression of other platforms as one of ECMAScript: ``x = 1; x + 1``, or nothing.
+
+        Several statements give the value of the last, no statement gives undefined.
+        """
+        kept = self._lenient.get(code)
+        if kept is None:
+            several = self.has_statements(code)
+            # Its lines are counted as those of any (``statement_place``).
+            kept = self._lenient[code] = f"eval({json.dumps(chr(10) + code)})" if several else code
+        return kept
 
     def faults(self, codes: list[tuple[str, bool]]) -> list[tuple[str, int, int] | None]:
         """What is wrong with each of several codes, with line and column; None with what is right.

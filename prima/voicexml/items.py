@@ -119,15 +119,19 @@ class Items:
         assert context.form is not None
         for node in parts_of(context.form):
             if node in filled:
-                context.item = node
-                for action in node.all("filled"):
-                    if not self.owner.selection.guarded(context, node):
-                        break  # one before has cleared it, and it is filled no more
-                    yield from self.owner.content.run(action, context, self.owner.local())
+                yield from self._run_own(context, node)
             elif node.tag == "filled":
                 context.item = None
                 if self._satisfied(context, node, filled):
                     yield from self.owner.content.run(node, context, self.owner.local())
+
+    def _run_own(self, context: Context, item: Node) -> Flow:
+        """Run the filled elements in an item."""
+        context.item = item
+        for action in item.all("filled"):
+            if not self.owner.selection.guarded(context, item):
+                break  # one before has cleared it, and it is filled no more
+            yield from self.owner.content.run(action, context, self.owner.local())
 
     def _satisfied(self, context: Context, node: Node, filled: list[Node]) -> bool:
         """Whether a form's filled is to run: for any, or all, of its items (2.4)."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from prima.interpreter.places import source
 from prima.interpreter.transfers import Thrown
 from prima.language.values import milliseconds
@@ -46,21 +48,24 @@ class Questions:
             return own or setting(context, name)
 
         timeout, bargein = milliseconds(wanted("timeout"), 5000), wanted("bargein") != "false"
-        modes = self.owner.inputs.modes(context)
         cues = self.owner.content.question_cues(asked, self.owner.queue)
-        if bargein and wanted("bargeintype") == "hotword":
-            cues = (Cue(0, "hotword"), *cues)
-        elif len(set(modes)) == 1 and item.tag != "record":
-            cues = (Cue(0, "hotword", modes[0]), *cues)  # what comes otherwise breaks off nothing
-        longest = milliseconds(setting(context, "maxspeechtimeout"), 0)
-        spoken = item.tag != "record" and "voice" in modes
-        if longest and spoken:  # a recording has its own maxtime
-            cues = (Cue(0, "longest", longest), *cues)
+        cues = (*self._cues(context, item, bargein and wanted("bargeintype") == "hotword"), *cues)
         own = item.get("xml:lang") if item.tag != "menu" else ""
         lang = asked.lang if asked and asked.lang else own or context.page.lang
         args: dict[str, Json] = {"timeout": f"{timeout}ms", "bargein": bargein}
         text = asked.text if asked else None
         return Command("q-and-a", args, text, lang=lang, source=source(item), cues=cues)
+
+    def _cues(self, context: Context, item: Node, hotword: bool) -> Iterator[Cue]:
+        """How an answer is listened for: what breaks the question off, and how long it may be."""
+        modes = self.owner.inputs.modes(context)
+        longest = milliseconds(setting(context, "maxspeechtimeout"), 0)
+        if longest and item.tag != "record" and "voice" in modes:  # a recording has its own maxtime
+            yield Cue(0, "longest", longest)
+        if hotword:
+            yield Cue(0, "hotword")
+        elif len(set(modes)) == 1 and item.tag != "record":
+            yield Cue(0, "hotword", modes[0])  # what comes otherwise breaks off nothing
 
     def _answered(self, context: Context, item: Node, resume: Resume) -> Flow:
         """Process what has ended the wait."""
