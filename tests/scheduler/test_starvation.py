@@ -1,0 +1,156 @@
+"""Who is kept waiting for long: loops are counted and reported (E4), and time (E6), to the millisecond."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.helpers.stage import TRACK, Stage, command, say
+
+TURN = command("turn", angle=3)
+
+
+def tracked(bound: int | None = None, apps: dict[str, str] | None = None) -> Stage:
+    """The FA follows the user for ever."""
+    stage = Stage(bound=bound, apps=apps)
+    stage.request("fa", TRACK)
+    stage.select()
+    return stage
+
+
+def loops(stage: Stage, most: int = 60) -> dict[str, int]:
+    """Who starts at the end of which loop of the FA's."""
+    begun: dict[str, int] = {}
+    for _ in range(most):
+        (loop,) = (name for name in stage.running if name.startswith("fa#1."))
+        stage.at(stage.recorder.now + 500).end(loop, goal=False)
+        while (started := stage.select()) and not started[0].startswith("fa#1."):
+            begun[started[0]] = int(loop.partition(".")[2])
+            stage.end(started[0])
+    return begun
+
+
+@pytest.mark.parametrize("bound", [1, 2, 30])
+def test_e4_a_bound_counts_the_loops_that_were_begun_while_another_waited(bound: int) -> None:
+    stage = tracked(bound)
+    stage.at(1).request("ea", TURN)
+    assert loops(stage) == {"ea#1": bound + 1}, "the loop in which it came is not counted"
+    found = [(r["behavior"], r["loop"], r["by"]) for r in stage.phases("starve")]
+    assert found == ([("ea#1", 20, "fa#1.21")] if bound > 20 else [])
+
+
+def test_e4_it_is_told_once_and_of_no_ab_of_the_same_application() -> None:
+    stage = tracked()
+    stage.at(1).request("ea", TURN)
+    stage.request("fa", TURN)
+    assert loops(stage) == {}
+    assert [(r["behavior"], r["actor"]) for r in stage.phases("starve")] == [("ea#1", "mediator")]
+
+
+def test_e4_another_priority_is_not_counted() -> None:
+    stage = tracked(3)
+    stage.at(1).request("ea", command("topological-move", to="room"))
+    assert loops(stage, 30) == {}
+    assert stage.phases("starve") == []
+
+
+def test_e4_what_is_bounded_first_goes_first() -> None:
+    stage = tracked(3, {"fa": "fa", "ea": "ea", "eb": "ea"})
+    stage.at(1).request("eb", TURN)
+    stage.at(500).end("fa#1.1", goal=False)
+    stage.select()
+    stage.request("ea", TURN)
+    begun = loops(stage, 12)
+    assert [*begun] == ["eb#1", "ea#1"]
+
+
+def waiting(policy: str = "prima", patience: int = 5000, since: int = 0) -> Stage:
+    """The EA speaks on and on; the FA waits for its turn since that time (ms)."""
+    stage = Stage(policy, patience=patience)
+    stage.request("ea", say("First."))
+    if not since:
+        stage.request("fa", say("One."))
+    stage.select()
+    if since:
+        stage.at(since).request("fa", say("One."))
+        stage.select()
+    return stage
+
+
+def turns(stage: Stage, *times: int) -> list[str]:
+    """The EA ends what it says at these times, and says something else; gives who starts."""
+    begun: list[str] = []
+    for time in times:
+        running = next(name for name in stage.running if name.startswith("ea"))
+        stage.at(time).end(running, then=lambda: stage.request("ea", say("On.")))
+        begun += stage.select()
+        if not any(name.startswith("ea") for name in stage.running):
+            break
+    return begun
+
+
+@pytest.mark.parametrize("since", [1, 1000])
+def test_e6_the_turn_comes_when_the_patience_has_just_passed(since: int) -> None:
+    stage = waiting(since=since)
+    assert turns(stage, since + 4999) == ["ea#2"]
+    assert stage.mediator.deadline() == since + 5000
+    assert stage.phases("starve") == []
+    assert turns(stage, since + 5000) == ["fa#1"]
+    (told,) = stage.phases("starve")
+    assert (told["rule"], told["by"], told["data"]) == ("E6", "ea#2", {"waited": 5.0})
+
+
+def test_e6_time_counts_from_the_first_instant() -> None:
+    stage = Stage(patience=5000)
+    stage.request("fa", say("First."))
+    stage.select()
+    stage.request("ea", say("Mine."))
+    stage.select()
+    stage.at(4999).end("fa#1", then=lambda: stage.request("fa", say("On.")))
+    assert stage.select() == ["fa#2"]
+    stage.at(5000).end("fa#2", then=lambda: stage.request("fa", say("On.")))
+    assert stage.select() == ["ea#1"]
+
+
+@pytest.mark.parametrize(("policy", "patience"), [("fifo", 1000), ("prima", 0)])
+def test_e6_without_floor_or_patience_nothing_is_counted(policy: str, patience: int) -> None:
+    stage = Stage(policy, patience=patience)
+    stage.request("ea", say("First."), say("Second."))
+    stage.select()
+    stage.at(1).request("fa", say("One."))
+    stage.select()
+    stage.at(9000).end("ea#1")
+    stage.select()
+    assert stage.phases("starve") == []
+    assert stage.mediator.memory.behaviors["fa#1"].wait.kept == 0
+
+
+def test_e6_the_first_who_will_starve_is_looked_for_first() -> None:
+    stage = Stage(apps={"fa": "fa", "ea": "ea", "eb": "ea"}, patience=5000)
+    stage.request("ea", say("First."))
+    stage.select()
+    stage.at(10).request("fa", say("One."))
+    stage.select()
+    stage.at(900).request("eb", say("Two."))
+    stage.select()
+    assert stage.mediator.deadline() == 5010
+
+
+def test_e6_waiting_for_its_own_application_is_no_starving() -> None:
+    stage = waiting(since=1000)
+    stage.at(2000).end("ea#1")
+    assert stage.select() == ["fa#1"]
+    stage.request("fa", say("Two."))
+    stage.select()
+    stage.at(9000).request("ea", say("On."))
+    stage.select()
+    assert stage.phases("starve") == []
+
+
+def test_e6_in_an_emergency_time_stands_still() -> None:
+    stage = waiting(since=1000)
+    stage.at(4000).mediator.emergency(True, True, 8)
+    stage.select()
+    stage.at(8000).mediator.emergency(False, True, 9)
+    assert stage.select() == ["ea#1"]
+    assert turns(stage, 9999) == ["ea#2"]
+    assert turns(stage, 10_000) == ["fa#1"], "3 s before it, and 2 s afterwards"
