@@ -286,6 +286,7 @@ class Interpreter(States):
             if names:
                 self.actions += [*map(Raise, names), GoOn(frame.state)]
                 frame.entering = True
+                frame.caused = self.cause, self.fresh
 
     def go_on_entering(self, state: int) -> None:
         """Begin a form's content, unless a handler of the events of its entry has left it."""
@@ -295,9 +296,11 @@ class Interpreter(States):
         if frame is None or not frame.entering:
             return
         frame.entering = False
+        self.cause, self.fresh = frame.caused  # these events do not lose the reactive flag (C5)
         for fiber in frame.fibers:
             if fiber.main:
                 self.guard(self.drive, fiber, Notice("done", 0))
+        self.cause = None
 
 
 def says(step: Step) -> bool:

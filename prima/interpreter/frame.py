@@ -35,6 +35,8 @@ class Frame:
     """Whether the document's variables and scripts have still to be set up (VoiceXML 5.1.2)."""
     entering = False
     """Whether events that were raised when the state was entered are still to be handled (C6)."""
+    caused: tuple[int | str | None, tuple[int | str, int] | None] = (None, None)
+    """To what event its content reacts once they are, and for how long that is worth it (C5, X8)."""
     asked = False
     """Whether the mediator has heard of the state: of a Command, or a unit."""
 

@@ -75,6 +75,8 @@ class Checker(Starts):
             self.apps.setdefault(record["app"], len(self.apps))
             self.gone_apps.discard(record["app"])
             self.loaded.add(record["app"])
+            self.left = {one for one in self.left if one[0] != record["app"]}  # it counts anew
+            self.asked.pop(record["app"], None)
 
     def _unload(self, record: Record) -> None:
         if record["actor"] == "mediator":

@@ -63,10 +63,13 @@ class Starts(Telling):
 
     def _run(self, ab: AB) -> None:
         self.waiting.pop(ab.name, None)
+        ab.reacted = ab.cause
+        if self.third_turn(ab):  # it goes before all reactions that wait (X7)
+            ab.reacted = max(one.cause or 0 for one in (ab, *self.waiting.values()))
         self.turn = None if ab is self.turn else self.turn
         ab.phase = RUNNING
         ab.starts += 1
-        ab.started, ab.started_at, ab.reacted = self.place, self.now, ab.cause
+        ab.started, ab.started_at = self.place, self.now
         ab.loop += 1 if ab.feedback else 0
         ab.cause = ab.fresh_until = None
         ab.listening = False

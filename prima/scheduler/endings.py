@@ -161,8 +161,10 @@ def withdraw(mediation: Mediation, behaviors: list[Behavior], rule: str) -> None
 
 
 def silence(ab: Behavior) -> None:
-    """Let a running AB finish, heard by nobody."""
+    """Let a running AB finish, heard by nobody; a unit has no time to keep any more (U5)."""
     ab.silent = ab.last_loop = True
+    if ab.inside is not None:
+        ab.late = None
 
 
 def delete(mediation: Mediation, ab: Behavior, rule: str) -> None:
@@ -210,7 +212,7 @@ def close_unit(mediation: Mediation, app: Application, number: int) -> None:
     unit = app.units.pop(number, None)
     if unit is None or unit.inside is None or unit.state is GONE:
         return
-    unit.inside.open = False
+    unit.inside.open, unit.late = False, None
     for ab in list(reversed(list(unit.inside.members.values()))):
         if ab.state is RUNNING:
             silence(ab)

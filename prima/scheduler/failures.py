@@ -18,7 +18,7 @@ MS_A_LETTER: Final = 500
 
 
 def e1(mediation: Mediation, ab: Behavior, event: str, reason: str, inbound: bool = False) -> None:
-    """E1: a running AB fails; the rest of its tree goes."""
+    """E1: a running AB fails; the rest of its tree goes, unless that was given up before (O2, O3)."""
     mediation.recorder.behavior(
         "fail",
         ab,
@@ -31,11 +31,11 @@ def e1(mediation: Mediation, ab: Behavior, event: str, reason: str, inbound: boo
     note_rolling(mediation, ab)
     ab = _unit_that_fails(mediation, ab, event, reason)
     remove(mediation, ab)
-    if ab.inserted:
-        return  # what it was put in for goes on without it
+    if ab.inserted or ab.silent:
+        return  # what it was put in for, or what has come in its place, goes on without it
     tree = ab.stream.members if ab.unit is None else ab.unit.inner
     delete_rest(mediation, tree, ab.run, "E1")
-    if ab.run is not None and not (ab.silent or ab.app.gone):
+    if ab.run is not None and not ab.app.gone:
         ab.run.left = 0
         notice = Notice("failed", ab.run.number, ab.command, event=event, message=reason)
         mediation.tell(ab.app, ab.stream, notice)
@@ -110,16 +110,14 @@ def unit_timeout(mediation: Mediation, unit: Behavior) -> None:
         notice = Notice("unit-timeout", number, event="error.unit.timeout", message=message)
         mediation.tell(unit.app, unit.stream, notice)
         return
-    heard = not (unit.silent or unit.app.gone)
     silence(unit)
     for ab in list(reversed(list(unit.inner.values()))):
         if ab.state is not RUNNING:
             delete(mediation, ab, "U5")
     delete_rest(mediation, unit.stream.members, run, "U5")
-    if heard:
-        awaited = run.number if run else 0
-        notice = Notice("failed", awaited, event="error.unit.timeout", message=message)
-        mediation.tell(unit.app, unit.stream, notice)
+    awaited = run.number if run else 0
+    notice = Notice("failed", awaited, event="error.unit.timeout", message=message)
+    mediation.tell(unit.app, unit.stream, notice)
 
 
 def set_deadlines(mediation: Mediation) -> None:

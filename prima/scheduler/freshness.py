@@ -25,7 +25,7 @@ def x8(mediation: Mediation) -> bool:
     ranked = mediation.policy.ranked(waiting, mediation.memory, mediation.now)
     may_start = [ab for _, ab in able(mediation, ranked, {})]
     for ab in stale:
-        if ab in may_start:
+        if ab in may_start and ab.stale == mediation.now:
             ab.stale = mediation.now + 1  # the selection of this very instant may start it
         elif ab.name in mediation.memory.waiting:
             _give_up(mediation, ab)

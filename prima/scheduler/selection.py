@@ -12,7 +12,7 @@ from prima.scheduler.preparation import join_first, note_words, prepare
 from prima.scheduler.rules import Rank, Refusal
 from prima.scheduler.starvation import count_waits, e4, note_waits
 from prima.scheduler.streams import f1, note_turns, resume
-from prima.scheduler.thirdturn import owe
+from prima.scheduler.thirdturn import goes_before, owe
 
 COMPOSED = {"free", "faithful"}
 """The two kinds of motion that X5 composes."""
@@ -149,7 +149,7 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     composed = mediation.has("x5") and rules.x5(ab, memory)
     why = _admitted_by(mediation, ab, composed)
     reaction, ab.reaction, ab.stale = ab.reaction, None, None
-    ab.reacted = -1 if reaction is None else reaction
+    ab.reacted = goes_before(ab, reaction, memory)
     aside = rules.aside(ab, memory)
     beside = composed or aside or not rules.f3(ab, memory)
     run(mediation, ab, aside)

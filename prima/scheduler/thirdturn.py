@@ -5,7 +5,7 @@ from __future__ import annotations
 from prima.scheduler.behavior import GONE, RUNNING, Behavior, Stream
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.memory import WorkingMemory
-from prima.scheduler.rules import before
+from prima.scheduler.rules import before, third_turn
 
 
 def owe(mediation: Mediation) -> None:
@@ -28,6 +28,17 @@ def acknowledgement(stream: Stream, memory: WorkingMemory) -> Behavior | None:
     if first is None or not all(map(_soon_over, [first, *before(first, memory)])):
         return None
     return first
+
+
+def goes_before(ab: Behavior, reaction: int | None, memory: WorkingMemory) -> int:
+    """X2: the event to which an AB that starts reacts; only a reaction to a later one interrupts it.
+
+    What is said to an answer goes before all reactions that wait (X7).
+    """
+    reactions = [-1 if reaction is None else reaction]
+    if third_turn(ab, memory):
+        reactions += [one.reaction for one in memory.waiting.values() if one.reaction is not None]
+    return max(reactions)
 
 
 def _soon_over(ab: Behavior) -> bool:

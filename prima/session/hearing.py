@@ -121,13 +121,19 @@ class Hearing:
             return None
         name, when = self._lapsed
         app = self.wiring.apps.named[name]
-        if app.over or self.wiring.recorder.now - value.lasted - when > LATE_MS:
+        if self.wiring.recorder.now - value.lasted - when > LATE_MS:
             self._lapsed = None
             return None
         return None if question is not None and question.app.name == name else app
 
     def _answer_late(self, app: AnyApp, value: Heard, said: list[Hypothesis]) -> None:
-        """X10: to its next question, else to its links, else as its event ``late``."""
+        """X10: to its next question, else to its links, else as its event ``late``.
+
+        Where it has ended meanwhile, nobody hears them.
+        """
+        if app.over:
+            self.unheard = value.text
+            return
         question, answer, link = self.wiring.mediator.coming_question(app.name), None, None
         if question is not None and question.run is not None:
             with self.wiring.apps.contained(app):

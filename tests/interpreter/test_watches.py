@@ -25,6 +25,28 @@ def test_a_watch_is_raised_when_its_condition_turns_true_and_armed_again() -> No
     assert bench.phases("request")[0]["reactive"] is True
 
 
+@pytest.mark.parametrize("handler", ["", '<on event="near"><log>near</log></on>'])
+@pytest.mark.parametrize("way", ["goto", "subdialog"])
+def test_events_of_watches_on_entry_do_not_lose_the_reactive_flag(handler: str, way: str) -> None:
+    """C5: goto, throw and subdialogs in between do not lose it, waiting does."""
+    watching = '<watch name="near" when="sensor.human.distance &lt; 1"/>'
+    there = f'<form id="b">{watching}{handler}<block><speak>Ouch.</speak></block></form>'
+    call = '<form id="c"><subdialog name="x" src="#b"/></form>'
+    goal = "b" if way == "goto" else "c"
+    bench = Bench(
+        f"""<form id="a"><on event="touch" fresh-for="2s"><goto next="#{goal}"/></on></form>
+        {there}{call}""",
+        policy="prima+x8",
+    )
+    bench.step(Sensed({"human.distance": 0.5}))
+    bench.event("touch")
+    [touched] = [r for r in bench.phases("event") if r["event"] == "touch"]
+    [asked] = bench.phases("request")
+    assert (asked["reactive"], asked["cause"]) == (True, touched["serial"])
+    assert asked["fresh"] == 2.0
+    assert any(r["event"] == "near" for r in bench.phases("event"))
+
+
 def test_a_watch_that_fails_is_an_event_and_others_go_on() -> None:
     bench = Bench(
         f"""{CAUGHT}<form id="a">

@@ -280,10 +280,15 @@ def test_x2_a_question_that_is_asked_again_is_said_to_its_end() -> None:
 
 def test_x4_a_third_turn_that_was_broken_off_is_begun_already() -> None:
     """X7 lets it go before the turn to the user; X2 breaks it off, and it goes on without."""
-    question = Ask(("q-and-a",), ((),))
-    word = Ask(("face-human-and-speak",), ((),), connect=True, restartable=True)
-    script = Script(((), ()), ((0, ((question, word), ())), (1, ((question,), ()))), (), World())
-    run = drive(script, ALL)
-    assert check(run.records, ALL) == []
-    assert any(one["phase"] == "interrupt" for one in run.records)
-    assert not any(one.get("inserted") for one in run.records)
+    stage = Stage("prima+x2+x4+x7")
+    stage.request("ea", ask())
+    stage.select()
+    stage.at(1000).mediator.ended("ea#1", True, {"outcome": "filled"}, inbound=False)
+    word = restartable(say("Thank you."))
+    stage.settle(lambda: stage.request("ea", word, connect=True))
+    assert stage.select() == ["ea#2"]
+    stage.at(1100).request("fa", say("Ouch."), cause=EVENT)
+    assert stage.select() == ["fa#1"] and len(stage.phases("interrupt")) == 1
+    stage.at(2000).end("fa#1")
+    assert stage.select() == ["ea#2"]
+    assert inserted(stage) == []

@@ -41,6 +41,35 @@ def test_e1_a_failing_device_ends_the_ab_and_the_rest_of_its_tree() -> None:
     assert stage.select() == ["ea#1"]
 
 
+def test_e1_what_was_left_fails_alone() -> None:
+    """Nobody hears of it (O3), and what has come in its place goes on."""
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.at(5).leave("ea")
+    stage.request("ea", say("On."), state=2)
+    stage.select()
+    stage.at(10).mediator.failed("ea#1", "speaker", "broken")
+    stage.settle()
+    assert stage.told("ea") == []
+    assert stage.select() == ["ea#3"]
+    assert check(stage.records) == []
+
+
+def test_e1_what_was_cancelled_fails_alone() -> None:
+    """A Command with order="now" has taken its place (O2)."""
+    stage = Stage()
+    stage.request("ea", steps=[Step(say("Long.")), Step(command("move-head", pan=1))])
+    stage.select()
+    stage.at(5).request("ea", replace(command("move-head", pan=9), now=True), say("On."))
+    assert stage.select() == ["ea#3"]
+    stage.at(10).mediator.failed("ea#1", "speaker", "broken")
+    stage.at(20).end("ea#3")
+    assert stage.select() == ["ea#4"]
+    assert "error.device.speaker" not in stage.told("ea")
+    assert check(stage.records) == []
+
+
 def test_e1_a_device_that_hangs_past_its_limit_has_failed() -> None:
     stage = Stage()
     stage.request("ea", say())

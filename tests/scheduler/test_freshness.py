@@ -53,6 +53,15 @@ def test_x8_what_ends_in_the_last_instant_lets_it_start() -> None:
     assert check(stage.records, POLICY) == []
 
 
+def test_x8_what_became_stale_in_an_emergency_is_given_up() -> None:
+    stage = busy(say("Oh!"))
+    stage.at(2000).mediator.emergency(True, True, 8)
+    stage.select()
+    stage.at(9000).mediator.emergency(False, True, 9)
+    assert late(stage, 9000) == ["ea#1"]
+    assert stage.told("fa") == ["expired.speak"]
+
+
 def test_x8_is_off_unless_it_is_asked_for() -> None:
     stage = busy(say("Oh!"), policy="prima")
     late(stage)

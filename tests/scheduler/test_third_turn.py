@@ -12,7 +12,7 @@ import pytest
 from prima.invariants import check
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.messages import Command
-from tests.helpers.stage import TRACK, Stage, ask, command, move, say
+from tests.helpers.stage import TRACK, Stage, ask, command, move, restartable, say
 
 TOUCH = 7
 HEAD = command("move-head", pan=30)
@@ -101,6 +101,18 @@ def test_x7_what_may_last_is_not_waited_for(then: tuple[Command, ...]) -> None:
     stage = touched_while_asked()
     answer(stage.at(2000), "ea#1", lambda: stage.request("ea", *deepcopy(then)))
     assert "fa#1" in stage.select()
+
+
+def test_x7_what_waits_does_not_break_it_off_but_a_later_event_does() -> None:
+    """X2: the reaction was to go behind it, and not to interrupt it at its start."""
+    stage = touched_while_asked("prima+x2+x7")
+    word = restartable(say("Thank you."))
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", word))
+    assert stage.select() == ["ea#2"]
+    stage.at(2100).request("fa", say("Ouch."), cause=TOUCH + 1)
+    assert stage.select() == ["fa#2"]
+    assert [(r["behavior"], r["by"]) for r in stage.phases("interrupt")] == [("ea#2", "fa#2")]
+    assert check(stage.records, "prima+x2+x7") == []
 
 
 def test_x7_what_leaves_the_user_is_not_waited_for_even_if_it_makes_no_loops() -> None:

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
 from prima.invariants import check
 from prima.language.commands import TABLE_4_2
 from prima.messages import (
@@ -137,6 +139,28 @@ def test_u5_a_unit_that_takes_too_long_ends_and_its_application_is_told() -> Non
     stage.at(1500).end("ea#2")
     stage.select()
     assert stage.running == set()
+
+
+@pytest.mark.parametrize("spans", [True, False])
+def test_u5_a_unit_that_was_left_has_no_time_to_keep(spans: bool) -> None:
+    """What takes its place is not deleted, and nobody hears that it took too long."""
+    stage = Stage()
+    if spans:
+        stage.open("ea", 1, "speaker", longest=2000)
+        stage.request("ea", say("Long."), unit=1)
+    else:
+        stage.request("ea", Group(chain(say("Long.")), longest=2000))
+    stage.select()
+    stage.at(1500).leave("ea")
+    stage.close("ea", 1)
+    stage.request("ea", say("On."), state=2)
+    assert stage.select() == [] and stage.running == {"ea#1", "ea#2"}
+    assert stage.mediator.deadline() != 2000
+    stage.at(2000).mediator.expire()
+    stage.at(3000).end("ea#2")
+    assert stage.select() == ["ea#3"]
+    assert stage.phases("fail") == [] and stage.told("ea") == []
+    assert check(stage.records) == []
 
 
 def test_u6_a_running_ab_is_not_interrupted_by_another_application() -> None:
