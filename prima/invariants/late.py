@@ -86,7 +86,7 @@ class Late(Selection):
             late = ""
         else:
             app, when = lapsed
-            late = "" if app in self.gone_apps or began - when > LATE * self.second else app
+            late = "" if began - when > LATE * self.second else app
         told = record.get("app") or ""
         if told and (record.get("rule") != "X10" or told != late):
             self.report(16, "X10", f"what {told} has not asked for is told it alone")

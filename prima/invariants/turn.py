@@ -59,4 +59,11 @@ class Turn(Channel):
         turn = self.turn
         if turn is None or turn.phase != LINKED or "speaker" not in ab.devices:
             return None
-        return None if self.third_turn(ab) else turn
+        if self.third_turn(ab) or any(map(self._is_kept, self._way_to(turn))):
+            return None
+        return turn
+
+    def _is_kept(self, ab: AB) -> bool:
+        """Whether an AB waits on whose devices something runs: nobody waits for that (X7)."""
+        others = (other for other in self.running.values() if other.devices & ab.devices)
+        return ab.phase == WAITING and any(other.unit is None for other in others)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from prima.scheduler.behavior import GONE, LINKED, RUNNING, Behavior, Stream
+from prima.scheduler.behavior import GONE, LINKED, RUNNING, WAITING, Behavior, Stream
 from prima.scheduler.memory import WorkingMemory
 
 Refusal = tuple[str, str]
@@ -64,10 +64,13 @@ def before(ab: Behavior, memory: WorkingMemory) -> list[Behavior]:
 def x7(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
     """X7: nobody speaks between a user's answer and what the asker says to it.
 
-    Once that waits, it holds the speaker back itself (S3).
+    Once that waits, it holds the speaker back itself (S3). Where something runs on the devices of
+    what comes before it, nobody waits for that.
     """
     owed = memory.owed
     if owed is None or owed.state is not LINKED or "speaker" not in ab.devices:
+        return None
+    if any(one.state is WAITING and memory.conflict(one) for one in before(owed, memory)):
         return None
     return None if third_turn(ab, memory) else ("X7", owed.id)
 

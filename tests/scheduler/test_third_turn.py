@@ -115,6 +115,18 @@ def test_x7_what_waits_does_not_break_it_off_but_a_later_event_does() -> None:
     assert check(stage.records, "prima+x2+x7") == []
 
 
+def test_x7_nobody_waits_for_what_waits_for_a_device_itself() -> None:
+    stage = Stage("prima+x7", {"fa": "fa", "ea": "ea", "eb": "ea"})
+    stage.request("ea", ask())
+    stage.request("eb", command("gesture", name="nod"))
+    assert stage.select() == ["ea#1", "eb#1"]
+    stage.at(1000).request("fa", say("That feels good."), cause=TOUCH)
+    stage.select()
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", HEAD, say("Thank you.")))
+    assert stage.select() == ["fa#1"]
+    assert check(stage.records, "prima+x7") == []
+
+
 def test_x7_what_leaves_the_user_is_not_waited_for_even_if_it_makes_no_loops() -> None:
     go = replace(TABLE_4_2["topological-move"], feedback=False)
     stage = touched_while_asked(table={**TABLE_4_2, "topological-move": go})
