@@ -19,8 +19,8 @@ from prima.voicexml.state import Context, Flow, HungUp, Resume, TakenUtterance, 
 
 CONNECT_MS = 60_000
 """How long it may take until somebody answers where ``connecttimeout`` does not say."""
-LISTEN = "600s"
-"""How long a question can listen at most; during a call it is asked again and again."""
+LISTEN = "20s"
+"""How long a question listens during a call, in which it is asked again and again."""
 ANSWERED, NEAR_END = "answered", "near_end_disconnect"
 TELEPHONE = re.compile(r"tel:\+?[-.() 0-9A-Da-dpw*#]+(;.*)?")
 ADDRESS = re.compile(r"sips?:[^\s@]+(@[^\s@]+)?")

@@ -125,6 +125,6 @@ class VoiceEvaluator:
         code, scopes = self.code(node, "expr"), context.scopes(local)
         try:
             self.engine.compile(code)  # what does not compile is told by its own place
-            return self.engine.text(f"({SHOWN})({code}\n)", scopes)
+            return self.engine.text(f"({SHOWN})(({code}\n))", scopes)
         except ScriptError as error:
             raise self.failure(error, node, "expr") from None

@@ -29,9 +29,10 @@ ALWAYS = frozenset(
     [
         *("session", "application", "document", "dialog", "lastresult$"),
         *("_event", "_message", "_prompt", "_dtmf", "event"),
+        *("Node", "DOMException"),
     ]
 )
-"""What the platform declares (5.1.2, 5.1.4, 5.1.5, 5.2.2, 2.2.4)."""
+"""What the platform declares (5.1.2, 5.1.4, 5.1.5, 5.2.2, 2.2.4; 2.1, D)."""
 LISTING = frozenset(["submit", "clear", "return", "exit", "subdialog", "disconnect", "data"])
 """Elements whose namelist names variables."""
 DIALOGS = ("form", "menu")
@@ -135,7 +136,8 @@ class _Look:
         """The names that an element declares."""
         if node.key == "script":
             names = self.script(page, node)
-            return names.declared | names.written
+            given = {use.name for use in names.uses if use.holder and use.declares}
+            return names.declared | names.written | given
         name = node.get(NAMING.get(node.key, ""))
         return {name} if name else set()
 

@@ -17,6 +17,8 @@ from prima.markup.vocabulary import Element
 from prima.voicexml.cues import is_rate
 from prima.voicexml.vocabulary import ALTERNATIVES, VALUES, VOICEXML
 
+WORDS = frozenset(["next", "nextitem", "src", "event"])
+"""Attributes of any words in which white space at the ends means nothing."""
 KEYS = re.compile(r"\s*[0-9*#A-D](?:\s*[0-9*#A-D])*\s*")
 
 READ_AS = BAD_VALUE.says(
@@ -59,7 +61,9 @@ ENTRIES = {key: _entry(element) for key, element in VOICEXML.elements.items()}
 def check_attributes(node: Node, entry: ElementEntry) -> Iterator[Problem]:
     """Attributes that are unknown, wrong or missing."""
     for name, text in node.attributes.items():
-        if name == "method" and text != text.lower():
+        if (name in entry.kinds or name in WORDS) and text != text.strip():
+            node.attributes[name] = text = text.strip()  # as XML Schema collapses it
+        if name == "method" and name in entry.kinds and text != text.lower():
             yield _capitals(node, name)
         elif name in entry.kinds:
             if not fits(entry.kinds[name], text):

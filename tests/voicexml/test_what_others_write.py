@@ -1,0 +1,70 @@
+"""What documents of other platforms have: capitals, spaces, long times, names of the DOM."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from prima import api
+from tests.helpers.command import prima
+from tests.helpers.dialogs import ask, block, codes, question, run, vxml
+
+DOCUMENTS = api.documents_folder().resolve()
+
+
+@pytest.mark.parametrize(
+    "content", ['<goto next="#b" method="GET"/>', '<prompt method="POST">x</prompt>']
+)
+def test_a_method_where_none_is_known_is_an_unknown_attribute(content: str) -> None:
+    assert codes(block(content) + '<form id="b"/>') == ["unknown-attribute"]
+
+
+@pytest.mark.parametrize("code", ["1, 2", "'one', 'two'", "(1, 2), 3"])
+def test_a_list_of_expressions_has_the_value_of_the_last(code: str) -> None:
+    last = code.split(", ")[-1].strip("'")
+    call = run(block(f'<prompt><value expr="{code}"/></prompt><log expr="{code}"/><exit/>'))
+    assert (call.said(), call.logs()) == ([last], [last])
+
+
+def test_the_classes_of_the_dom_are_known() -> None:
+    assert codes(block('<log expr="Node.TEXT_NODE + (1 instanceof DOMException)"/>')) == []
+
+
+def test_what_a_script_gives_to_a_scope_is_declared() -> None:
+    assert codes("<script>application.z = 5;</script>" + block('<log expr="z"/>')) == []
+
+
+def test_spaces_around_words_mean_nothing() -> None:
+    text = """<form><field name="f" modal=" true ">
+      <grammar mode=" voice " version="1.0" root="r"><rule id="r">go</rule></grammar>
+      <prompt count=" 1 " bargein=" true " timeout=" 2s ">Well?</prompt>
+      <filled><goto next=" #b "/></filled></field></form>
+      <form id="b"><block><log>there</log><exit/></block></form>"""
+    assert codes(text) == []
+    call = run(vxml(text), "go")
+    assert call.logs() == ["there"]
+
+
+@pytest.mark.parametrize("timeout", ["599s", "600s", "3600s"])
+def test_a_question_waits_five_minutes_at_most(timeout: str) -> None:
+    call = run(ask(f'<option>go</option><property name="timeout" value="{timeout}"/>'))
+    assert question(call)["timeout"] == 300_000
+
+
+def test_a_call_with_music_can_be_ended_by_the_caller(tmp_path: Path) -> None:
+    (tmp_path / "a.vxml").write_text(
+        vxml(
+            """<form><transfer name="t" type="bridge" dest="tel:+1-555" transferaudio="ring.wav">
+            <grammar version="1.0" root="r"><rule id="r">stop</rule></grammar>
+            <filled><log expr="t"/><exit/></filled></transfer></form>"""
+        )
+    )
+    (tmp_path / "s.xml").write_text(
+        f"""<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" until="60s"
+          world="{DOCUMENTS}/worlds/room.xml" robot="{DOCUMENTS}/robots/papero.xml">
+        <person x="1" y="0"/><application src="a.vxml"/><transfer to="tel:" after="4s" lasts="50s"/>
+        <when at="30s"><say>stop</say></when></scenario>"""
+    )
+    done = prima("run", "s.xml", cwd=tmp_path)
+    assert "log: near_end_disconnect" in done.stdout, done.stdout + done.stderr
