@@ -8,7 +8,8 @@ import pytest
 
 from prima import api
 from tests.helpers.command import prima
-from tests.helpers.dialogs import ask, block, codes, question, run, vxml
+from tests.helpers.dialogs import ask, block, codes, question, run
+from tests.helpers.voice import vxml
 
 DOCUMENTS = api.documents_folder().resolve()
 
