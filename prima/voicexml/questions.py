@@ -16,9 +16,6 @@ from prima.voicexml.owner import MachineOwner
 from prima.voicexml.settings import setting
 from prima.voicexml.state import Context, Flow, Resume, TakenUtterance, thrown_outside
 
-LONGEST_TIMEOUT_MS = 300_000
-"""How long a question waits at most: with what it says, it may keep the speaker for ten minutes."""
-
 
 class Questions:
     """Asks the questions of one application."""
@@ -50,8 +47,7 @@ class Questions:
             own = prompt.get(name) if prompt is not None else ""
             return own or setting(context, name)
 
-        timeout = min(milliseconds(wanted("timeout"), 5000), LONGEST_TIMEOUT_MS)
-        bargein = wanted("bargein") != "false"
+        timeout, bargein = milliseconds(wanted("timeout"), 5000), wanted("bargein") != "false"
         cues = self.owner.content.question_cues(asked, self.owner.queue)
         cues = (*self._cues(context, item, bargein and wanted("bargeintype") == "hotword"), *cues)
         own = item.get("xml:lang") if item.tag != "menu" else ""
