@@ -248,6 +248,7 @@ class _Builder:
         name, values = self.code.of(called), given.named_children
         if name not in CONVERSIONS or len(values) != 1:
             raise Beyond
+        self.last = self.place(called)
         convert, call = CONVERSIONS[name], self.build(values[0], depth).call
         place = self.last
 
