@@ -246,9 +246,8 @@ class _Builder:
         if called is None or given is None or len(node.children) != 2:
             raise Beyond
         name, values = self.code.of(called), given.named_children
-        if name not in CONVERSIONS or len(values) != 1:
+        if name not in CONVERSIONS or len(values) != 1 or values[0].type not in CONVERTED:
             raise Beyond
-        self.last = self.place(called)
         convert, call = CONVERSIONS[name], self.build(values[0], depth).call
         place = self.last
 
@@ -324,15 +323,17 @@ class _Builder:
         return key
 
 
+MEMBERS = ("member_expression", "subscript_expression")
 CONVERSIONS: dict[str, Callable[[Any, Scopes], Any]] = {
     "Number": numeric,
     "String": textual,
     "Boolean": lambda value, _scopes: truth(value),
 }
 """Functions of the engine that are the same here."""
+CONVERTED = ("identifier", *MEMBERS)
+"""What they are called with."""
 BEYOND = RESERVED | INHERITED | BUILT_IN
 BRACKETS = "parenthesized_expression"
-MEMBERS = ("member_expression", "subscript_expression")
 MAKERS: dict[str, Callable[[_Builder, Node, int], _Piece]] = {
     **dict.fromkeys(("number", "string", *WORDS, "array", "object"), _Builder.literal),
     "identifier": _Builder.name,
