@@ -60,23 +60,28 @@ ENTRIES = {key: _entry(element) for key, element in VOICEXML.elements.items()}
 
 def check_attributes(node: Node, entry: ElementEntry) -> Iterator[Problem]:
     """Attributes that are unknown, wrong or missing."""
-    for name, text in node.attributes.items():
-        if (name in entry.kinds or name in WORDS) and text != text.strip():
-            node.attributes[name] = text = text.strip()  # as XML Schema collapses it
-        if name == "method" and name in entry.kinds and text != text.lower():
-            yield _capitals(node, name)
-        elif name in entry.kinds:
-            if not fits(entry.kinds[name], text):
-                yield bad_value(node, name, text, entry.kinds[name])
-        elif name not in entry.known and not name.startswith(("xml:", "xsi:", "{")):
-            hint = suggestion(name, entry.known, attribute_span(node, name))
-            place = node.attribute_place(name, value=False)
-            yield NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
+    for name in node.attributes:
+        yield from _check_attribute(node, name, entry)
     for name in entry.required:
         if name not in node.attributes and node.key != "vxml":  # whose version has its own check
             yield missing(node, name)
     for names in entry.alternatives:
         yield from _check_alternatives(node, names)
+
+
+def _check_attribute(node: Node, name: str, entry: ElementEntry) -> Iterator[Problem]:
+    text, kind = node.attributes[name], entry.kinds.get(name)
+    if (kind or name in WORDS) and text != text.strip():
+        node.attributes[name] = text = text.strip()  # as XML Schema collapses it
+    if kind and name == "method" and text != text.lower():
+        yield _capitals(node, name)
+    elif kind:
+        if not fits(kind, text):
+            yield bad_value(node, name, text, kind)
+    elif name not in entry.known and not name.startswith(("xml:", "xsi:", "{")):
+        hint = suggestion(name, entry.known, attribute_span(node, name))
+        place = node.attribute_place(name, value=False)
+        yield NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
 
 
 def missing(node: Node, name: str) -> Problem:
