@@ -15,6 +15,7 @@ from prima.script.evaluation import ScriptError
 from prima.script.globals import BUILT_IN, INHERITED, METHODS, RESERVED
 from prima.script.literals import WORDS, Beyond, fresh, literal, number, string
 from prima.script.operations import (
+    MISSING,
     OPERATIONS,
     found,
     has_member,
@@ -253,7 +254,7 @@ class _Builder:
 
         def converted(scopes: Scopes) -> Any:
             value = call(scopes)
-            if found(name, scopes) is not UNDEFINED:
+            if found(name, scopes, MISSING) is not MISSING:
                 raise ScriptError("TypeError: not a function", [place])  # a variable hides it
             return convert(value, scopes)
 

@@ -103,8 +103,8 @@ def member_of(value: Any, name: Any, line: int, column: int, scopes: Scopes) -> 
     """A member of a value, whose name is a value itself.
 
     Raises:
-        ScriptError: there is no value, or the name means what all such values have: here there
-            are no functions that it could give.
+        ScriptError: there is no value, or the name is that of a built-in function, which Python
+            does not have.
     """
     if value is None or value is UNDEFINED:
         key = "{}" if isinstance(name, list | dict) else text(name)[:LONGEST_KEY]

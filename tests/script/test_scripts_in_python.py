@@ -45,7 +45,7 @@ def values(engine: Any, code: str, names: list[str]) -> list[Any]:
         ("var outer = [];", ["outer"]),
         ("let outer = {};", ["outer"]),
         ("", []),
-        ("  // nothing\n;".replace(";", ""), []),
+        ("  // nothing\n", []),
         ("const a = 1\nconst b = '\\n\\t\\'é😀'", ["a", "b"]),
     ],
 )
@@ -98,6 +98,18 @@ def test_a_computed_name_finds_no_built_in_function(name: str) -> None:
     engine.set(scopes[1], "table", {name: 2})
     assert engine.value("table[name]", scopes) == 2
     assert engine.condition("name in table", scopes)
+
+
+@pytest.mark.parametrize("value", [None, 5, "x"])
+def test_a_variable_hides_a_conversion(value: Any) -> None:
+    for engine in (PythonEngine(), ENGINE):
+        scopes = scopes_of(engine)
+        engine.set(scopes[1], "n", 1)
+        engine.set(scopes[1], "Number", value)
+        if value is None:
+            engine.unset(scopes[1], "Number")
+        with pytest.raises(ScriptError, match="TypeError: not a function"):
+            engine.value("Number(n)", scopes)
 
 
 def test_long_names_are_work() -> None:
