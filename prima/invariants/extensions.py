@@ -124,7 +124,7 @@ class Extensions(FloorRules):
             ab.tree.place = self.robot
 
     def _connects(self, ab: AB, before: AB, record: Record) -> None:
-        """X4: the user is turned to once, where that was asked for, and he is not seen."""
+        """X4: the user is turned to once, where that was asked for, and they are not seen."""
         if not before.connect or before.name in self.faced or self.in_view or before.starts:
             self.report(11, "X4", f"{ab.name} is put in, but {before.shown} needs no channel")
         if not (record["command"] == "face-human" and ab.devices >= before.devices):

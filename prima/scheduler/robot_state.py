@@ -46,7 +46,7 @@ class Effects:
     """Whether it was turned to the human."""
     head: Head | None = None
     body: RobotState = field(default_factory=RobotState)
-    """The robot's state when it had been turned to him."""
+    """The robot's state when it had been turned to them."""
 
     def add(self, row: CommandType, command: Command, data: Data, body: RobotState) -> None:
         """A Command of the stream has ended, or one loop of it."""

@@ -263,7 +263,7 @@ def _nobody(nodes: list[Node]) -> Iterator[Problem]:
         return
     for node in [one for one in nodes if one.tag in ("walk", "look")][:1]:
         message = f"Nobody is there: <{node.tag}> does nothing without a <person>."
-        remedy = 'Write where he is at first, such as <person at="..."/>.'
+        remedy = 'Write where they are at first, such as <person at="..."/>.'
         yield Problem(node.place, "warning", "missing-element", message, remedy)
 
 

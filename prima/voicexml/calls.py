@@ -60,7 +60,7 @@ class Calls:
 
         Raises:
             Thrown: ``connection.disconnect.transfer`` where the caller is given away,
-                ``connection.disconnect.hangup`` where he hangs up, ``error.connection`` and
+                ``connection.disconnect.hangup`` where they hang up, ``error.connection`` and
                 ``error.unsupported`` as the platform tells them (2.3.7.3).
         """
         content, local = self.owner.content, self.owner.local()

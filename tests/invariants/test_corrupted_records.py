@@ -426,7 +426,7 @@ def swaps(records: Records) -> list[Records]:
 
 @given(plays())
 @settings(
-    max_examples=60,
+    max_examples=30,
     derandomize=True,
     deadline=None,
     database=None,
