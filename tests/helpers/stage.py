@@ -66,7 +66,10 @@ class Stage:
         table: Mapping[str, CommandType] = TABLE_4_2,
         bound: int | None = None,
         patience: int = PATIENCE_MS,
+        refuses: bool = False,
     ) -> None:
+        self.refuses = refuses
+        """Whether Commands may be refused (E3): a test of something else would test nothing."""
         self.recorder = Recorder()
         chosen = policy_named(policy)
         self.mediator = Mediator(chosen, table, self.recorder, bound, patience=patience)
@@ -135,6 +138,8 @@ class Stage:
         self.mediator.select()
         self.orders += self.mediator.drain_orders()
         made = self.recorder.drain()
+        refused = [r for r in made if r["phase"] == "fail" and r["rule"] == "E3"]
+        assert self.refuses or not refused, refused
         self.records += made
         return [record["behavior"] for record in made if record["phase"] == "start"]
 

@@ -19,7 +19,7 @@ SILENT = Command("turn", {"angle": 30.0})
 
 def refused(command: Command, app: str = "ea", table: object = LOUD) -> str:
     """The message with which it is refused; empty if it is not."""
-    stage = Stage(table=table, apps={app: app})  # type: ignore[arg-type]
+    stage = Stage(table=table, apps={app: app}, refuses=True)  # type: ignore[arg-type]
     stage.request(app, replace(command))
     started = stage.select()
     failed = [str(record["message"]) for record in stage.phases("fail")]
@@ -33,7 +33,7 @@ def test_e3_additional_arguments_are_for_an_fa_and_those_that_the_robot_has() ->
     assert told == "Only an FA may give speak additional arguments."
     told = refused(Command("speak", text="Hi", extra={"colour": 1}), "fa")
     assert told == 'speak has no additional argument "colour" on this robot.'
-    stage = Stage(table=LOUD)
+    stage = Stage(table=LOUD, refuses=True)
     stage.request("fa", Command("speak", text="Hi", extra={"colour": 1}))
     stage.select()
     assert stage.told("fa") == ["error.semantic"]
@@ -41,7 +41,7 @@ def test_e3_additional_arguments_are_for_an_fa_and_those_that_the_robot_has() ->
 
 def test_e3_what_the_robot_lacks_is_unsupported_and_what_nobody_knows_is_wrong() -> None:
     table = {name: row for name, row in TABLE_4_2.items() if name != "turn"}
-    stage = Stage(table=table)
+    stage = Stage(table=table, refuses=True)
     stage.request("ea", SILENT)
     stage.select()
     assert stage.told("ea") == ["error.unsupported.turn"]
@@ -74,7 +74,7 @@ def test_e3_a_bad_command_in_a_unit_is_refused_as_outside(
     table["turn"] = replace(table["turn"], leaves=True)
     for deep in (False, True):
         inner = Group(chain(say("One."), replace(bad)))
-        stage = Stage(table=table)
+        stage = Stage(table=table, refuses=True)
         stage.request("ea", Group(chain(say("Two."), inner)) if deep else inner)
         assert stage.select() == []
         assert [record["message"] for record in stage.phases("fail")] == [message]
@@ -88,7 +88,7 @@ def test_x6_a_command_in_a_unit_is_replaced_and_an_unknown_one_is_not() -> None:
     assert stage.select() == ["ea#1", "ea#2"]
     replaced = [(one["command"], one["by"]) for one in stage.phases("substitute")]
     assert replaced == [("gesture", "turn")]
-    stage = Stage("prima+x6", table=table)
+    stage = Stage("prima+x6", table=table, refuses=True)
     stage.request("ea", Group(chain(Command("fly"))))
     assert stage.select() == []
     assert stage.told("ea") == ["error.semantic"]
@@ -124,7 +124,7 @@ def test_e3_nobody_speaks_or_listens_longer_than_the_longest_turn(
     message = refused(too_long)
     assert message.startswith("It keeps the speaker for at least "), message
     assert message.endswith(" s are the most. Divide it, or shorten its pauses and timeout.")
-    stage = Stage()
+    stage = Stage(refuses=True)
     stage.request("ea", replace(too_long))
     stage.select()
     assert stage.told("ea") == ["error.semantic"]
@@ -158,7 +158,7 @@ def test_e6_beside_another_nobody_speaks_longer_than_the_patience(
     patience: int, policy: str, apps: dict[str, str], most: int
 ) -> None:
     for letters, heard in ((most // LETTER_MS, []), (most // LETTER_MS + 1, ["error.semantic"])):
-        stage = Stage(policy, apps=apps, patience=patience)
+        stage = Stage(policy, apps=apps, patience=patience, refuses=True)
         stage.request("ea", say("x" * letters))
         assert bool(stage.select()) == (heard == [])
         assert stage.told("ea") == heard

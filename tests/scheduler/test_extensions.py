@@ -182,7 +182,7 @@ def test_x6_a_substitute_takes_the_place_of_what_the_robot_lacks() -> None:
 
 
 def test_x6_without_it_the_application_is_told() -> None:
-    stage = Stage("prima", table=laser_table())
+    stage = Stage("prima", table=laser_table(), refuses=True)
     stage.request("ea", command("point-by-hand", toward="panel"))
     assert stage.select() == []
     assert stage.told("ea") == ["error.unsupported.point-by-hand"]
@@ -237,7 +237,7 @@ def test_x5_two_moves_are_not_composed_with_one_dance() -> None:
     stage.select()
     stage.at(50).request("fa", Command("waltz"), cause=1)
     stage.select()
-    stage.at(100).request("ea", command("set-position"), cause=2)
+    stage.at(100).request("ea", command("set-position", x=1, y=1), cause=2)
     stage.select()
     assert check(stage.records, "prima+x5") == []
 

@@ -84,7 +84,7 @@ def test_e1_a_device_that_hangs_past_its_limit_has_failed() -> None:
 
 def test_e1_a_robot_without_the_command_says_so() -> None:
     table = {name: row for name, row in TABLE_4_2.items() if name != "gesture"}
-    stage = Stage(table=table)
+    stage = Stage(table=table, refuses=True)
     stage.request("ea", command("gesture", name="nod"))
     stage.select()
     assert stage.told("ea") == ["error.unsupported.gesture"]
@@ -228,7 +228,7 @@ def test_e6_k1_stands_above_it() -> None:
     ],
 )
 def test_e3_a_bad_command_never_enters_memory(bad: Command) -> None:
-    stage = Stage()
+    stage = Stage(refuses=True)
     stage.request("ea", say(), bad)
     assert stage.select() == []
     assert stage.told("ea") == ["error.semantic"]
@@ -349,7 +349,7 @@ def test_a_play_meets_touches_units_and_emergencies_without_harm() -> None:
 def test_e1_a_unit_in_a_unit_fails_with_it() -> None:
     # What runs in the inner unit is a part of the outer one, which fails as a whole (U4).
     stage = Stage()
-    inner = Group([Step(say("In.")), Step(command("turn"))])
+    inner = Group([Step(say("In.")), Step(command("turn", angle=90))])
     stage.request("ea", Group([Step(command("move-head")), Step(inner)]))
     stage.select()
     stage.at(100).mediator.failed("ea#2", "neck", "it fails")

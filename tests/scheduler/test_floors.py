@@ -5,6 +5,8 @@ Each rule by its number, on the smallest case that shows it.
 
 from __future__ import annotations
 
+from copy import deepcopy
+
 import pytest
 
 from prima.invariants import check
@@ -158,7 +160,7 @@ def test_f6_a_reaction_may_break_in() -> None:
 )
 def test_f6_holds_only_between_two_utterances(between: list[Command]) -> None:
     stage = Stage()
-    stage.request("ea", say("The answer is"), *between)
+    stage.request("ea", say("The answer is"), *deepcopy(between))
     stage.select()
     stage.at(5).request("fa", say("I like trains."))
     stage.at(10).end("ea#1")

@@ -129,7 +129,7 @@ def test_x3_a_unit_joins_the_stream_that_is_held() -> None:
     stage.select()
     stage.at(200).open("fa", 1, "speaker")
     stage.select()
-    stage.at(300).request("ea", command("turn"))
+    stage.at(300).request("ea", command("turn", angle=90))
     stage.select()
     assert check(stage.records, "prima+x3") == []
 
@@ -138,13 +138,13 @@ def test_x3_the_floor_that_an_ending_stream_gives_back_is_taken() -> None:
     # Both streams end in one instant; the one to be held comes first and finds the floor
     # taken by the other, which ends then: nobody has it.
     stage = Stage("prima+x3")
-    stage.request("ea", command("turn"), hold=5000)
+    stage.request("ea", command("turn", angle=90), hold=5000)
     stage.select()
     stage.request("fa", say(), cause=1)
     stage.select()
     stage.at(100).end("ea#1")
     stage.end("fa#1")
     stage.select()
-    stage.at(200).request("fa", command("turn"))
+    stage.at(200).request("fa", command("turn", angle=90))
     assert stage.select() == []
     assert check(stage.records, "prima+x3") == []

@@ -157,8 +157,8 @@ def test_x2_a_reaction_that_leaves_does_not_go_before_what_outranks_it() -> None
     # Two restartable Commands want the body; a reaction of low priority interrupts the one
     # that runs, and the other, which outranks it by S2a, is passed over.
     stage = Stage("prima+x2")
-    turn = restartable(command("turn"))
-    stage.request("ea", steps=[Step(turn), Step(restartable(command("turn")))])
+    turn = restartable(command("turn", angle=90))
+    stage.request("ea", steps=[Step(turn), Step(restartable(command("turn", angle=90)))])
     stage.select()
     stage.at(100).request("fa", move(), cause=1)
     stage.select()
@@ -169,10 +169,10 @@ def test_x2_nothing_is_interrupted_for_a_reaction_that_is_held_back() -> None:
     # The speaker is held back for the reaction that ranks first and waits for the body (S3):
     # the other reaction interrupts the story, and must then wait for the first one (S3).
     stage = Stage("prima+x2")
-    stage.request("ea", steps=[Step(restartable(say("A story."))), Step(command("turn"))])
+    stage.request("ea", steps=[Step(restartable(say("A story."))), Step(command("turn", angle=90))])
     stage.select()
     stage.at(100).request("ea", say("Soon."), cause=1)
-    stage.request("fa", command("face-human-and-speak"), cause=2)
+    stage.request("fa", command("face-human-and-speak", "Here."), cause=2)
     stage.select()
     assert check(stage.records, "prima+x2") == []
 
@@ -196,7 +196,7 @@ def test_x2_a_unit_in_a_unit_is_interrupted_with_it() -> None:
 def test_x2_a_motion_that_can_be_composed_is_in_nobodys_way() -> None:
     # Of the move and the nod only the nod is in the dance's way (X5), and it is restartable.
     stage = Stage("prima+x2+x5", table=TABLE)
-    nod = restartable(command("gesture"))
+    nod = restartable(command("gesture", name="nod"))
     stage.request("ea", steps=[Step(move()), Step(nod)])
     stage.select()
     stage.at(100).request("fa", Command("dance"), cause=1)
@@ -211,7 +211,7 @@ def test_x2_nothing_is_interrupted_where_a_composed_motion_stays_in_the_way() ->
     stage.select()
     stage.at(50).request("ea", restartable(Command("spin")), cause=1)
     stage.select()
-    stage.at(100).request("fa", command("turn"), cause=2)
+    stage.at(100).request("fa", command("turn", angle=90), cause=2)
     stage.select()
     assert check(stage.records, "prima+x2+x5") == []
 

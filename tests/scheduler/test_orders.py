@@ -248,8 +248,8 @@ def test_a_question_that_o2_leaves_running_finishes() -> None:
     # Only a device in common cuts an AB short (O2); only leaving the state ends a question
     # that listens (O3). Here a move of the same tree is cancelled, and the state goes on.
     stage = Stage()
-    stage.request("ea", command("q-and-a"))
-    stage.request("ea", command("turn"))
+    stage.request("ea", ask())
+    stage.request("ea", command("turn", angle=90))
     stage.select()
     stage.at(10)
     stage.request("ea", command("stop-moving"))

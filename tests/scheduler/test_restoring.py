@@ -196,7 +196,7 @@ def test_x1_a_unit_that_goes_on_beneath_the_floor_does_not_resume_its_stream() -
     stage.request("ea", move(), Group(chain(say("One."), say("Two."))), say("Three."))
     stage.select()
     ends(stage.at(500), "ea#1.1", 4.0, 1.0)
-    stage.request("fa", command("set-speed-and-time"), cause=1)
+    stage.request("fa", command("set-speed-and-time", speed=0.3, time="1s"), cause=1)
     stage.select()
     stage.at(600).end("ea#4")
     stage.select()
@@ -214,7 +214,7 @@ def test_x1_a_held_stream_that_was_suspended_is_restored_too() -> None:
     ends(stage.at(500), "ea#1.1", 4.0, 1.0)
     stage.at(600).end("ea#2")
     stage.select()
-    stage.at(700).request("fa", command("set-speed-and-time"), cause=1)
+    stage.at(700).request("fa", command("set-speed-and-time", speed=0.3, time="1s"), cause=1)
     stage.select()
     ends(stage.at(900), "fa#1", 0.0, 0.0)
     stage.at(1000).request("ea", say("Two."), cause=2)
@@ -229,12 +229,12 @@ def test_x1_branches_go_back_once() -> None:
         Step(move()),
         Step(say("One."), (0,)),
         Step(say("Two."), (1,)),
-        Step(command("gesture"), (1,)),
+        Step(command("gesture", name="nod"), (1,)),
     ]
     stage.request("ea", steps=steps)
     stage.select()
     ends(stage.at(500), "ea#1.1", 4.0, 1.0)
-    stage.request("fa", command("set-speed-and-time"), cause=1)
+    stage.request("fa", command("set-speed-and-time", speed=0.3, time="1s"), cause=1)
     stage.select()
     stage.at(700).end("ea#2")
     stage.select()

@@ -95,7 +95,7 @@ def test_u4_a_group_is_one_ab_with_the_devices_of_all_branches() -> None:
 
 
 def test_u4_neither_feedback_nor_leaving_commands_stand_in_a_group() -> None:
-    stage = Stage()
+    stage = Stage(refuses=True)
     stage.request("ea", Group([Step(say()), Step(move(), (0,))]))
     assert stage.select() == []
     assert stage.told("ea") == ["error.semantic"]
@@ -173,7 +173,7 @@ def test_u6_a_running_ab_is_not_interrupted_by_another_application() -> None:
 
 
 def test_u5_a_command_that_needs_another_device_is_refused_in_a_unit() -> None:
-    stage = Stage()
+    stage = Stage(refuses=True)
     stage.open("ea", 1, "speaker", "speech-recognition")
     stage.request("ea", ask(), unit=1)
     stage.request("ea", command("turn", angle=90), unit=1)
@@ -224,7 +224,7 @@ def test_u5_a_unit_owns_the_devices_of_what_the_profile_adds() -> None:
 
 
 def test_u4_no_feedback_command_of_the_profile_runs_in_a_unit_either() -> None:
-    stage = Stage()
+    stage = Stage(refuses=True)
     stage.open("fa", 1, "speaker")
     stage.select()
     stage.request("fa", search(), unit=1)
