@@ -30,6 +30,7 @@ from prima.devices.settings import Does, DriverLimits, DriverSettings, Pose
 from prima.errors import RunError, UsageError
 from prima.grammar.answers import Answers
 from prima.live.recordings import Recordings
+from prima.live.wellformed import well_formed
 from prima.messages import Data, Json, Record
 from prima.sim.map import Map
 
@@ -155,14 +156,20 @@ class Driver:
         self._loop = asyncio.get_running_loop()
 
     def tell(self, report: Report | News) -> None:
-        """Tell the run something, from its event loop."""
-        self._tell(report)
+        """Tell the run something, from its event loop. Where no record can hold it, the robot is lost."""
+        try:
+            told = well_formed(report)
+        except (TypeError, ValueError, RecursionError) as error:
+            self.lose(f"what the driver tells is wrong ({type(report).__name__}): {error}")
+            return
+        if told is not None:
+            self._tell(told)
 
     def post(self, report: Report | News) -> None:
         """Tell the run something, from another thread. After the run's end it is dropped."""
         loop = self._loop
         if loop is not None and not loop.is_closed():
-            loop.call_soon_threadsafe(self._tell, report)
+            loop.call_soon_threadsafe(self.tell, report)
 
     def lose(self, reason: str) -> None:
         """Tell that the connection is gone: what runs fails, and :meth:`open` is called again."""
@@ -264,6 +271,9 @@ class TaskDriver(Driver):
         except Unreachable as error:
             self.lose(str(error))
             return
+        except SystemExit as error:  # a robot's library wants to end the program
+            device = min(goal.devices, default="none")
+            report = Broke(goal.key, device, f"the driver has failed: SystemExit: {error}")
         except Exception as error:
             device = getattr(error, "device", "") or min(goal.devices, default="none")
             lacks = goal.kind == RECORD and isinstance(error, Refused)

@@ -1,0 +1,79 @@
+"""What drivers tell, as records can hold it: a journal stays readable whatever a driver says."""
+
+from __future__ import annotations
+
+from math import isfinite
+from numbers import Integral, Real
+from typing import Any, get_args, get_type_hints
+
+from prima.devices.goals import At, Broke, Done, News, Report, Sees
+from prima.messages import Data, Heard, Json, Narrated, Occurred, Sensed
+
+ACTORS = frozenset(get_args(get_type_hints(Occurred)["actor"])) - {"mediator"}
+"""Who may bring an event about."""
+
+
+def well_formed(told: Report | News) -> Report | News | None:
+    """What a driver tells, as records can hold it.
+
+    A measurement that is NaN or infinite says nothing: it becomes None. A pose that has one is
+    not told at all.
+
+    Raises:
+        TypeError, ValueError, RecursionError: no record can hold it.
+    """
+    match told:
+        case Sensed():
+            return Sensed(_data(told.values))
+        case Sees():
+            return Sees(bool(told.visible), _number(told.distance), _number(told.angle))
+        case At():
+            return told if all(map(isfinite, (told.x, told.y, told.heading))) else None
+        case Heard():
+            return Heard(_text(told.text), _data(told.data), int(told.lasted))
+        case Occurred():
+            if told.actor not in ACTORS:
+                raise ValueError(f"its actor must be {' or '.join(sorted(ACTORS))}")
+            return Occurred(_text(told.name), told.actor, _data(told.data), told.app)
+        case Narrated():
+            return Narrated(told.actor, _text(told.text))
+        case Done():
+            return Done(told.key, _data(told.data))
+        case Broke():
+            return Broke(told.key, _text(told.device), _text(told.reason), told.lacks)
+    return told
+
+
+def _data(value: Any) -> Data:
+    if not isinstance(value, dict):
+        raise TypeError(f"its data must be a dict, not {type(value).__name__}")
+    return {_text(name): _plain(one) for name, one in value.items()}
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"its texts and names must be str, not {type(value).__name__}")
+    value.encode()  # half a letter is none
+    return value
+
+
+def _number(value: Any) -> float | None:
+    number = None if value is None else float(value)
+    return number if number is not None and isfinite(number) else None
+
+
+def _plain(value: Any) -> Json:
+    match value:
+        case None | bool():
+            return value
+        case str():
+            return _text(value)
+        case Integral():
+            return int(value)
+        case Real():
+            return _number(value)
+        case dict():
+            return _data(value)
+        case list() | tuple():
+            return [_plain(one) for one in value]
+    raise TypeError(f"a record cannot hold {type(value).__name__}")

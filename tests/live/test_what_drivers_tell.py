@@ -1,0 +1,126 @@
+"""What drivers tell: a journal stays readable, and a run its own, whatever a driver says."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from math import inf, nan
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from prima.devices.goals import At, Broke, Done, Lost, News, Report, Sees, Stopped
+from prima.live.wellformed import well_formed
+from prima.messages import Emergency, Heard, Narrated, Occurred, Sensed
+from tests.helpers.command import prima
+
+CYCLE: list[Any] = []
+CYCLE.append(CYCLE)
+
+
+@pytest.mark.parametrize(
+    ("told", "held"),
+    [
+        (Sensed({"battery": nan, "near": [inf, 2]}), Sensed({"battery": None, "near": [None, 2]})),
+        (Sensed({"a": (True, Fraction(1, 2), None)}), Sensed({"a": [True, 0.5, None]})),
+        (Sees(True, inf, nan), Sees(True, None, None)),
+        (Sees(True, 1.5, -20), Sees(True, 1.5, -20.0)),
+        (At(1.0, nan, 0.0), None),
+        (At(1.0, 2.0, 3.0), At(1.0, 2.0, 3.0)),
+        (Occurred("touch.head", "user", {"x": -inf}), Occurred("touch.head", "user", {"x": None})),
+        (Done("a#1", {"x": nan}), Done("a#1", {"x": None})),
+        (Heard("Yes.", {"confidence": 0.5}, 300), Heard("Yes.", {"confidence": 0.5}, 300)),
+        (Broke("a#1", "neck", "hot"), Broke("a#1", "neck", "hot")),
+        (Stopped("a#1", 0.5), Stopped("a#1", 0.5)),
+        (Emergency(True), Emergency(True)),
+    ],
+)
+def test_a_measurement_that_is_no_number_says_nothing(told: Any, held: Any) -> None:
+    assert well_formed(told) == held
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        Sensed({"battery": object()}),
+        Sensed({"list": CYCLE}),
+        Sensed({3: 4}),  # type: ignore[dict-item]
+        Sensed([1]),  # type: ignore[arg-type]
+        Heard(5),  # type: ignore[arg-type]
+        Heard("half a letter: \ud800"),
+        Heard("Yes.", None),  # type: ignore[arg-type]
+        Occurred("touch.head", "robo"),  # type: ignore[arg-type]
+        Occurred("touch.head", "mediator"),
+        Narrated("user", None),  # type: ignore[arg-type]
+        Done("a#1", 5),  # type: ignore[arg-type]
+        Broke("a#1", "neck", None),  # type: ignore[arg-type]
+    ],
+)
+def test_what_no_record_can_hold_is_refused(told: Report | News) -> None:
+    with pytest.raises((TypeError, ValueError, RecursionError)):
+        well_formed(told)
+
+
+DRIVER = """
+import sys
+from prima.live.driver import TaskDriver
+from prima.messages import Heard, Occurred, Sensed
+
+class Odd(TaskDriver):
+    kind = "odd"
+    async def perform(self, goal):
+        {}
+        return {{}}
+"""
+ROBOT = """<robot xmlns="urn:prima:robot:1" version="1.0" id="odd">
+  <driver kind="odd"/>
+  <device name="speaker"/>
+</robot>"""
+
+
+def live(folder: Path, what: str) -> tuple[int, str, list[dict[str, Any]]]:
+    """A run whose driver does something odd for its one Command, and then a replay of it."""
+    (folder / "odd.py").write_text(DRIVER.format(what))
+    (folder / "robot.xml").write_text(ROBOT)
+    (folder / "hi.xml").write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="hi"><form id="a">'
+        "<block><speak>Hi.</speak><exit/></block></form></prima>"
+    )
+    words = ["--driver", "odd.py", "--robot", "robot.xml", "--ea", "hi.xml", "--until", "8s"]
+    ran = prima("live", *words, "-o", "m.jsonl", cwd=folder)
+    records = [json.loads(line) for line in (folder / "m.jsonl").read_text().splitlines()]
+    again = prima("replay", "m.jsonl", cwd=folder)
+    assert (again.returncode, again.stderr) == (0, "the same, byte for byte\n")
+    return ran.returncode, ran.stderr, records
+
+
+@pytest.mark.parametrize(
+    "what", ['self.tell(Sensed({"battery": float("nan")}))', 'return {"x": float("inf")}']
+)
+def test_the_journal_of_a_driver_that_measures_nothing_replays(what: str, tmp_path: Path) -> None:
+    code, _, records = live(tmp_path, what)
+    assert code == 0 and records[-1]["outcome"] == "over"
+
+
+@pytest.mark.parametrize(
+    ("what", "told"),
+    [
+        ("return 5", "what the driver tells is wrong (Done): its data must be a dict, not int"),
+        ('self.tell(Heard("\\ud800"))', "what the driver tells is wrong (Heard): 'utf-8' codec"),
+        ('self.tell(Sensed({"a": object()}))', "wrong (Sensed): a record cannot hold object"),
+        ("sys.exit(4)", "the driver has failed: SystemExit: 4"),
+    ],
+)
+def test_a_driver_that_goes_wrong_ends_in_a_clear_sentence(
+    what: str, told: str, tmp_path: Path
+) -> None:
+    code, said, records = live(tmp_path, what)
+    assert code == 3
+    assert records[-1]["outcome"] in ("over", "until")
+    assert told in said + json.dumps(records), (said, records)
+
+
+def test_losing_its_robot_can_be_told_by_a_driver() -> None:
+    lost = Lost(frozenset({"speaker"}), "gone")
+    assert well_formed(lost) is lost
