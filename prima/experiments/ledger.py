@@ -108,11 +108,11 @@ def _sound(row: BatchRow) -> bool:
         row.reactions,
         row.responses,
     )
-    times = (row.reaction_mean, row.reaction_max, row.response_mean, row.response_max)
-    parts = (row.seconds, *times)
+    told = (row.reaction_mean, row.reaction_max, row.response_mean, row.response_max)
+    times = [one for one in told if one is not None]
     words = (row.policy, row.ended, *(row.messages if isinstance(row.messages, list) else [0]))
     return (
         all(type(one) is int for one in whole)
-        and all(type(one) in (int, float) for one in parts)
+        and all(type(one) in (int, float) for one in (row.seconds, *times))
         and all(type(one) is str for one in words)
     )

@@ -30,11 +30,11 @@ class BatchRow:
     streams_broken: int = 0
     collisions: int = 0
     reactions: int = 0
-    reaction_mean: float = 0.0
-    reaction_max: float = 0.0
+    reaction_mean: float | None = None
+    reaction_max: float | None = None
     responses: int = 0
-    response_mean: float = 0.0
-    response_max: float = 0.0
+    response_mean: float | None = None
+    response_max: float | None = None
     transcript: str | None = None
     messages: list[str] = field(default_factory=list)
     """What went wrong."""

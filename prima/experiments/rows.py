@@ -7,6 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from prima.experiments.plan import BatchRow
+from prima.transcript.criteria import shown_time
 
 COLUMNS = (
     ("policy", 8),
@@ -41,8 +42,8 @@ def format_row(row: BatchRow, wide: int) -> str:
     if row.ended is None:
         return _line(cells, wide)
     cells += [str(row.records), f"{row.seconds:.2f}", str(row.streams_broken)]
-    cells += [str(row.reactions), f"{row.reaction_mean:.2f}"]
-    return _line([*cells, str(row.responses), f"{row.response_mean:.2f}"], wide)
+    cells += [str(row.reactions), shown_time(row.reaction_mean)]
+    return _line([*cells, str(row.responses), shown_time(row.response_mean)], wide)
 
 
 def _line(cells: list[str], wide: int) -> str:

@@ -13,7 +13,7 @@ from prima.errors import UsageError
 from prima.errors.visible import visible
 from prima.messages import Json
 from prima.scheduler import policy as known
-from prima.transcript.criteria import Criteria
+from prima.transcript.criteria import Criteria, shown_time
 from prima.transcript.diff import compare
 from prima.transcript.observer import observe
 from prima.transcript.row import Row
@@ -188,17 +188,18 @@ def _sums(policy: str, results: list[StudyResult]) -> list[str]:
     return ["all", policy, *values, _shown(distance), _shown(missing)]
 
 
-def _sum(name: str, criteria: list[Criteria]) -> float:
+def _sum(name: str, criteria: list[Criteria]) -> float | None:
     """One criterion of all runs: the sum, the maximum, or the mean over all reactions."""
-    values: list[float] = [getattr(one, name) for one in criteria]
+    some = [one for one in criteria if getattr(one, name) is not None]
+    values: list[float] = [getattr(one, name) for one in some]
+    if name.endswith("_max"):
+        return max(values, default=None)
     if name not in COUNTED:
-        return max(values) if name.endswith("_max") else sum(values)
-    weights: list[int] = [getattr(one, COUNTED[name]) for one in criteria]
+        return sum(values)
+    weights: list[int] = [getattr(one, COUNTED[name]) for one in some]
     total = sum(mean * weight for mean, weight in zip(values, weights, strict=True))
-    return total / sum(weights) if sum(weights) else 0.0
+    return total / sum(weights) if weights else None
 
 
 def _shown(value: float | None) -> str:
-    if value is None:
-        return "-"
-    return f"{value:.2f}" if isinstance(value, float) else str(value)
+    return str(value) if isinstance(value, int) else shown_time(value)

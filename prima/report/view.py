@@ -12,6 +12,7 @@ from prima.errors.visible import visible
 from prima.messages import Json
 from prima.report.lanes import Lanes, make_lanes
 from prima.report.walk import RobotWalk, walk_of
+from prima.transcript.criteria import shown_times
 from prima.transcript.row import Row, describe
 from prima.transcript.run import Run
 from prima.transcript.spans import base
@@ -136,8 +137,8 @@ def _measures(run: Run) -> list[tuple[str, str, str]]:
     astray = "late answers that another application took"
     wordless = "topics taken up after another application has spoken, without words for it"
     late = "reactions more than 3 s after their event"
-    reaction = f"{found.reaction_mean:.2f} / {found.reaction_max:.2f} s"
-    response = f"{found.response_mean:.2f} / {found.response_max:.2f} s"
+    reaction = shown_times(found.reaction_mean, found.reaction_max)
+    response = shown_times(found.response_mean, found.response_max)
     return [
         ("Units cut", str(found.units_cut), "behaviours that lost a device while they ran"),
         ("Restarts", str(found.restarts), "behaviours that gave way to a reaction (X2)"),

@@ -44,14 +44,24 @@ class Criteria:
     wordless: int = 0
     """Topics taken up after another application has spoken, without words that say so (X9)."""
     reactions: int = 0
-    """Events that some application reacted to."""
-    reaction_mean: float = 0.0
-    reaction_max: float = 0.0
+    """Events that some application reacted to; without one the times below are None."""
+    reaction_mean: float | None = None
+    reaction_max: float | None = None
     late_reactions: int = 0
     """Reactions that began more than 3 s after their event (X8)."""
     responses: int = 0
-    """Reactions in which the robot said something or turned to the user."""
-    response_mean: float = 0.0
-    response_max: float = 0.0
+    """Reactions in which the robot said something or turned to the user; likewise."""
+    response_mean: float | None = None
+    response_max: float | None = None
     delays: list[ReactionDelay] = field(default_factory=list)
     """The delay of each application's reaction to each event."""
+
+
+def shown_time(seconds: float | None) -> str:
+    """A time as people read it; of no reaction at all there is none."""
+    return "-" if seconds is None else f"{seconds:.2f}"
+
+
+def shown_times(mean: float | None, longest: float | None) -> str:
+    """The mean and the longest time, likewise."""
+    return "-" if mean is None else f"{shown_time(mean)}/{shown_time(longest)} s"

@@ -11,6 +11,7 @@ from typing import Literal
 
 from prima.errors import brief
 from prima.errors.visible import escaped, visible
+from prima.transcript.criteria import shown_times
 from prima.transcript.measures import Summary
 from prima.transcript.row import Row
 from prima.transcript.table import LONGEST_SHOWN
@@ -185,10 +186,10 @@ def summary_line(difference: Difference) -> str:
     if before is not None and after is not None:
         line += (
             f"; streams broken: {before.streams_broken} -> {after.streams_broken}"
-            f"; reaction mean/max: {before.reaction_mean:.2f}/{before.reaction_max:.2f} s"
-            f" -> {after.reaction_mean:.2f}/{after.reaction_max:.2f} s"
-            f"; response mean/max: {before.response_mean:.2f}/{before.response_max:.2f} s"
-            f" -> {after.response_mean:.2f}/{after.response_max:.2f} s"
+            f"; reaction mean/max: {shown_times(before.reaction_mean, before.reaction_max)}"
+            f" -> {shown_times(after.reaction_mean, after.reaction_max)}"
+            f"; response mean/max: {shown_times(before.response_mean, before.response_max)}"
+            f" -> {shown_times(after.response_mean, after.response_max)}"
             f"; collisions: {before.collisions} -> {after.collisions}"
         )
     return line

@@ -20,12 +20,12 @@ class Summary:
     collisions: int
     reactions: int
     """Events that some application reacted to with a Command that started."""
-    reaction_mean: float
-    reaction_max: float
+    reaction_mean: float | None
+    reaction_max: float | None
     responses: int
     """Reactions in which the robot said something or turned to the user."""
-    response_mean: float
-    response_max: float
+    response_mean: float | None
+    response_max: float | None
     starved: int = 0
     """Behaviours that another application has kept waiting for too long (E4, E6)."""
 

@@ -161,12 +161,16 @@ class Observer:
             self._respond(tree)
 
     def _take_turn(self, tree: PerceivedStream, record: Entry) -> None:
-        """Somebody speaks: is it who has asked what the user has answered, or another?"""
-        if self._stolen.pop(tree.name, False) and record.command != "q-and-a":
-            self.found.third_turns += 1
-        for name in self._stolen:
-            other = self._trees[name]
-            self._stolen[name] = self._stolen[name] or other.app != tree.app
+        """Somebody speaks: is it who has asked what the user has answered, or another?
+
+        A unit has the speaker from its start, but its parts speak.
+        """
+        if record.command != "iu":
+            if self._stolen.pop(tree.name, False) and record.command != "q-and-a":
+                self.found.third_turns += 1
+            for name in self._stolen:
+                other = self._trees[name]
+                self._stolen[name] = self._stolen[name] or other.app != tree.app
         self._take_up(tree, record)
 
     def _take_up(self, tree: PerceivedStream, record: Entry) -> None:
@@ -215,7 +219,7 @@ class Observer:
             event.answered.add(app)
             seconds = round(self._now - event.time, 3)
             found.reactions += 1
-            found.reaction_max = max(found.reaction_max, seconds)
+            found.reaction_max = max(found.reaction_max or 0.0, seconds)
             found.late_reactions += seconds > LATE_REACTION
             self._delayed += int(seconds * PARTS)
             delay = ReactionDelay(event.name, serial, app, seconds)
@@ -232,7 +236,7 @@ class Observer:
         for time, delay in tree.owed:
             delay.response = seconds = round(self._now - time, 3)
             found.responses += 1
-            found.response_max = max(found.response_max, seconds)
+            found.response_max = max(found.response_max or 0.0, seconds)
             self._responded += int(seconds * PARTS)
         tree.owed = []
 
@@ -314,9 +318,9 @@ class Observer:
         self.found.units_cut += 1
 
 
-def _mean(parts: int, number: int) -> float:
-    """The mean of so many times, from their sum."""
-    return round(parts / PARTS / number, 3) if number else 0.0
+def _mean(parts: int, number: int) -> float | None:
+    """The mean of so many times, from their sum; of none it is None."""
+    return round(parts / PARTS / number, 3) if number else None
 
 
 def observe(records: Iterable[Record]) -> Criteria:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+from copy import deepcopy
 from functools import cache
 from pathlib import Path
 
@@ -20,14 +21,14 @@ from prima.experiments.study import (
     situations,
     study,
 )
-from prima.messages import Command, Emergency, Ended, Occurred
+from prima.messages import Command, Emergency, Ended, Group, Occurred
 from prima.transcript.criteria import Criteria
 from prima.transcript.measures import Measure
 from prima.transcript.observer import observe
 from prima.transcript.record import Entry
 from prima.transcript.table import read_table
 from tests.helpers.robot import Bench, document
-from tests.helpers.stage import Stage, ask, command, move, say
+from tests.helpers.stage import Stage, ask, chain, command, move, say
 
 EVENT = 7
 
@@ -240,6 +241,54 @@ def test_a_conversation_that_the_robot_leaves(policy: str, left: int) -> None:
     stage.request("ea", move())
     stage.at(100).select()
     assert seen(stage).left == left
+
+
+@pytest.mark.parametrize(
+    ("then", "stolen"),
+    [
+        (say("Thank you."), 1),
+        (ask("Sure?"), 0),
+        (Group(chain(say("Thank you."), say("Bye."))), 1),
+        (Group(chain(command("gesture", name="nod"), say("Thank you."))), 1),
+        (Group(chain(ask("Sure?"), say("Thank you."))), 0),
+        (Group(chain(command("gesture", name="nod"), ask("Sure?"))), 0),
+    ],
+)
+def test_a_third_turn_is_stolen_where_the_asker_s_next_utterance_is_no_question(
+    then: Command | Group, stolen: int
+) -> None:
+    stage = Stage("fifo")
+    stage.request("ea", ask())
+    stage.select()
+    stage.at(100).request("fa", say("Me."))
+    stage.at(200).end("ea#1", then=lambda: stage.request("ea", deepcopy(then)), outcome="filled")
+    assert stage.select() == ["fa#1"]
+    stage.at(300).end("fa#1")
+    started = stage.select()
+    if isinstance(then, Group) and len(started) > 1 and stage.records[-1]["command"] == "gesture":
+        stage.at(400).end(started[-1])
+        stage.select()
+    assert seen(stage).third_turns == stolen
+
+
+def test_without_a_reaction_there_is_no_reaction_time() -> None:
+    bench = Bench('<form id="a"><block><speak>A story.</speak></block></form>')
+    bench.finish("A story.")
+    found = observe(_seconds(bench))
+    assert (found.reactions, found.reaction_mean, found.reaction_max) == (0, None, None)
+    assert (found.responses, found.response_mean, found.response_max) == (0, None, None)
+
+
+def test_a_policy_s_reaction_time_is_that_of_runs_with_reactions() -> None:
+    """A run without a reaction is not one in which it took no time."""
+    some = Criteria(reactions=2, reaction_mean=1.5, reaction_max=2.0)
+    runs = (("a", some), ("b", Criteria()))
+    rows = [StudyResult(name, "prima", one, None, None, 9.0, []) for name, one in runs]
+    table = [line.split() for line in format_table(rows).splitlines()]
+    [_, a, b, every] = [line[2:] for line in table if line]
+    assert [line[9] for line in (a, b, every)] == ["2", "0", "2"]
+    assert [line[10] for line in (a, b, every)] == ["1.50", "-", "1.50"]
+    assert [line[11] for line in (a, b, every)] == ["2.00", "-", "2.00"]
 
 
 def test_reactions_and_their_delays() -> None:
