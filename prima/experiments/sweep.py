@@ -166,14 +166,22 @@ class Sweep:
             told = f"its process ended with code {made.code}"
             made = Made(3, failures=told if made.code >= 0 else f"{told}: no memory left?")
         script = self.stage.scripts[variant.scenario]
-        pairs = zip(self.factors, variant.values, strict=True)
-        varied = [cell(one.kind, value) for one, value in pairs]
-        transcript = f"{folder}/{ORDERS}/{made.order}.jsonl" if folder and made.order else ""
-        head: list[Json] = [variant.number, script.path, variant.policy or script.policy]
-        outcome: list[Json] = [made.exit, made.ended, made.failures, made.expects_failed]
-        names = [one.name for one in self.columns if one.role == "measure"]
-        measures = [made.measures.get(name) for name in names]
-        return [*head, variant.seed, *varied, *outcome, made.order, transcript, *measures]
+        cells: dict[str, Json] = {
+            "run": variant.number,
+            "scenario": script.path,
+            "policy": variant.policy or script.policy,
+            "seed": variant.seed,
+            "exit": made.exit,
+            "ended": made.ended,
+            "failures": made.failures,
+            "expects_failed": made.expects_failed,
+            "order": made.order,
+            "transcript": f"{folder}/{ORDERS}/{made.order}.jsonl" if folder and made.order else "",
+            **made.measures,
+        }
+        for factor, value in zip(self.factors, variant.values, strict=True):
+            cells[factor.path] = cell(factor.kind, value)
+        return [cells.get(one.name) for one in self.columns]
 
     def key(self) -> dict[str, Json]:
         """What determines the table: for resuming."""
@@ -183,6 +191,7 @@ class Sweep:
             "prima": __version__,
             "question": json.loads(json.dumps(question)),
             "levels": [list(one.levels) for one in self.factors],
+            "runs": len(self),
             "files": self.stage.digests(),
         }
 

@@ -84,7 +84,7 @@ MEANINGS = {
 
 
 def columns(factors: Sequence[Factor]) -> list[Column]:
-    """The columns of a table."""
+    """The columns of a table; a factor of the scenario that HEAD has, as its seed, is there once."""
     varied = [
         Column(
             one.path,
@@ -95,7 +95,9 @@ def columns(factors: Sequence[Factor]) -> list[Column]:
         )
         for one in factors
     ]
-    return [*HEAD, *varied, *OUTCOMES, *MEASURES, *map(_criterion, CRITERIA)]
+    paths = {one.path for one in factors}
+    head = [one for one in HEAD if one.name not in paths]
+    return [*head, *varied, *OUTCOMES, *MEASURES, *map(_criterion, CRITERIA)]
 
 
 def _criterion(name: str) -> Column:

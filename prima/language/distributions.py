@@ -184,11 +184,17 @@ class Distributions:
         """
         rows = self._rows(name)
         head = rows[0][1] if rows else []
+        if any(";" in one for one in head):
+            raise ValueError(f"{name}: its cells stand between ';'; save it with ',' between them.")
         if column and column not in head:
             hint = did_you_mean(column, head)
             raise ValueError(f'{name} has no column "{column}". {hint}'.rstrip())
         place = head.index(column) if column else 0
         titled = column or (head and not re.match(r"[-+.\d]", head[0]))
+        wide = next((at for at, row in rows if len(row) > 1), 0)
+        if wide and not titled:
+            remedy = "write 1.5 for 1,5, or give the columns names in the first line"
+            raise ValueError(f"{name}:{wide}: there are several cells; {remedy}.")
         texts = [(at, row[place].strip()) for at, row in rows[bool(titled) :] if place < len(row)]
         return [(at, self._with_unit(one)) for at, one in texts if one]
 

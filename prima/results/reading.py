@@ -70,6 +70,9 @@ def read(path: str | Path) -> Sheet:
         raise UsageError(f"{table}: not the table of a sweep: {error}.") from None
     _check(table, cells)
     sheet = Sheet(table, [], cells, _beside(table, PLAN) or {}, cut)
+    planned = sheet.plan.get("runs")
+    if not cut and isinstance(planned, int) and planned > len(sheet):
+        sheet.cut = f"it has {len(sheet):,} of {planned:,} runs; make the others by --resume"
     sheet.columns = _columns(sheet)
     if not any(one.role == "measure" for one in sheet.columns):
         raise UsageError(f"{table}: not the table of a sweep: it has no column of a measure.")

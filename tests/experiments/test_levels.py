@@ -102,6 +102,9 @@ def test_values_measured_by_somebody(tmp_path: Path) -> None:
         "empirical(named.csv:dely)": 'no column "dely". Did you mean "delay"',
         "empirical(named.csv)": 'named.csv:2: "ann"',
         "empirical(nan.csv:delay)": 'nan.csv:4: "nan"',
+        "empirical(comma.csv)": "comma.csv:1: there are several cells; write 1.5 for 1,5",
+        "empirical(excel.csv)": "excel.csv: its cells stand between ';'",
+        "empirical(excel.csv:delay)": "excel.csv: its cells stand between ';'",
         "empirical(.)": "it is not a file",
         "empirical(/dev/zero)": "it is not a file",
         "empirical(empty.csv)": "has no values",
@@ -109,6 +112,8 @@ def test_values_measured_by_somebody(tmp_path: Path) -> None:
     }.items():
         (tmp_path / "empty.csv").write_text("delay\n", encoding="utf-8")
         (tmp_path / "nan.csv").write_text("delay\n1\n\nnan\n", encoding="utf-8")
+        (tmp_path / "comma.csv").write_text("1,5\n2,5\n", encoding="utf-8")
+        (tmp_path / "excel.csv").write_text("delay;who\n1,5;ann\n", encoding="utf-8")
         (tmp_path / "bytes.csv").write_bytes(b"\xff\xfe\x00")
         with pytest.raises(UsageError, match=why):
             factor("touch", text, folder)

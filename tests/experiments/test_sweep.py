@@ -56,6 +56,13 @@ def test_a_row_for_each_combination() -> None:
     assert {one["exit"] for one in made} == {0}
 
 
+def test_a_scenario_s_own_seed_that_is_varied_is_the_column_seed() -> None:
+    out = written("s.csv", vary={"seed": "3|5"})
+    text = Path("s.csv").read_text(encoding="utf-8")
+    assert text.partition("\r\n")[0].split(",").count("seed") == 1
+    assert [row["seed"] for row in out.read()] == [3, 5]
+
+
 def test_a_run_with_what_is_written_is_the_scenario_s_own_run() -> None:
     (row,) = rows(vary={"touch": "1s", "reply": "Yes."})
     own = rehearse("visit.xml")

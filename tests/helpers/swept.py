@@ -60,8 +60,10 @@ def write(folder: Path, made: Sequence[dict[str, Any]], name: str = "sweep.csv")
     plan = {
         "prima": "1.0.0",
         "question": {"scenarios": ["visit.xml"], "design": "full", "seeds": 1},
+        "runs": len(made),
+        "files": ["0123456789abcdef"],
     }
-    (beside / "plan.json").write_text(json.dumps(plan | {"files": ["0123456789abcdef"]}))
+    (beside / "plan.json").write_text(json.dumps(plan))
     (beside / "orders" / f"{ORDERS[0]}.jsonl").write_text("")
     return path
 

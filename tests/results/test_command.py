@@ -114,6 +114,16 @@ def test_a_table_that_was_cut_off_is_shown_as_far_as_it_goes(desk: Path) -> None
     assert "<dt>Runs</dt><dd>59</dd>" in page and "The table is not whole: line 61" in page
 
 
+def test_a_table_whose_sweep_was_broken_off_is_shown_as_far_as_it_goes(desk: Path) -> None:
+    whole = (desk / "sweep.csv").read_bytes().split(b"\r\n")
+    (desk / "sweep.csv").write_bytes(b"\r\n".join(whole[:41]) + b"\r\n")
+    done = prima("report", "sweep.csv", "-o", "page.html", cwd=desk)
+    told = "the table is not whole: it has 40 of 60 runs; make the others by --resume."
+    assert (done.returncode, told in done.stderr) == (2, True), done.stderr
+    page = (desk / "page.html").read_text(encoding="utf-8")
+    assert "<dt>Runs</dt><dd>40</dd>" in page and "it has 40 of 60 runs" in page
+
+
 def test_a_spreadsheets_mark_at_the_beginning_is_no_part_of_a_name(desk: Path) -> None:
     (desk / "sweep.csv").write_bytes(b"\xef\xbb\xbf" + (desk / "sweep.csv").read_bytes())
     assert prima("report", "sweep.csv", "-o", "page.html", cwd=desk).returncode == 0
