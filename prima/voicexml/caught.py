@@ -19,7 +19,7 @@ EVENTS = STANDARD | {
     *("error.unsupported.transfer.bridge", "error.unsupported.transfer.consultation"),
 }
 """Events that nobody need throw: VoiceXML's (2.0, 5.2.6; 2.1, 8) and PRIMA's."""
-OPEN = ("touch.", "error.unsupported.", "error.badfetch.")
+OPEN = ("touch.", "error.unsupported.", "error.badfetch.", "error.connection.protocol.")
 """Beginnings of events that go on with the name of a sensor, Command or code."""
 
 

@@ -25,6 +25,7 @@ UNIVERSALS = {"help": "help", "cancel": "cancel", "exit": "exit"}
 DEAF = frozenset(["record", "transfer"])
 """Items that wait even where no grammar listens."""
 MOST_RESULTS = 100
+MODES = ("dtmf", "voice")
 
 
 @dataclass(slots=True)
@@ -36,6 +37,10 @@ class Active:
     page: Page
     level: Node
     """The element whose grammars are tried together; a link or choice is of its parent."""
+
+
+Taken = tuple[Active, GrammarMatch]
+"""What a grammar takes, with it."""
 
 
 class Inputs:
@@ -80,29 +85,34 @@ class Inputs:
         """What the most specific grammars take of what was said, or None (3.1.4).
 
         The likeliest hypothesis that any grammar takes decides which those are; further results
-        are of the others (5.1.5).
+        are of the others. Of all results the surest comes first (5.1.5).
         """
         most = self.most_results(context)
         self._budget = self.owner.app.utterance()
-        first: Active | None = None
-        results: list[GrammarMatch] = []
+        results: list[Taken] = []
         for text, sure in said:
             if len(results) >= most:
                 break
             for words, mode in self._ways(context, text):
-                active, found = self._taken(context, words, mode, sure, first)
-                known = {(one.utterance, one.means) for one in results}
-                results += [one for one in found if (one.utterance, one.means) not in known]
-                first = first or active
+                first = results[0][0] if results else None
+                found = self._taken(context, words, mode, sure, first)
+                known = {(one.utterance, one.means) for _, one in results}
+                results += [one for one in found if (one[1].utterance, one[1].means) not in known]
                 if found:
                     break
-        if first is None:
+        if not results:
             return None
-        best, *others = results[:most]
-        further = [(one.utterance, one.interpretation, one.confidence) for one in others]
-        owner, page = first.owner, first.page
+        surest = sorted(results[:most], key=lambda one: -one[1].confidence)
+        (active, best), *others = surest
+        further = [(one.utterance, one.interpretation, one.confidence) for _, one in others]
         return TakenUtterance(
-            best.utterance, best.interpretation, owner, page, best.confidence, best.mode, further
+            best.utterance,
+            best.interpretation,
+            active.owner,
+            active.page,
+            best.confidence,
+            best.mode,
+            further,
         )
 
     def most_results(self, context: Context) -> int:
@@ -118,7 +128,8 @@ class Inputs:
 
     def modes(self, context: Context) -> list[str]:
         """The kinds of input that the application takes (6.3.6)."""
-        return setting(context, "inputmodes").split() or ["dtmf", "voice"]
+        told = setting(context, "inputmodes").split()
+        return [one for one in told if one in MODES] or [*MODES]
 
     def _ways(self, context: Context, text: str) -> Iterator[tuple[str, str]]:
         """An utterance as keys and as speech, as far as the application takes such input."""
@@ -129,23 +140,23 @@ class Inputs:
 
     def _taken(
         self, context: Context, said: str, mode: str, sure: float, first: Active | None
-    ) -> tuple[Active | None, list[GrammarMatch]]:
+    ) -> list[Taken]:
         """What grammars of one scope take: of ``first``'s, or the first that takes anything."""
         most = self.most_results(context)
         least = number(context, "confidencelevel", USUAL_CONFIDENCE)
         least = least if 0 <= least <= 1 else USUAL_CONFIDENCE
-        results: list[GrammarMatch] = []
+        results: list[Taken] = []
         for active in self._active:
             if first is not None and active.level is not first.level:
                 continue
             for one in active.listener.match(said, mode, most) if len(results) < most else ():
                 found = replace(one, confidence=round(one.confidence * sure, 6))
-                if found.confidence >= least and found.means not in {r.means for r in results}:
-                    results.append(found)
+                if found.confidence >= least and found.means not in {r.means for _, r in results}:
+                    results.append((active, found))
                     first = first or active
             if self._budget.steps <= 0:
                 self.owner.app.give_up(active.owner, "what it listens for takes too long")
-        return first, results
+        return results
 
     # Which grammars listen --------------------------------------------------------------
 
@@ -213,7 +224,7 @@ class Inputs:
     ) -> Iterator[Active]:
         target = option if option.tag == "choice" else node
         words = words_of(option)
-        value: Json = option.get("value") or words or dtmf
+        value: Json = option.attributes.get("value", words or dtmf)
         approximate = (option.get("accept") or node.get("accept")) == "approximate"
         grammars = option.all("grammar")
         for grammar in grammars:

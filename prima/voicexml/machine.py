@@ -102,7 +102,10 @@ class Machine:
             return
         for choice in choices:
             self.engine.set(local, "_prompt", words_of(choice))
-            self.engine.set(local, "_dtmf", " ".join("".join(keys[choice.index].split())))
+            if keys[choice.index] and not choice.all("grammar"):
+                self.engine.set(local, "_dtmf", " ".join("".join(keys[choice.index].split())))
+            else:
+                self.engine.unset(local, "_dtmf")
             self.content.read_all(node, context, local, speech)
             speech.parts.append(" " if choice is not choices[-1] else "")
 

@@ -272,6 +272,20 @@ def test_keys_are_enumerated_one_by_one() -> None:  # 2.2.4
     assert call.said()[:1] == ["news is 4 2."]
 
 
+@pytest.mark.parametrize(
+    ("menu", "choice"),
+    [
+        ("", '<choice event="a">tea</choice>'),
+        (' dtmf="true"', f'<choice event="a">tea{GO}</choice>'),
+        ("", f'<choice dtmf="1" event="a">tea{GO}</choice>'),
+    ],
+)
+def test_a_choice_without_keys_or_with_a_grammar_has_no_dtmf(menu: str, choice: str) -> None:
+    """2.2.4"""
+    prompt = '<prompt><enumerate><value expr="typeof _dtmf"/></enumerate></prompt>'
+    assert Call(f"<menu{menu}>{prompt}{choice}</menu>").play() == ["undefined"]
+
+
 @pytest.mark.parametrize("tag", ["s", "sentence", "emphasis"])
 def test_the_choices_may_be_enumerated_in_a_sentence(tag: str) -> None:  # 2.2.4
     text = f"""<menu><prompt>Say <{tag}>one of <enumerate/></{tag}></prompt>

@@ -230,6 +230,12 @@ def test_rule(one: Case) -> None:
     one.holds()
 
 
+def test_the_value_of_an_option_may_be_empty() -> None:  # 2.3.1.3
+    option = '<option value="">blank</option><option dtmf="1" value="">none</option>'
+    for said in ("blank", "1"):
+        assert asked(f"{option}<filled><log expr=\"f === ''\"/></filled>", said)[0] == "true"
+
+
 def test_a_modal_field_hears_its_own_grammars_alone() -> None:  # 2.3.1
     call = Call(
         f'<link event="odd">{rule("operator")}</link>'

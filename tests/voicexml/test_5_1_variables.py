@@ -7,6 +7,7 @@ import pytest
 from prima.voicexml.reading import read_page
 from tests.helpers.dialogs import (
     CITIES,
+    GRAMMAR,
     HOME,
     LEAF,
     PAGE,
@@ -357,6 +358,21 @@ def test_lastresult_has_what_else_the_recogniser_has_heard(
     call.hears(said[0], 0.7, **said[1])
     town, sure, code, _ = logged[0].split()
     assert call.logs() == [*logged, f"{code} {town} {sure} {code} voice"]
+
+
+def test_of_several_results_the_surest_comes_first_and_fills_the_field() -> None:  # 5.1.5
+    """What a grammar passes over as garbage makes it less sure of the rest."""
+    call = Call(
+        f"""<property name="maxnbest" value="2"/><form><field name="f"><prompt>Sure?</prompt>
+        <grammar {GRAMMAR} root="r"><rule id="r"><ruleref special="GARBAGE"/>
+        <one-of><item>yes</item><item>no</item></one-of></rule></grammar>
+        <filled><foreach item="one" array="application.lastresult$"><log expr="one.utterance + ' ' +
+        one.confidence"/></foreach><log expr="f"/></filled></field></form>"""
+    )
+    call.play()
+    call.listens()
+    call.hears("um yes", 0.9, no=0.8)
+    assert call.logs() == ["no 0.8", "um yes 0.675", "no"]
 
 
 def test_what_the_recogniser_is_not_sure_of_is_nomatch_and_lastresult_tells() -> None:  # 5.1.5

@@ -53,6 +53,13 @@ def test_an_unknown_property_is_ignored() -> None:  # 6.3
         ("confidencelevel", "1.1", "Write a number from 0 to 1."),
         ("maxnbest", "x", "Write a whole number from 1."),
         ("bargein", "yes", "Write false or true."),
+        ("inputmodes", "text", "Write dtmf, voice, or both with a space between."),
+        ("inputmodes", "voice dtmf", None),
+        ("recordutterance", "7", "Write false or true."),
+        ("datafetchhint", "5", "Write prefetch or safe."),
+        ("documentmaxage", "x", "Write a whole number from 0."),
+        ("termchar", "12", "Write one key: 0 to 9, *, # or A to D; or none."),
+        ("termchar", "", None),
         ("fetchtimeout", "3s", None),
         ("sensitivity", "0.5", None),
         ("com.example.timeout", "?", None),
@@ -163,6 +170,16 @@ def test_inputmodes_says_how_one_may_answer() -> None:  # 6.3.6
     )
     call.answer("1", "tea")
     assert call.logs() == ["no", "tea"]
+
+
+@pytest.mark.parametrize("value", ["text", "Voice", "dtmf,voice", ""])
+def test_inputmodes_that_are_none_are_both(value: str) -> None:  # 6.3.6
+    call = Call(
+        f'<property name="inputmodes" value="{value}"/>'
+        + ask('<option dtmf="1">tea</option><nomatch><log>no</log></nomatch>')
+    )
+    call.answer("1")
+    assert call.logs() == ["tea"]
 
 
 def test_universals_are_off_unless_a_property_names_them() -> None:  # 6.3.6

@@ -326,6 +326,7 @@ CATCHES = VXML.format("", '<catch event="{}"><exit/></catch><form><block>{}</blo
             ("exit", ""),
         ),
         *(("error.unsupported.fly", ""), ("maxspeechtimeout", ""), ("connection", "")),
+        ("error.connection.protocol.486", ""),
     ],
 )
 def test_a_handler_of_voicexml_whose_event_is_a_slip_is_told(

@@ -7,9 +7,17 @@ from pathlib import Path
 import pytest
 
 from prima import api
+from prima.errors import Problem
+from prima.voicexml.reading import read_page
 from tests.helpers.command import prima
 from tests.helpers.dialogs import block, codes, run
 from tests.helpers.voice import vxml
+
+
+def warnings(text: str) -> list[Problem]:
+    """What validation says of a document besides errors."""
+    return read_page("a.vxml", "a.vxml", vxml(text).encode()).warnings()
+
 
 DOCUMENTS = api.documents_folder().resolve()
 
@@ -63,3 +71,32 @@ def test_a_call_with_music_can_be_ended_by_the_caller(tmp_path: Path) -> None:
     )
     done = prima("run", "s.xml", cwd=tmp_path)
     assert "log: near_end_disconnect" in done.stdout, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    ("content", "wrong"),
+    [
+        ('<prosody pitch="foo" volume="101" range="?">a</prosody>', ["pitch", "range", "volume"]),
+        ('<prosody pitch="+5%" volume="+6dB" range="120Hz">a</prosody>', []),
+        ('<prosody pitch="-2st" volume="100" range="x-low">a</prosody>', []),
+        ('<voice age="x" variant="0">a</voice>', ["age", "variant"]),
+        ('<voice age="0" variant="1" gender="female">a</voice>', []),
+    ],
+)
+def test_speech_that_no_voice_can_make_is_told(content: str, wrong: list[str]) -> None:
+    """SSML 1.0, 3.2.1 and 3.2.4: it is said all the same."""
+    text = block(f"<prompt>{content}</prompt>")
+    told = [one.message.split()[0] for one in warnings(text)]
+    assert told == wrong
+    assert run(text).said() == ["a"]
+
+
+def test_identifiers_and_ages_that_are_none_are_told() -> None:
+    text = '<form id="a b"><block><goto next="#c" maxage="-1" maxstale="x"/></block></form><menu id="1c"/>'
+    told = [one.message for one in warnings(text) if "no dialog" not in one.message]
+    assert [one.partition(" is")[0] for one in told] == [
+        'id "a b"',
+        'maxage "-1"',
+        'maxstale "x"',
+        'id "1c"',
+    ]

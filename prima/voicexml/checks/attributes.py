@@ -101,6 +101,12 @@ def _capitals(node: Node, name: str) -> Problem:
     return READ_AS.at(node.attribute_place(name), hint, name=name, value=text, right=small)
 
 
+PITCH = r"x-low|low|medium|high|x-high|default|[+-]?(\d+\.?\d*|\.\d+)(Hz|st|%)?"
+"""A pitch, or a range of it (SSML 1.0, 3.2.4)."""
+VOLUME = (
+    r"silent|x-soft|soft|medium|loud|x-loud|default|[+-](\d+\.?\d*|\.\d+)(dB|%)?"
+    r"|100(\.0*)?|\d{1,2}(\.\d*)?"
+)
 REMEDIES = {
     "rate": 'Write slow, fast or another name of a rate, a number, or a change such as "+10%".',
     "time": 'Write a number with its unit: "500ms" or "2.5s".',
@@ -110,6 +116,12 @@ REMEDIES = {
     "event": 'Write a name such as "order.cancelled".',
     "events": 'Write names such as "order.cancelled", with spaces between.',
     "language": 'Write a language tag such as "en".',
+    "number": "Write a whole number from 0.",
+    "name": "Write letters, digits, - and _, a letter first.",
+    "key": "Write one key: 0 to 9, *, # or A to D; or none.",
+    "modes": "Write dtmf, voice, or both with a space between.",
+    "pitch": 'Write x-low, low, medium, high, x-high or default, "120Hz", or a change such as "+10%".',
+    "volume": 'Write silent, x-soft, soft, medium, loud, x-loud or default, 0 to 100, or a change such as "+6dB".',
 }
 
 
@@ -148,6 +160,12 @@ FITS: Mapping[str, Callable[[str], bool]] = {
     "keys": lambda text: KEYS.fullmatch(text) is not None,
     "share": _is_share,
     "rate": is_rate,
+    "number": lambda text: text.isascii() and text.isdigit(),
+    "name": lambda text: re.fullmatch(r"[^\W\d][\w.-]*", text) is not None,
+    "key": lambda text: not text or (KEYS.fullmatch(text) is not None and len(text) == 1),
+    "modes": lambda text: {*text.split()} in ({"dtmf"}, {"voice"}, {"dtmf", "voice"}),
+    "pitch": lambda text: re.fullmatch(PITCH, text) is not None,
+    "volume": lambda text: re.fullmatch(VOLUME, text) is not None,
 }
 
 

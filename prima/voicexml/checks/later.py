@@ -31,8 +31,15 @@ LATER_VALUES = {
     "throw": {"event": "event"},
     "return": {"event": "event"},
     "catch": {"event": "events"},
+    "form": {"id": "name"},
+    "menu": {"id": "name"},
+    "prosody": {"pitch": "pitch", "range": "pitch", "volume": "volume"},
+    "voice": {"age": "number", "variant": "integer"},
 }
-"""Keys that nobody can press, and events that nothing throws or takes."""
+"""Keys that nobody can press, events that nothing throws or takes, and what no voice can do."""
+FETCHED_VALUES = {"maxage": "number", "maxstale": "number"}
+"""What all elements that fetch may say (6.1.2)."""
+FETCHED = ("audio", "document", "grammar", "object", "script", "data")
 PROPERTIES = {
     **dict.fromkeys(
         [
@@ -42,6 +49,11 @@ PROPERTIES = {
         "time",
     ),
     **dict.fromkeys(["confidencelevel", "sensitivity", "speedvsaccuracy"], "share"),
+    **{f"{what}fetchhint": "prefetch safe" for what in FETCHED},
+    **{f"{what}{age}": "number" for what in FETCHED for age in FETCHED_VALUES},
+    "inputmodes": "modes",
+    "recordutterance": "true false",
+    "termchar": "key",
     "bargein": "true false",
     "bargeintype": "speech hotword",
     "maxnbest": "integer",
@@ -117,7 +129,7 @@ def _value_problems(node: Node) -> list[Problem]:
     """Values that do nothing, though they are no error when they are reached."""
     return [
         bad_value(node, name, node.get(name), kind)._replace(severity="warning")
-        for name, kind in LATER_VALUES.get(node.key, {}).items()
+        for name, kind in {**FETCHED_VALUES, **LATER_VALUES.get(node.key, {})}.items()
         if name in node.attributes and not fits(kind, node.get(name))
     ]
 
