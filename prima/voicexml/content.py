@@ -11,6 +11,7 @@ from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, no_item, 
 from prima.markup.tree import Node
 from prima.messages import Json, Say
 from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
+from prima.voicexml.access import host_of_page, may_read
 from prima.voicexml.dom import DOM, plain_tree
 from prima.voicexml.elements import INPUTS
 from prima.voicexml.fetching import decoded, fetch
@@ -21,7 +22,6 @@ from prima.voicexml.speech import Speech
 from prima.voicexml.state import SCOPES, Context, Flow, GoDialog, HungUp, UriRequest
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
-"""Items that take input or a result; a block and an initial are control items (2.3)."""
 STEP_TAGS = 10
 """Tags of a document of data that count as one step."""
 SERVICE = "service:"
@@ -275,7 +275,11 @@ class Content(Speaker):
             return
         for _ in range(content.count(b"<") // STEP_TAGS):
             self.owner.app.count_step(node)
-        held = self.engine.scope(tree=plain_tree(uri, content, source(node)))
+        tree, host = plain_tree(uri, content, source(node)), host_of_page(context.page)
+        if not may_read(tree, host):
+            message = f"{uri}: its access-control does not name {host}"
+            raise Thrown.at(node, "error.noauthorization", message)
+        held = self.engine.scope(tree=tree)
         blank = self.engine.scope()
         try:
             self.engine.put(held, "dom", self._dom())

@@ -147,7 +147,7 @@ A node is made when a script first asks for it.
 """
 
 
-def plain_tree(uri: str, data: bytes, place: str) -> Json:
+def plain_tree(uri: str, data: bytes, place: str) -> list[Any]:
     """An XML document as plain data: the nodes beside and with its root element.
 
     Raises:
@@ -169,7 +169,7 @@ class _DomBuilder:
         self._declared: list[Json] = []
         self._cdata = False
 
-    def build(self, text: str) -> Json:
+    def build(self, text: str) -> list[Any]:
         parser = expat.ParserCreate(encoding="utf-8", namespace_separator=" ")
         parser.namespace_prefixes = True
         parser.buffer_text = True

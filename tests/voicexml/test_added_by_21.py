@@ -4,6 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from prima.markup.reader import parse
+from prima.voicexml.access import host_of_page, may_read
+from prima.voicexml.document import Page
+from prima.voicexml.dom import plain_tree
+from prima.voicexml.site import site_of
 from tests.helpers.dialogs import (
     FAIL,
     PASS,
@@ -163,6 +168,45 @@ def test_data_may_stand_in_a_document_and_in_a_form() -> None:  # 2.1, 5
 def test_data_that_is_not_xml_is_error_badfetch(content: str) -> None:  # 2.1, 5
     call = Call(block('<data name="d" src="d.xml"/>'), **{"d.xml": content})
     assert call.ended.startswith("error.badfetch")
+
+
+@pytest.mark.parametrize(
+    ("rules", "read"),
+    [
+        ("", True),
+        ("<?other allow='none.example'?>", True),
+        ("<?access-control allow='*'?>", True),
+        ("<?access-control allow='a.example localhost'?>", True),
+        ("<?access-control allow='a.example'?><?access-control allow='LOCALHOST'?>", True),
+        ("<?access-control deny='*' allow='localhost'?>", True),
+        ("<?access-control allow='a.example'?>", False),
+        ("<?access-control allow='*' deny='localhost'?>", False),
+        ("<?access-control allow='*' deny='*'?>", False),
+        ("<?access-control?>", False),
+    ],
+)
+def test_data_says_who_may_read_it(rules: str, read: bool) -> None:  # 2.1, 5
+    refused = '<catch event="error.noauthorization"><log>refused</log><exit/></catch>'
+    text = f"<form>{refused}<block><data name='d' src='d.xml'/><log>read</log></block></form>"
+    assert Call(text, **{"d.xml": f"{rules}<n/>"}).logs() == ["read" if read else "refused"]
+
+
+@pytest.mark.parametrize(
+    ("rule", "read"),
+    [
+        ("allow='app.example.org'", True),
+        ("allow='*.example.org'", True),
+        ("allow='*' deny='*.example.org'", False),
+        ("deny='*.example.org' allow='app.example.org'", True),
+        ("allow='example.org'", False),
+        ("allow='localhost'", False),
+    ],
+)
+def test_who_may_read_data_is_known_by_the_host_of_the_document(rule: str, read: bool) -> None:
+    root = parse("a.vxml", b"<vxml/>")
+    page = Page("a.vxml", root, site=site_of("a.vxml", "http://App.example.org/x/a.vxml"))
+    tree = plain_tree("d.xml", f"<?access-control {rule}?><n/>".encode(), "")
+    assert may_read(tree, host_of_page(page)) is read
 
 
 def test_data_without_name_is_fetched_and_forgotten() -> None:  # 2.1, 5
