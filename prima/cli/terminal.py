@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Protocol
 
+from prima.devices.lines import line_text
+
 GLANCE = 0.1
 """How often to check whether a line has been begun (s)."""
 LONGEST_BYTES = 8004
@@ -56,14 +58,14 @@ class Piped:
         while b"\n" not in self._held:
             if self._over:
                 last, self._held = self._held, b""
-                return last.decode() if last else None
+                return line_text(last) if last else None
             if wait is not None and not select.select([0], [], [], wait)[0]:
                 raise TimeoutError
             got = os.read(0, 65536)
             self._over = not got
             self._take(got)
         line, _, self._held = self._held.partition(b"\n")
-        return line.decode()
+        return line_text(line)
 
     def _take(self, got: bytes) -> None:
         """Keep what was read, and the beginning of a line that is too long."""

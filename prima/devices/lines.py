@@ -13,6 +13,15 @@ UNFIT = re.compile("[^\t -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Characters that XML does not allow."""
 
 
+def line_text(line: bytes, errors: str = "strict") -> str:
+    """The text of a line, without a return at its end or a mark of UTF-8 at its beginning.
+
+    Raises:
+        UnicodeDecodeError: it is not UTF-8, if ``errors`` are ``strict``.
+    """
+    return line.rstrip(b"\r").decode("utf-8-sig", errors)
+
+
 def check_line(text: str) -> None:
     """Refuse a line that is too long, or holds what no document may hold.
 

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -105,13 +104,18 @@ class _Levels:
     def checked(self, levels: Sequence[str]) -> tuple[str, ...]:
         """Levels of which none is twice, none is of another kind, and none is left out in vain."""
         attribute = self.target.attribute
+        seen: dict[float | str, str] = {}
         for level in levels:
+            same: float | str = level
             if level or attribute is None:
-                self.value(level)
+                value = self.value(level)
+                same = value if self.kind in MEASURED else level
             elif attribute.required:
                 raise self.wrong(f"<{self.target.node.tag}> needs {attribute.name}.")
-        if twice := next((one for one, times in Counter(levels).items() if times > 1), None):
-            raise self.wrong(f'The level "{twice}" is there twice.')
+            if same in seen:
+                as_well = "" if seen[same] == level else f', as "{seen[same]}"'
+                raise self.wrong(f'The level "{level}" is there twice{as_well}.')
+            seen[same] = level
         return tuple(levels)
 
     def value(self, text: str) -> float:

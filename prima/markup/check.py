@@ -315,7 +315,7 @@ def _value_problem(item: Attribute, is_expression: bool, text: str) -> BadValue 
         only = item.choices[0] if len(item.choices) == 1 else ""
         return BadValue("is not allowed here.", remedy, right=near or only)
     bad = _not_of_kind(item.kind, text)
-    right = meant_value(item.kind, text) if bad else ""
+    right = meant_value(item.kind, text, item.default) if bad else ""
     return BadValue(bad.wrong, f'Write "{right}".', right=right) if bad and right else bad
 
 

@@ -50,11 +50,17 @@ def half(text: str) -> str:
     return unicodedata.normalize("NFKC", re.sub("[‘’‚]", "'", straight))
 
 
-def meant_value(kind: str, text: str) -> str:
-    """A value of a kind that a wrong text most likely means, or nothing."""
+def meant_value(kind: str, text: str, usual: str = "") -> str:
+    """A value of a kind that a wrong text most likely means, or nothing.
+
+    Args:
+        kind: the kind.
+        text: the text.
+        usual: the default, if there is one: it tells seconds from milliseconds.
+    """
     if len(text) > LONG:
         return ""
-    for guess in (half(text), _guess(kind, half(text))):
+    for guess in (half(text), _guess(kind, half(text), usual)):
         try:
             if guess and guess != text:
                 read_value(kind, guess)
@@ -65,15 +71,17 @@ def meant_value(kind: str, text: str) -> str:
 
 
 LONG_SECONDS = 100
-"""A time without a unit from this number on most likely means milliseconds."""
+"""A time without a unit from this number on most likely means milliseconds, unless such seconds
+are usual."""
 
 
-def _guess(kind: str, text: str) -> str:
+def _guess(kind: str, text: str, usual: str) -> str:
     kind = DRAWABLE.get(kind, kind)
     if kind == "duration" and (match := re.fullmatch(MEASURE, text)):
         number, unit = match[1].replace(",", "."), match[2]
         if unit in ("", "s", "ms"):
-            return f"{number}{unit or ('s' if float(number) < LONG_SECONDS else 'ms')}"
+            long = re.fullmatch(r"\d{3,}s", usual)
+            return f"{number}{unit or ('s' if long or float(number) < LONG_SECONDS else 'ms')}"
         return f"{float(number) * UNITS[unit] / 1000:g}s" if unit in UNITS else ""
     if kind in ("number", "integer") and (match := re.fullmatch(NUMBER, text)):
         return match[1].replace(",", ".")

@@ -50,7 +50,9 @@ def test_levels(path: str, levels: str, made: tuple[str, ...]) -> None:
     ("path", "levels", "why"),
     [
         ("touch", "soon", '"soon"'),
-        ("touch", "1s|1s", 'The level "1s" is there twice'),
+        ("touch", "1s|1s", 'The level "1s" is there twice.'),
+        ("touch", "1s|2s|1000ms", 'The level "1000ms" is there twice, as "1s".'),
+        ("person.speed", "1|1.0", 'The level "1.0" is there twice, as "1".'),
         ("touch", "5s..1s/1s", "it ends before it begins"),
         ("touch", "0s..1s/0s", "its step is not above 0"),
         ("touch", "0s..86400s/1ms", "levels; at most 100,000"),

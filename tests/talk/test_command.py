@@ -84,6 +84,13 @@ def test_wrong_usage_is_refused(tmp_path: Path, words: list[str], message: str) 
     assert message in done.stderr.decode()
 
 
+def test_what_is_piped_may_come_from_windows(tmp_path: Path) -> None:
+    given = b"\xef\xbb\xbf/back 5s\r\n/touch head\r\nNever mind.\r\n"
+    done = prima(tmp_path, given, str(TOUCHED))
+    assert (done.returncode, b"invalid" in done.stderr) == (0, False), done.stderr
+    assert "touches the robot's head" in done.stdout.decode()
+
+
 def test_what_is_piped_may_be_anything(tmp_path: Path) -> None:
     done = prima(tmp_path, b"\xff\xfe\n" + b"x" * 3_000_000 + b"\n\0\n/who\n", str(TOUCHED))
     assert done.returncode == 1

@@ -7,6 +7,8 @@ import os
 from collections.abc import Iterator
 from threading import Semaphore, Thread
 
+from prima.devices.lines import line_text
+
 CHUNK = 4096
 LONGEST = 16_000
 """Bytes of a line that are kept; such a line is refused anyway."""
@@ -59,10 +61,10 @@ def _lines(source: int) -> Iterator[str | None]:
     left = b""
     while read := _piece(source):
         *whole, left = (left + read).split(b"\n")
-        yield from map(_text, whole)
+        yield from (line_text(one, "replace") for one in whole)
         left = left[:LONGEST]
     if left:
-        yield _text(left)
+        yield line_text(left, "replace")
     yield None
 
 
@@ -71,7 +73,3 @@ def _piece(source: int) -> bytes:
         return os.read(source, CHUNK)
     except OSError:  # a terminal that is gone
         return b""
-
-
-def _text(line: bytes) -> str:
-    return line.rstrip(b"\r").decode("utf-8", "replace")
