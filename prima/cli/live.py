@@ -120,8 +120,8 @@ def live(
     Rows are printed as they happen. Ctrl-C ends the run and makes the robot safe; --resume
     goes on with it. With SCENARIO the robot, its world and its user are simulated.
 
-    Exit code 2 if something is wrong before the run, 3 if the robot is not there or an
-    application ended by an error, 130 after Ctrl-C.
+    Exit code 1 if documents have errors, 2 if something else is wrong before the run, 3 if the
+    robot is not there or an application ended by an error, 130 after Ctrl-C.
 
     \b
     prima live --robot documents/robots/simulated.xml --fa documents/fa/follow.xml -o visit.jsonl

@@ -19,7 +19,7 @@ from prima.live.clock import Clock
 from prima.live.deadlines import run
 from prima.live.devices import LiveDevices
 from prima.live.driver import Driver
-from prima.live.drivers import driver_class
+from prima.live.drivers import driver_class, drivers_in
 from prima.live.journal import Journal, Redactor
 from prima.live.recordings import Recordings
 from prima.live.services import LiveServices
@@ -244,10 +244,11 @@ def make_drivers(robot: Profile, site: Map, files: Iterable[str]) -> list[Driver
     if not robot.drivers:
         hint = 'Write <driver kind="..."/> in it, as docs/live.md shows.'
         raise UsageError(f"{robot.place}: The robot {robot.id} has no driver. {hint}")
+    defined = [found for file in files for found in drivers_in(file)]
     made = []
     for settings in robot.drivers:
         try:
-            kind = driver_class(settings.kind, tuple(files))
+            kind = driver_class(settings.kind, defined)
         except UsageError as error:
             raise UsageError(f"{settings.place}: {error}") from None
         try:

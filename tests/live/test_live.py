@@ -174,6 +174,7 @@ class Broken(Driver):
     ("driver", "code", "told"),
     [
         ('<driver kind="sims"/>', 2, 'robot.xml:20:3: There is no driver of the kind "sims". Did'),
+        ('<driver kind="zz"/>', 2, "The kinds are away, broken, console, flood"),
         ('<driver kind="never" open="300ms"/>', 3, "robot.xml:20:3: never: no answer within 0.3 s"),
         ('<driver kind="away" address="here:1"/>', 3, "away at here:1: nobody listens there"),
         ('<driver kind="silent" accept="300ms"/>', 3, "the device does not accept it"),
@@ -212,6 +213,10 @@ def test_drivers_that_do_not_work_end_in_a_clear_sentence(
             "prima: nowhere.xml: cannot",
         ),
         (["--robot", ROBOT, "--world", "nowhere.xml"], "prima: nowhere.xml: cannot"),
+        (
+            ["--robot", ROBOT, "--ea", "documents/ea/guide.xml", "--driver", "nowhere.py"],
+            "prima: nowhere.py: cannot be read: there is no such file.",
+        ),
     ],
 )
 def test_wrong_usage_is_told_with_exit_code_2(words: list[str], told: str) -> None:

@@ -6,6 +6,7 @@ import importlib
 import importlib.util
 import inspect
 import sys
+from collections.abc import Sequence
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -22,20 +23,18 @@ def kinds() -> list[str]:
     return sorted(own | {point.name for point in entry_points(group=GROUP)})
 
 
-def driver_class(kind: str, files: tuple[str, ...] = ()) -> type[Driver]:
+def driver_class(kind: str, defined: Sequence[type[Driver]] = ()) -> type[Driver]:
     """The driver of a kind.
 
     Args:
         kind: as a robot's document names it.
-        files: Python files that define drivers, which come first.
+        defined: drivers of Python files, which come first.
 
     Raises:
-        UsageError: there is none, or a file cannot be run.
+        UsageError: there is none.
     """
-    for file in files:
-        for found in _defined(file):
-            if found.kind == kind:
-                return found
+    if own := next((one for one in defined if one.kind == kind), None):
+        return own
     points = {point.name: point for point in entry_points(group=GROUP)}
     if kind in points:
         found = points[kind].load()
@@ -43,19 +42,26 @@ def driver_class(kind: str, files: tuple[str, ...] = ()) -> type[Driver]:
             raise UsageError(f'The entry point "{kind}" in {GROUP} is not a Driver class.')
         return found
     if kind not in kinds():
-        hint = did_you_mean(kind, kinds()) or f"The kinds are {one_of(kinds())}."
+        known = sorted({*kinds(), *(one.kind for one in defined)})
+        hint = did_you_mean(kind, known) or f"The kinds are {one_of(known)}."
         raise UsageError(f'There is no driver of the kind "{kind}". {hint}')
     made: type[Driver] = importlib.import_module(f"{__name__}.{kind}").DRIVER
     return made
 
 
-def _defined(file: str) -> list[type[Driver]]:
-    """The drivers that a Python file defines; it is run, and may import what is beside it."""
+def drivers_in(file: str) -> list[type[Driver]]:
+    """The drivers that a Python file defines; it is run, and may import what is beside it.
+
+    Raises:
+        UsageError: there are none, or it cannot be run.
+    """
     path = Path(file)
+    if not path.is_file():
+        raise UsageError(f"{file}: cannot be read: there is no such file.")
     if (folder := str(path.resolve().parent)) not in sys.path:
         sys.path.append(folder)
     spec = importlib.util.spec_from_file_location(f"prima_driver_{path.stem}", path)
-    if spec is None or spec.loader is None or not path.is_file():
+    if spec is None or spec.loader is None:
         raise UsageError(f"{file}: this is not a Python file.")
     module = importlib.util.module_from_spec(spec)
     try:
