@@ -168,7 +168,7 @@ class Recording(Protocol):
     lengths: dict[str, int]
     """What has been recorded, and how long it was (ms)."""
 
-    def check(self, item: Node) -> None:
+    def check(self, context: Context, item: Node) -> None:
         """Refuse a format in which nothing can be recorded."""
 
     def prepare(self, item: Node, question: Command) -> None:

@@ -28,8 +28,7 @@ class Questions:
         owner = self.owner
         # A grammar that cannot be used is told before anything is said.
         yield from gathered(owner, lambda: owner.inputs.activate(context))
-        if item.tag == "record":
-            owner.items_of.recorder.check(item)
+        owner.items_of.recorder.check(context, item)
         asked = take_last_said(owner.queue)
         question = self._question(context, item, asked)
         if item.tag == "record":

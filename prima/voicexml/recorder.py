@@ -8,6 +8,7 @@ from prima.markup.tree import Node
 from prima.messages import BEEP, Command, Cue, Data, Event, Json
 from prima.voicexml.matching import KEYS
 from prima.voicexml.owner import MachineOwner
+from prima.voicexml.settings import setting
 from prima.voicexml.state import Context, Flow, TakenUtterance
 
 FORMATS = frozenset(["audio/basic", "audio/x-alaw-basic", "audio/x-wav", "audio/wav"])
@@ -36,13 +37,16 @@ class RecordItems:
         self.lengths[said] = MS_A_LETTER * len(said) if ms is None else int(ms)
         return self.lengths[said]
 
-    def check(self, item: Node) -> None:
-        """Refuse a format in which nothing can be recorded.
+    def check(self, context: Context, item: Node) -> None:
+        """Refuse a format in which nothing can be recorded, of an item or of what is said to it.
 
         Raises:
-            Thrown: ``error.unsupported.format``.
+            Thrown: ``error.unsupported.format`` (2.0, 2.3.6; 2.1, 7.2).
         """
-        name = item.get("type").partition(";")[0].strip().lower()
+        told = item.get("type") if item.tag == "record" else ""
+        if item.tag != "record" and setting(context, "recordutterance") == "true":
+            told = setting(context, "recordutterancetype")
+        name = told.partition(";")[0].strip().lower()
         if name and name not in FORMATS:
             raise Thrown.at(item, "error.unsupported.format", f'nothing is recorded as "{name}"')
 

@@ -418,3 +418,22 @@ def test_data_is_a_read_only_dom() -> None:
         **{"news.xml": "<news><item>one</item><item>two</item></news>"},
     )
     assert call.logs() == ["two"]
+
+
+@pytest.mark.parametrize(
+    ("on", "kind", "logged"),
+    [
+        ("true", "audio/basic", "yes"),
+        ("true", "audio/foo", "unsupported"),
+        ("false", "audio/foo", "yes"),
+    ],
+)
+def test_what_is_said_is_recorded_in_formats_that_there_are(
+    on: str, kind: str, logged: str
+) -> None:  # 2.1, 7.2
+    text = f"""<property name="recordutterance" value="{on}"/>
+    <property name="recordutterancetype" value="{kind}"/><form>
+    <catch event="error.unsupported.format"><log>unsupported</log><exit/></catch>
+    <field name="f"><prompt>Q?</prompt>{YES}<filled><log expr="f"/><exit/></filled></field></form>"""
+    says = () if logged == "unsupported" else ("yes",)
+    assert run(text, *says).logs() == [logged]
