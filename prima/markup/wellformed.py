@@ -208,6 +208,8 @@ def _not_well_formed(source: Source, place: Place, message: str) -> DocumentErro
         wide = WIDE.get(_line(source, place.line)[place.column - 1 : place.column])
         if wide:
             remedy = wide
+        elif end := _wrong_end(source, place, message):
+            remedy, fixes = end
         elif unclosed := re.search(UNCLOSED, message):
             fixes = _closed(source, place, unclosed[1])
     if TEMPLATE.search(source.text):
@@ -246,6 +248,20 @@ def _beginning(source: Source, place: Place, message: str) -> Place:
             start = _line(source, place.line).rfind(sought, 0, place.column)
             return place._replace(column=start + 1) if start >= 0 else place
     return place
+
+
+def _wrong_end(source: Source, place: Place, message: str) -> Hint:
+    """What to write instead of an end tag whose name is misspelt, as no element is called so."""
+    match = re.search(MISMATCH, message)
+    if match is None or not nearest_word(match[3], [match[1]]):
+        return Hint()
+    here = _line(source, place.line).startswith(f"</{match[3]}", place.column - 1)
+    if not here or re.search(rf"<{re.escape(match[3])}[\s/>]", source.text):
+        return Hint()
+    name = Span.of(place._replace(column=place.column + len("</")), match[3])
+    text = "The <{0}> of line {1} is still open here: write </{0}> instead of </{2}>."
+    title = f"Change to </{match[1]}>"
+    return replaced(text.format(*match.groups()), match[1], name, title=title)
 
 
 def _closed(source: Source, place: Place, name: str) -> tuple[Fix, ...]:

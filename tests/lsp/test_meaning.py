@@ -88,6 +88,7 @@ FIXED = {
     "declare": (BEGIN + '<form id="a"><block cond="q"><exit/></block></form></prima>', '<form id="a">\n  <var name="q"/>'),
     "missing": (BEGIN + '<form id="a"><block><turn/><exit/></block></form></prima>', '<turn angle=""/>'),
     "end tag": (BEGIN + '<form id="a"><block><exit/></form></prima>', "<exit/></block></form>"),
+    "misspelt end tag": (BEGIN + '<form id="a"><block><speak>Hi.</Speak><exit/></block></form></prima>', "<speak>Hi.</speak><exit/>"),
     "end": (BEGIN + '<form id="a"><block><exit/></block></form>\n', "</form></prima>\n"),
     "namespace": (BEGIN.replace("dialogue", "dialoge") + '<form id="a"/></prima>', "urn:prima:dialogue:1"),
     "place": (SCENE + '<robot at="entrace"/><application src="../fa/follow.xml" kind="fa"/></scenario>', 'at="entrance"'),

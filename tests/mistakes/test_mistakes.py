@@ -304,9 +304,20 @@ def test_what_a_command_of_the_profile_lacks_is_told(
     assert found.code == code and found.severity == "error" and found.remedy
 
 
-def test_a_closing_tag_that_is_misspelt_is_told_as_that(tmp_path: Path) -> None:
-    (found,) = written(tmp_path, "tour.xml", application("<block><speak>Hi.</speek></block>"))
-    assert found.code == "not-xml" and "write </speak>" in found.remedy
+@pytest.mark.parametrize("name", ["speek", "Speak"])
+def test_a_closing_tag_that_is_misspelt_is_told_as_that(tmp_path: Path, name: str) -> None:
+    text = application(f"<block><speak>Hi.</{name}><exit/></block>")
+    (found,) = written(tmp_path, "tour.xml", text)
+    assert found.code == "not-xml" and f"write </speak> instead of </{name}>" in found.remedy
+    (fix,) = found.fixes
+    assert mended(tmp_path / "tour.xml", fix) == []
+
+
+def test_a_closing_tag_of_another_element_is_kept(tmp_path: Path) -> None:
+    text = application("<block><speake>Hi.<speak></speake></block>")
+    (found,) = written(tmp_path, "tour.xml", text)
+    (fix,) = found.fixes
+    assert fix.edits[0].text == "</speak>" and fix.edits[0].span[:2] == fix.edits[0].span[2:]
 
 
 def test_a_device_of_ones_own_is_no_mistake_beside_the_one_it_is_called_like(
