@@ -12,7 +12,7 @@ from xml.parsers import expat
 
 from prima.errors import DocumentError, Edit, Fix, Hint, Place, Span, nearest_word, replaced
 from prima.markup.limits import refusal, too_deep
-from prima.markup.tree import Source
+from prima.markup.tree import MARKUP, Source
 from prima.markup.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
@@ -29,8 +29,8 @@ OTHER_FORMS = (
 """How texts of other forms begin, what they are, and what to do with them."""
 MISMATCH = r"tag mismatch: (\S+) line (\d+) and (\S+)"
 """The parser's words for a closing tag that does not fit: the opening one, its line, the closing."""
-UNCLOSED = r"(?:tag mismatch:|Premature end of data in tag) ([^\s<>]+) line"
-"""The parser's words for an element that is not closed."""
+UNCLOSED = r"(?:tag mismatch:|Premature end of data in tag) ([^\s<>]+) line (\d+)"
+"""The parser's words for an element that is not closed: its name and line."""
 REMEDIES = (
     (MISMATCH, "The <{0}> of line {1} is still open here: write </{0}>, or end its own tag with />."),
     (r"Namespace prefix (\S+) ", 'Write the name without "{0}:", or declare it: xmlns:{0}="...".'),
@@ -115,7 +115,8 @@ def explain(source: Source, vocabularies: Sequence[Vocabulary]) -> None:
     try:
         root = etree.fromstring(source.text.encode(), parser)
     except etree.XMLSyntaxError as error:
-        raise _misspelt(source, error, vocabularies) or _syntax_error(source, error) from None
+        told = _misspelt(source, error, vocabularies)
+        raise told or _syntax_error(source, error, vocabularies) from None
     dtd = root.getroottree().docinfo.internalDTD
     if dtd is not None and (dtd.entities() or dtd.elements()):  # type: ignore[union-attr]
         raise refusal(Place(source.file), "doctype", "A DOCTYPE may not declare anything itself.")
@@ -174,7 +175,15 @@ def _line(source: Source, number: int) -> str:
     return lines[number - 1] if number <= len(lines) else ""
 
 
-def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:
+def _offset(source: Source, place: Place) -> int:
+    """Where in the text a place is."""
+    before = source.text.split("\n")[: place.line - 1]
+    return sum(len(line) + 1 for line in before) + place.column - 1
+
+
+def _syntax_error(
+    source: Source, error: etree.XMLSyntaxError, vocabularies: Sequence[Vocabulary]
+) -> DocumentError:
     text = source.text.strip()
     if not text:
         place = Place(source.file)
@@ -192,10 +201,12 @@ def _syntax_error(source: Source, error: etree.XMLSyntaxError) -> DocumentError:
         told = f"The entity &{name}; is not known: documents declare none."
         remedy = "Write the character itself; only &amp; &lt; &gt; &quot; &apos; are needed."
         return refusal(_beginning(source, place, message), "entity", told, remedy)
-    return _not_well_formed(source, place, message)
+    return _not_well_formed(source, place, message, vocabularies)
 
 
-def _not_well_formed(source: Source, place: Place, message: str) -> DocumentError:
+def _not_well_formed(
+    source: Source, place: Place, message: str, vocabularies: Sequence[Vocabulary]
+) -> DocumentError:
     """The error for a mistake that the parser names: nearer to it and in plainer words."""
     told, remedy = _translated(PLAINER, message) or message, _translated(REMEDIES, message)
     fixes: tuple[Fix, ...] = ()
@@ -208,8 +219,10 @@ def _not_well_formed(source: Source, place: Place, message: str) -> DocumentErro
         wide = WIDE.get(_line(source, place.line)[place.column - 1 : place.column])
         if wide:
             remedy = wide
-        elif end := _wrong_end(source, place, message):
-            remedy, fixes = end
+        elif hint := (
+            _wrong_end(source, place, message) or _empty(source, place, message, vocabularies)
+        ):
+            remedy, fixes = hint
         elif unclosed := re.search(UNCLOSED, message):
             fixes = _closed(source, place, unclosed[1])
     if TEMPLATE.search(source.text):
@@ -228,8 +241,7 @@ def _translated(table: Iterable[tuple[str, str]], message: str) -> str:
 
 def _open_quote(source: Source, place: Place) -> Place | None:
     """A quote that is opened on a line before a place and not closed there."""
-    end = sum(len(line) + 1 for line in source.text.split("\n")[: place.line - 1])
-    before = source.text[: end + place.column - 1]
+    before = source.text[: _offset(source, place)]
     quote = OPEN_QUOTE.search(before[-10_000:])
     if quote is None or "\n" not in quote[0]:
         return None
@@ -262,6 +274,23 @@ def _wrong_end(source: Source, place: Place, message: str) -> Hint:
     text = "The <{0}> of line {1} is still open here: write </{0}> instead of </{2}>."
     title = f"Change to </{match[1]}>"
     return replaced(text.format(*match.groups()), match[1], name, title=title)
+
+
+def _empty(source: Source, place: Place, message: str, vocabularies: Sequence[Vocabulary]) -> Hint:
+    """What to do with an open tag of an element that holds nothing: it ends by itself."""
+    match = re.search(UNCLOSED, message)
+    name = match[1] if match else ""
+    alike = [one for own in vocabularies for one in own.elements.values() if one.tag == name]
+    if match is None or not alike or any(one.children or one.text for one in alike):
+        return Hint()
+    first = _offset(source, Place(source.file, int(match[2])))
+    tags = MARKUP.finditer(source.text, first, _offset(source, place))
+    begin = re.compile(rf"<{re.escape(name)}(?=[\s>])")
+    ends = [one.end() for one in tags if begin.match(one[0]) and not one[0].endswith("/>")]
+    if not ends:
+        return Hint()
+    text = f"The <{name}> of line {match[2]} holds nothing: end its own tag with />."
+    return replaced(text, "/>", source.span(ends[-1] - 1, ends[-1]), title=f"End <{name}> with />")
 
 
 def _closed(source: Source, place: Place, name: str) -> tuple[Fix, ...]:

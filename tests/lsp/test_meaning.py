@@ -89,6 +89,7 @@ FIXED = {
     "missing": (BEGIN + '<form id="a"><block><turn/><exit/></block></form></prima>', '<turn angle=""/>'),
     "end tag": (BEGIN + '<form id="a"><block><exit/></form></prima>', "<exit/></block></form>"),
     "misspelt end tag": (BEGIN + '<form id="a"><block><speak>Hi.</Speak><exit/></block></form></prima>', "<speak>Hi.</speak><exit/>"),
+    "empty element": (BEGIN + '<form id="a"><block><if cond="1 &gt; 2"><exit/><else></if><exit/></block></form></prima>', "<exit/><else/></if>"),
     "end": (BEGIN + '<form id="a"><block><exit/></block></form>\n', "</form></prima>\n"),
     "namespace": (BEGIN.replace("dialogue", "dialoge") + '<form id="a"/></prima>', "urn:prima:dialogue:1"),
     "place": (SCENE + '<robot at="entrace"/><application src="../fa/follow.xml" kind="fa"/></scenario>', 'at="entrance"'),

@@ -320,6 +320,17 @@ def test_a_closing_tag_of_another_element_is_kept(tmp_path: Path) -> None:
     assert fix.edits[0].text == "</speak>" and fix.edits[0].span[:2] == fix.edits[0].span[2:]
 
 
+@pytest.mark.parametrize("tag", ["<else>", '<elseif cond="1>2"\n>'])
+def test_an_element_that_holds_nothing_ends_by_itself(tmp_path: Path, tag: str) -> None:
+    text = application(
+        f'<block><if cond="1 > 2"><exit/>{tag}<speak>No.</speak></if><exit/></block>'
+    )
+    (found,) = written(tmp_path, "tour.xml", text)
+    assert found.code == "not-xml" and found.remedy.endswith("end its own tag with />.")
+    (fix,) = found.fixes
+    assert mended(tmp_path / "tour.xml", fix) == []
+
+
 def test_a_device_of_ones_own_is_no_mistake_beside_the_one_it_is_called_like(
     tmp_path: Path,
 ) -> None:
