@@ -26,7 +26,7 @@ from prima.errors.diagnoses.structure import (
     WRONG_ROOT,
 )
 from prima.errors.diagnoses.values import BAD_VALUE
-from prima.language.values import KINDS, XML_SPACE, BadValue, read_value
+from prima.language.values import KINDS, XML_SPACE, BadValue, outside, read_value, within
 from prima.markup.hints import TEXTS, meant_value, misplaced_remedy, text_remedy
 from prima.markup.spans import added, attribute_span, name_spans, renamed, value_span
 from prima.markup.tree import Node
@@ -316,7 +316,12 @@ def _value_problem(item: Attribute, is_expression: bool, text: str) -> BadValue 
         return BadValue("is not allowed here.", remedy, right=near or only)
     bad = _not_of_kind(item.kind, text)
     right = meant_value(item.kind, text, item.default) if bad else ""
-    return BadValue(bad.wrong, f'Write "{right}".', right=right) if bad and right else bad
+    if not bad or not right:
+        return bad
+    value = read_value(item.kind, right)
+    if isinstance(value, int | float) and not within(float(value), item.low, item.high):
+        return BadValue(bad.wrong, f'"{right}" {outside(item.kind, item.low, item.high)}')
+    return BadValue(bad.wrong, f'Write "{right}".', right=right)
 
 
 def _not_of_kind(kind: str, text: str) -> BadValue | None:

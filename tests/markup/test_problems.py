@@ -74,6 +74,22 @@ def test_a_problem_says_what_to_write_instead(body: str, code: str, remedy: str)
     assert remedy in found(body, code).remedy
 
 
+@pytest.mark.parametrize(
+    ("command", "remedy", "fixes"),
+    [
+        ('<pause time="2min"/>', '"120s" is out of range: from 1ms to 60s.', []),
+        ('<pause time="0.5min"/>', 'Write "30s".', ['Change to "30s"']),
+        ('<turn angle="450deg"/>', '"450" is out of range: from -360 to 360.', []),
+    ],
+)
+def test_no_value_is_suggested_that_is_out_of_range(
+    command: str, remedy: str, fixes: list[str]
+) -> None:
+    problem = found(f'<form id="a"><block>{command}<exit/></block></form>', "bad-value")
+    assert problem.remedy == remedy
+    assert [fix.title for fix in problem.fixes] == fixes
+
+
 ROUND = '<form id="a"><block><speak>x</speak></block>{}<on event="touch"><exit/></on></form>'
 
 
