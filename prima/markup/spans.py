@@ -13,6 +13,19 @@ from prima.markup.vocabulary import Attribute
 LONG = 1_000
 """Characters of a value beyond which only whole words are found in it."""
 
+BY_NAME = {"version": "2.1", "array": "[]", "expr": "''", "cond": "true"}
+BY_KIND = {
+    **dict.fromkeys(("duration", "delay"), "1s"),
+    **dict.fromkeys(("expression", "boolean"), "true"),
+    "events": "touch",
+    "language": "en",
+}
+"""Values to begin with, of attributes by their names, or else by their kinds."""
+NUMBERS = ("number", "integer", "quantity")
+NAMES = ("id", "variable", "event")
+GIVEN = ("id", "name", "item")
+"""Attributes that give something a name; others name what is elsewhere."""
+
 
 def value_span(node: Node, attribute: str, word: str = "") -> tuple[Span, ...]:
     """The value of an attribute as written, or a word in it where it has that; none without it."""
@@ -67,21 +80,28 @@ def renamed(text: str, node: Node, tag: str) -> Hint:
     return replaced(text, tag, *name_spans(node), title=f"Change to <{tag}>")
 
 
-def added(text: str, node: Node, *attributes: Attribute) -> Hint:
-    """A sentence, with fixes that add an attribute to an element, one fix for each."""
-    return Hint(text, tuple(_addition(node, one.name, _likely(one)) for one in attributes))
+def added(text: str, node: Node, item: Attribute) -> Hint:
+    """A sentence, with a fix that adds an attribute to an element if a value is likely."""
+    value = _likely(node, item)
+    if value is None:
+        return Hint(text)
+    edit = Edit(behind_name(node), f' {item.name}="{value}"')
+    return Hint(text, (Fix(f'Add {item.name}="{value}"', (edit,)),))
 
 
-def _addition(node: Node, name: str, value: str) -> Fix:
-    edit = Edit(behind_name(node), f' {name}="{value}"')
-    return Fix(f'Add {name}="{value}"', (edit,))
-
-
-def _likely(item: Attribute) -> str:
-    """A value to begin with."""
+def _likely(node: Node, item: Attribute) -> str | None:
+    """A value to begin with, which is right where it stands; None if it depends on other elements."""
     if item.default or item.choices:
         return item.default or item.choices[0]
-    return "2.1" if item.name == "version" else ""
+    if value := BY_NAME.get(item.name) or BY_KIND.get(item.kind):
+        return value
+    if item.kind in NUMBERS:
+        return f"{max(item.low or 0, 0):g}"
+    given = item.name in GIVEN and node.tag != "assign"  # which names what is declared elsewhere
+    if item.kind in NAMES and (given or item.kind == "event"):
+        name = node.tag if given else item.name
+        return f"{name.replace('-', '_')}_{node.index}"  # no other element has its number
+    return "" if item.kind == "text" else None
 
 
 def with_namespace(text: str, node: Node, namespace: str) -> Hint:

@@ -86,7 +86,7 @@ FIXED = {
     "target": (BEGIN + '<form id="main"><block><goto next="main"/></block></form></prima>', 'next="#main"'),
     "variable": (BEGIN + '<form id="a"><var name="count"/><block cond="cuont"><exit/></block></form></prima>', 'cond="count"'),
     "declare": (BEGIN + '<form id="a"><block cond="q"><exit/></block></form></prima>', '<form id="a">\n  <var name="q"/>'),
-    "missing": (BEGIN + '<form id="a"><block><turn/><exit/></block></form></prima>', '<turn angle=""/>'),
+    "missing": (BEGIN + '<form id="a"><block><turn/><exit/></block></form></prima>', '<turn angle="0"/>'),
     "end tag": (BEGIN + '<form id="a"><block><exit/></form></prima>', "<exit/></block></form>"),
     "misspelt end tag": (BEGIN + '<form id="a"><block><speak>Hi.</Speak><exit/></block></form></prima>', "<speak>Hi.</speak><exit/>"),
     "empty element": (BEGIN + '<form id="a"><block><if cond="1 &gt; 2"><exit/><else></if><exit/></block></form></prima>', "<exit/><else/></if>"),
