@@ -9,6 +9,7 @@ from pathlib import Path
 from prima.language.values import read_value
 from prima.lsp.names import Mark, mark_at
 from prima.lsp.workspace import FoundName, Workspace
+from prima.script.globals import RESERVED
 
 RENAMED = {
     "form": "id",
@@ -130,15 +131,28 @@ def rename(
     if mark is None:
         return _move(workspace, path, offset, new)
     kind = next(kind for kind in mark.kind if kind in RENAMED)
-    try:
-        read_value(RENAMED[kind], new)
-    except ValueError as error:
-        raise RenameError(f'"{new}" {error}') from None
+    _check_new(kind, new)
     uses = workspace.uses(path, mark)
     if new != mark.name and _is_taken(workspace, [one for one in uses if one.mark.defines], new):
         raise RenameError(f'A {kind} "{new}" already exists.')
     edits = [NameEdit(one.path, one.mark.start, one.mark.end, new) for one in uses]
     return sorted(set(edits), key=lambda edit: (edit.path, edit.start)), None
+
+
+def _check_new(kind: str, new: str) -> None:
+    """Refuse a new name that nothing of a kind may have.
+
+    Raises:
+        RenameError: it is such a name.
+    """
+    try:
+        read_value(RENAMED[kind], new)
+    except ValueError as error:
+        raise RenameError(f'"{new}" {error}') from None
+    if kind == "variable" and "." in new:
+        raise RenameError(f'"{new}" has a dot.')
+    if kind == "variable" and new in RESERVED:
+        raise RenameError(f'"{new}" is a word of ECMAScript\'s own. Choose another name.')
 
 
 def _is_taken(workspace: Workspace, given: list[FoundName], new: str) -> bool:

@@ -83,6 +83,10 @@ def test_a_name_that_is_none_or_taken_is_refused(editor: Editor) -> None:
     for new, why in (("b c", "is not a name"), ("a", "already"), ("", "is not a name")):
         with pytest.raises(JsonRpcException, match=why):
             rename(editor, where, new)
+    where = editor.at("fa/x.xml", SCOPES)
+    for new, why in (("class", "a word of ECMAScript"), ("a.b", "has a dot")):
+        with pytest.raises(JsonRpcException, match=why):
+            rename(editor, where, new)
     editor.close("fa/x.xml")
 
 
