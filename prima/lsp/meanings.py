@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from prima.sim.vocabulary.scenario import NAMING_APPLICATIONS
+
 
 @dataclass(frozen=True, slots=True)
 class ReferenceUse:
@@ -92,9 +94,7 @@ REFERS: dict[tuple[str, str, str], ReferenceUse] = {
     ("scenario", "when", "doing"): ReferenceUse(("command",)),
     ("scenario", "when", "done"): ReferenceUse(("command",)),
     ("scenario", "when", "on"): ReferenceUse(("event",)),
-    ("scenario", "unload", "application"): ReferenceUse(("application",)),
-    ("scenario", "service", "application"): ReferenceUse(("application",)),
-    ("scenario", "message", "to"): ReferenceUse(("application",)),
+    **{("scenario", *one): ReferenceUse(("application",)) for one in NAMING_APPLICATIONS},
     ("scenario", "when", "person"): ReferenceUse(("person",)),
     ("scenario", "answer", "person"): ReferenceUse(("person",)),
     ("voicexml", "goto", "next"): ReferenceUse(("form",), "uri"),

@@ -24,15 +24,10 @@ def check_expectations(
     problems: list[Problem] = []
     applications = {document.id for document in documents}
     services = {service.name for service in scenario.services}
-    checks: list[tuple[str, Collection[str], str]] = [
-        ("by", applications, "application"),
-        ("ends", applications, "application"),
-        *((name, robot.commands, "Command") for name in COMMANDS),
-    ]
     forms: dict[str, set[str] | None] = {}
     for one in scenario.expectations:
-        for name, words, what in checks:
-            _known(one, name, words, f"There is no {what}", problems)
+        for name in COMMANDS:
+            _known(one, name, robot.commands, "There is no Command", problems)
         if ":" not in one.words.get("sends", ""):
             _known(one, "sends", services, "There is no service", problems)
         if not one.by or one.by in applications:

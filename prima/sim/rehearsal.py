@@ -17,12 +17,7 @@ from prima.sim.expected import check_expectations
 from prima.sim.map import Map
 from prima.sim.scenario import Scenario
 from prima.sim.services import Web
-
-NAMING_APPLICATIONS = (
-    *(("unload", "application"), ("load", "application")),
-    *(("service", "application"), ("message", "to")),
-)
-"""Elements of scenarios, and their attributes, that name an application."""
+from prima.sim.vocabulary.scenario import NAMING_APPLICATIONS
 
 
 def check_names(

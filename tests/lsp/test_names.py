@@ -104,6 +104,23 @@ def test_a_place_is_renamed_everywhere(editor: Editor) -> None:
         assert "kidode-room" not in edited(text, list(edits))
 
 
+def test_an_application_is_renamed_in_expectations_too(editor: Editor) -> None:
+    scene = (
+        SCENE + '<application src="../fa/follow.xml" kind="fa"/><robot at="entrance"/>'
+        '<when at="1s"><unload application="follow"/><load application="follow"/>'
+        '<message to="follow">Hi.</message></when><never ends="follow" reason="exit"/>'
+        '<in-order><expect says="Hi" by="follow"/></in-order></scenario>'
+    )
+    editor.open("scenarios/x.xml", scene)
+    text = (editor.folder / "fa/follow.xml").read_text(encoding="utf-8")
+    where = editor.at("fa/follow.xml", text.replace('id="follow"', 'id="|follow"'))
+    change = rename(editor, where, "pet")
+    editor.close("scenarios/x.xml", "fa/follow.xml")
+    assert change is not None and change.changes is not None
+    made = edited(scene, list(change.changes[editor.uri("scenarios/x.xml")]))
+    assert '"follow"' not in made and made.count('"pet"') == 5
+
+
 def test_definitions_lead_to_other_files(editor: Editor) -> None:
     for name, text, file, words in (
         ("ea/guide.xml", BEGIN + '<form id="a"><block><topological-move to="|kidode-room"/>', "office.xml", "kidode-room"),

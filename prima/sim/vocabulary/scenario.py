@@ -159,3 +159,10 @@ SCENARIO = Vocabulary(
         "comment": "Write <note>, or a comment of XML: <!-- ... -->.",
     },
 )
+
+NAMING_APPLICATIONS = (
+    *(("unload", "application"), ("load", "application")),
+    *(("service", "application"), ("message", "to")),
+    *((tag, name) for tag in ("expect", "never") for name in ("by", "ends")),
+)
+"""Elements of scenarios, and their attributes, that name an application."""
