@@ -8,6 +8,7 @@ from prima.devices.profile import Profile
 from prima.errors import Problem
 from prima.interpreter.elements import Document
 from prima.interpreter.surroundings import nearest
+from prima.language.commands import TABLE_4_2
 from prima.markup.spans import value_span
 from prima.session import AnyDocument
 from prima.sim.expectations import Expectation
@@ -22,12 +23,13 @@ def check_expectations(
 ) -> list[Problem]:
     """What the expectations of a scenario name and is not there."""
     problems: list[Problem] = []
+    commands = {*robot.commands, *TABLE_4_2}  # what it cannot do of the table is a warning
     applications = {document.id for document in documents}
     services = {service.name for service in scenario.services}
     forms: dict[str, set[str] | None] = {}
     for one in scenario.expectations:
         for name in COMMANDS:
-            _known(one, name, robot.commands, "There is no Command", problems)
+            _known(one, name, commands, "There is no Command", problems)
         if ":" not in one.words.get("sends", ""):
             _known(one, "sends", services, "There is no service", problems)
         if not one.by or one.by in applications:

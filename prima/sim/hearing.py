@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import chain, product
 
+from prima.devices.profile import Profile
 from prima.errors import Hint, Place, Problem, Span, meant, one_of, suggestion
+from prima.errors.diagnoses.names import UNSUPPORTED_COMMAND
 from prima.interpreter.elements import Document
 from prima.interpreter.events import STANDARD, KnownEvents, beginnings, event_place, near
 from prima.interpreter.surroundings import (
@@ -23,6 +25,7 @@ from prima.language.values import read_value
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.sim.devices import Cast
+from prima.sim.expected import COMMANDS
 from prima.sim.map import Map
 from prima.sim.world import room_beside
 from prima.voicexml.caught import caught_in, thrown_in
@@ -46,6 +49,11 @@ WORDS = (
 )
 """What names words: its tag, its attribute, and whether they are asked, not said."""
 
+CANNOT = UNSUPPORTED_COMMAND.says(
+    "This robot cannot do {command}: it lacks {lacks}. This never happens.",
+    "Name another Command, or a robot that can do it.",
+)
+
 
 def check_hearing(cast: Cast) -> list[Problem]:
     """Warnings about a scenario together with its applications, world and robot."""
@@ -54,7 +62,7 @@ def check_hearing(cast: Cast) -> list[Problem]:
     events = [KnownEvents(one) for one in documents if isinstance(one, Document)]
     nodes = list(cast.scenario.node.walk())
     problems = [*_not_there(cast), *_late(nodes, cast.scenario.until)]
-    problems += [*_outside(nodes, world), *_nobody(nodes)]
+    problems += [*_outside(nodes, world), *_nobody(nodes), *_unable(nodes, cast.robot)]
     problems += world.plan.narrow(room_beside(cast.robot)) if world.plan is not None else ()
     corners = [*_corners(nodes, events, pages, world)]
     problems += [*corners, *_words(nodes, cast)]
@@ -255,6 +263,17 @@ def _inside(world: Map) -> list[tuple[str, float, float]]:
     (left, right), (low, high) = ((min(side), max(side)) for side in zip(*corners, strict=True))
     around = all(left <= x <= right and low <= y <= high for x, y in world.places.values())
     return [("x", left, right), ("y", low, high)] if around else []
+
+
+def _unable(nodes: list[Node], robot: Profile) -> Iterator[Problem]:
+    """Commands that are waited for or expected, and that the robot cannot do."""
+    lacking = {name: row for name, row in TABLE_4_2.items() if name not in robot.commands}
+    for node in nodes if lacking else ():
+        for attribute in COMMANDS if node.tag in ("when", "expect", "never") else ():
+            if row := lacking.get(node.get(attribute)):
+                lacks = ", ".join(sorted(row.devices - robot.devices))
+                place = node.attribute_place(attribute)
+                yield CANNOT.at(place, command=row.name, lacks=lacks)
 
 
 def _nobody(nodes: list[Node]) -> Iterator[Problem]:

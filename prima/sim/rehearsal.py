@@ -9,6 +9,7 @@ from prima.devices.profile import Profile
 from prima.errors import DocumentError, Problem
 from prima.interpreter.elements import Document
 from prima.interpreter.surroundings import nearest
+from prima.language.commands import TABLE_4_2
 from prima.markup.spans import value_span
 from prima.scheduler.policy import Policy
 from prima.session import AnyDocument, Session
@@ -40,7 +41,8 @@ def check_names(
     if robot is not None:
         known["touch", "sensor"] = set(robot.touch), "touch sensor"
         known["fail", "device"] = known["repair", "device"] = set(robot.devices), "device"
-        known["when", "doing"] = known["when", "done"] = set(robot.commands), "Command"
+        commands = {*robot.commands, *TABLE_4_2}  # what it cannot do of the table is a warning
+        known["when", "doing"] = known["when", "done"] = commands, "Command"
     if documents is not None:
         ids = {document.id for document in documents}
         for tag, name in NAMING_APPLICATIONS:

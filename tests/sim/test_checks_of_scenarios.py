@@ -203,3 +203,37 @@ def test_a_corner_that_a_scenario_misspells_is_told(
     assert len(told) == bool(says)
     assert all(one.startswith("visit.xml No corner of the world raises") for one in told)
     assert says in "".join(told)
+
+
+@pytest.mark.parametrize(
+    ("more", "severity", "code", "says"),
+    [
+        ('<when doing="topological-move"><say>Hi.</say></when>', "warning", "unsupported-command", "do topological-move: it lacks localization, locomotion. This never"),
+        ('<expect says="Hi" done="gesture"/>', "warning", "unsupported-command", "cannot do gesture"),
+        ('<never does="set-position"/>', "warning", "unsupported-command", "cannot do set-position"),
+        ('<when doing="topological-mov"><say>Hi.</say></when>', "error", "no-such-name", 'no Command "topological-mov"'),
+        ('<expect finishes="gestur"/>', "error", "no-such-name", 'no Command "gestur"'),
+        ('<when done="speak"><say>Hi.</say></when>', "", "", ""),
+    ],
+)  # fmt: skip
+def test_a_command_that_the_robot_lacks_is_waited_for_in_vain(
+    more: str, severity: str, code: str, says: str, tmp_path: Path
+) -> None:
+    (tmp_path / "robot.xml").write_text(
+        '<robot xmlns="urn:prima:robot:1" version="1.0" id="r"><device name="speaker"/></robot>'
+    )
+    (tmp_path / "a.xml").write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><form id="f"><block>'
+        "<speak>Hi.</speak><exit/></block></form></prima>"
+    )
+    path = tmp_path / "s.xml"
+    path.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" robot="robot.xml"'
+        f' world="{ROOT}/documents/worlds/library.xml"><robot at="entrance"/><person x="1" y="0"/>'
+        f'<application src="a.xml"/>{more}</scenario>'
+    )
+    found = loading.validate([path])
+    assert [(one.severity, one.code) for one in found] == [(severity, code)] * bool(code)
+    assert all(says in one.message for one in found)
+    if severity != "error":
+        assert not api.rehearse(api.load_scenario(path)).failures

@@ -81,7 +81,7 @@ UNSUPPORTED_COMMAND = Diagnosis(
     (
         "The robot's profile lacks the Command or one of its devices. At run time the "
         "application gets error.unsupported.COMMAND, which it may handle. Each Command of a "
-        "document is reported once, with the number of places."
+        "document is reported once, with the number of places. A scenario waits for it in vain."
     ),
     rule="V2",
     severity="warning",
