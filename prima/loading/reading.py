@@ -244,8 +244,8 @@ def other_kind(
 ) -> list[Problem]:
     """Warn of a document that says it is of another kind than the run does, which counts."""
     own = document.node.get("kind")
-    if not isinstance(document, Document) or own in ("", document.kind):
-        return []
+    if not isinstance(document, Document) or own not in {"ea", "fa"} - {document.kind}:
+        return []  # what is neither is told at the document
     kind = document.kind.upper()
     return [RUNS_AS_OTHER.at(place, Hint(remedy), name=name, own=own.upper(), who=who, kind=kind)]
 

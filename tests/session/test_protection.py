@@ -79,6 +79,13 @@ def test_no_document_makes_itself_an_fa(tmp_path: Path, said: str, kind: str, to
     assert refused == (["E3"] if kind == "ea" else [])
 
 
+def test_a_kind_that_is_none_is_told_once(tmp_path: Path) -> None:
+    loud = LOUD.replace('kind="fa"', 'kind="EA"')
+    path = staged(tmp_path, '<application src="loud.xml"/>', loud=loud)
+    found = [one for one in problems_of(path) if "kind" in one.message or one.code == "other-kind"]
+    assert [(one.code, one.remedy) for one in found] == [("bad-value", 'Did you mean "ea"?')]
+
+
 def test_a_document_is_an_fa_where_the_scenario_says_so(tmp_path: Path) -> None:
     calm = app("calm", '<form id="f"><block><speak>Here.</speak><exit/></block></form>')
     path = staged(tmp_path, '<application src="calm.xml" kind="fa"/>', calm=calm)
