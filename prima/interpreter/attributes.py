@@ -211,28 +211,25 @@ class AttributeReader:
                     self.problem(BEYOND, node, key, hint, wrong=error.wrong)
         return args
 
-    def check_complete(
-        self, node: Node, row: CommandType, args: dict[str, Json | Expression], text: Text | None
-    ) -> None:
+    def check_complete(self, node: Node, row: CommandType, text: Text | None) -> None:
         """Whether a Command has what it needs, beyond what its schema asks."""
-        self.check_arguments(node, row, args)
+        self.check_arguments(node, row)
         self.check_length(node, text)
         wordless = text is not None and all(isinstance(part, Pause) for part in text)
         if wordless or (row.text == "required" and text is None):
             paused = wordless and row.text == "required"
             self.problem(ONLY_A_PAUSE if paused else SAYS_NOTHING, node, tag=node.tag)
 
-    def check_arguments(
-        self, node: Node, row: CommandType, args: dict[str, Json | Expression]
-    ) -> None:
+    def check_arguments(self, node: Node, row: CommandType) -> None:
         """Whether a Command has the arguments that its schema cannot ask for, and not too many."""
         choices = sorted(name for name, item in row.arguments.items() if item.choice)
         required = {name for name, item in row.arguments.items() if item.required}
-        missing = missing_argument(row, args) if required <= args.keys() else ""
+        written = {key.removesuffix("-expr") for key in node.attributes}  # with a wrong value, too
+        missing = missing_argument(row, written) if required <= written else ""
         if missing and not self.strange(node):
             hint = Hint(f'Write {choices[0]}="...", for one.' if choices else "")
             self.problem(NEEDS_ARGUMENT, node, hint=hint, wrong=missing)
-        if excluding := excluding_arguments(row, args):
+        if excluding := excluding_arguments(row, written):
             given = [key for key in node.attributes if key.removesuffix("-expr") in choices]
             self.problem(ONLY_ONE, node, given[-1], wrong=excluding)
 

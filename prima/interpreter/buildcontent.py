@@ -172,7 +172,7 @@ class ContentBuilder(AttributeReader):
                 if group.steps:
                     steps.append(StepTemplate(group, after))
                     after = (len(steps) - 1,)
-            else:
+            elif node.key:  # what is unknown or misplaced is told already
                 if steps and self.is_now(node):
                     self.problems.append(now_inside(node))
                 steps.append(StepTemplate(self.command(node), after))
@@ -186,7 +186,7 @@ class ContentBuilder(AttributeReader):
         for command in run_commands(steps):
             problem = unit_problem(Reached(command, True), TABLE_4_2.get(command.type))
             self.problems += [problem] if problem is not None else []
-        if not steps:
+        if not steps and all(one.key for one in node.nodes):
             self.problem(EMPTY_UNIT, node)
         longest = self.value(node, "longest", "duration", LONGEST_UNIT_MS)
         return GroupTemplate(tuple(steps), longest, node, node.get("restartable") == "true")
@@ -198,7 +198,7 @@ class ContentBuilder(AttributeReader):
         args = self.arguments(node, row) if row is not None else {}
         content = self.text(node) or None
         if row is not None:
-            self.check_complete(node, row, args, content)
+            self.check_complete(node, row, content)
         params = self.params(node)
         if params and self.root.get("kind") == "ea" and node.tag != "command":
             self.problem(FOR_FAS, node.all("param")[0])

@@ -10,9 +10,10 @@ import pytest
 
 from prima.devices.profile import read_robot
 from prima.errors import DocumentError, Problem
+from prima.interpreter.checks.robot import check_commands
 from prima.interpreter.reader import read_document
 from prima.language.arguments import check_argument
-from prima.language.commands import Argument
+from prima.language.commands import TABLE_4_2, Argument
 from prima.markup.reader import parse
 from prima.script.names import script_names
 from prima.sim.map import read_world
@@ -88,6 +89,23 @@ def test_no_value_is_suggested_that_is_out_of_range(
     problem = found(f'<form id="a"><block>{command}<exit/></block></form>', "bad-value")
     assert problem.remedy == remedy
     assert [fix.title for fix in problem.fixes] == fixes
+
+
+@pytest.mark.parametrize(
+    ("content", "code"),
+    [
+        ('<turn-and-speak angle="9O">Hello.</turn-and-speak>', "bad-value"),
+        ('<turn-and-speak angle="900">Hello.</turn-and-speak>', "out-of-range"),
+        ("<speek>Hello.</speek>", "unknown-element"),
+        ('<par><speek>Hello.</speek><turn angle="9"/></par>', "unknown-element"),
+        ("<iu><speek>Hello.</speek></iu>", "unknown-element"),
+        ("<iu><prompt>Hello.</prompt></iu>", "misplaced-element"),
+    ],
+)
+def test_one_mistake_in_a_command_is_one_problem(content: str, code: str) -> None:
+    document, told = read(f'<form id="a"><block>{content}<exit/></block></form>')
+    told += check_commands(document, TABLE_4_2)
+    assert [one.code for one in told] == [code]
 
 
 ROUND = '<form id="a"><block><speak>x</speak></block>{}<on event="touch"><exit/></on></form>'
