@@ -10,6 +10,11 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
+def with_article(noun: str) -> str:
+    """A noun, or an element, with its article: ``a form``, ``an <on>``."""
+    return f"{'an' if noun.lstrip('<').startswith(('a', 'e', 'i', 'o')) else 'a'} {noun}"
+
+
 def one_of(words: Iterable[str]) -> str:
     """Join words for a message: ``a, b or c``."""
     *head, last = sorted(words) or [""]

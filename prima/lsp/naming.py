@@ -6,6 +6,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from prima.errors import with_article
 from prima.language.values import read_value
 from prima.lsp.names import Mark, mark_at
 from prima.lsp.workspace import FoundName, Workspace
@@ -134,7 +135,7 @@ def rename(
     _check_new(kind, new)
     uses = workspace.uses(path, mark)
     if new != mark.name and _is_taken(workspace, [one for one in uses if one.mark.defines], new):
-        raise RenameError(f'A {kind} "{new}" already exists.')
+        raise RenameError(f'There is {with_article(kind)} "{new}" already.')
     edits = [NameEdit(one.path, one.mark.start, one.mark.end, new) for one in uses]
     return sorted(set(edits), key=lambda edit: (edit.path, edit.start)), None
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from prima.errors import one_of
+from prima.errors import one_of, with_article
 from prima.language.values import DRAWABLE, read_value
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Vocabulary
@@ -106,6 +106,11 @@ PAUSES = {
 """The two kinds of pauses, each in the place of the other."""
 
 
+def inside_itself(tag: str) -> str:
+    """What to do with an element in another one of its name, which most likely is not closed."""
+    return f"Close the first <{tag}> before this one."
+
+
 def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
     """What to do with an element in a place where it is not allowed."""
     allowed = vocabulary.parents(tag)
@@ -115,13 +120,16 @@ def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
         return (
             f"<{parent.tag}> only divides the <if>: end its tag with />, and write this behind it."
         )
+    if parent.tag == tag:
+        return inside_itself(tag)
     inside = [
         one
         for one in vocabulary.children(parent.key)
         if vocabulary.child(vocabulary.child(parent.key, one) or "", tag)
     ]
     if "block" in inside or len(inside) == 1:
-        return f"Put it into a <{'block' if 'block' in inside else inside[0]}>."
+        holder = "block" if "block" in inside else inside[0]
+        return f"Put it into {with_article(f'<{holder}>')}."
     if set(allowed) & set(vocabulary.parents(parent.tag)):
         return f"Move it out of the <{parent.tag}>."
     return INSTEAD.get(tag) or f"It may stand in {one_of(allowed)}."

@@ -349,6 +349,20 @@ def test_no_name_is_made_up_of_what_is_elsewhere(tmp_path: Path, content: str) -
     assert found["missing-attribute"] == ()
 
 
+@pytest.mark.parametrize(
+    ("content", "remedy"),
+    [
+        ("<speak>a <speak>b</speak></speak>", "Close the first <speak> before this one."),
+        ("<speak>a <exit/></speak>", "Put it into an <on>."),
+    ],
+)
+def test_what_is_inside_of_an_utterance_is_put_where_it_belongs(
+    tmp_path: Path, content: str, remedy: str
+) -> None:
+    found = written(tmp_path, "tour.xml", application(f"<block>{content}<exit/></block>"))
+    assert [(one.code, one.remedy) for one in found] == [("misplaced-element", remedy)]
+
+
 @pytest.mark.parametrize("tag", ["<else>", '<elseif cond="1>2"\n>'])
 def test_an_element_that_holds_nothing_ends_by_itself(tmp_path: Path, tag: str) -> None:
     text = application(

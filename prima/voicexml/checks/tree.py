@@ -9,6 +9,7 @@ from prima.errors.diagnoses.structure import (
     UNKNOWN_ELEMENT,
     WRONG_NAMESPACE,
 )
+from prima.markup.hints import inside_itself
 from prima.markup.spans import name_spans, renamed
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Instead
@@ -106,9 +107,10 @@ def _check_children(node: Node, stack: list[Node], problems: list[Problem]) -> N
 def _misplaced(child: Node, node: Node) -> Problem:
     if child.tag not in VOICEXML.tags:
         return UNKNOWN_HERE.at(child.place, _known_instead(child), tag=child.tag)
+    hint = Hint(inside_itself(child.tag) if child.tag == node.tag else "")
     others = one_of(tag for tag in VOICEXML.parents(child.tag) if tag != node.tag)
     holder = HOLDERS.get(node.key, f"<{node.tag}>")
-    return NOT_HERE.at(child.place, tag=child.tag, holder=holder, others=others)
+    return NOT_HERE.at(child.place, hint, tag=child.tag, holder=holder, others=others)
 
 
 def _known_instead(child: Node) -> Hint:
