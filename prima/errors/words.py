@@ -15,7 +15,10 @@ def with_article(noun: str) -> str:
     return f"{'an' if noun.lstrip('<').startswith(('a', 'e', 'i', 'o')) else 'a'} {noun}"
 
 
-def one_of(words: Iterable[str]) -> str:
-    """Join words for a message: ``a, b or c``."""
-    *head, last = sorted(words) or [""]
+def one_of(words: Iterable[str], most: int = 0) -> str:
+    """Join words for a message: ``a, b or c``; of more than ``most`` of them ``a, b and 5 more``."""
+    listed = sorted(words)
+    if 0 < most < len(listed):
+        return f"{', '.join(listed[:most])} and {len(listed) - most} more"
+    *head, last = listed or [""]
     return f"{', '.join(head)} or {last}" if head else last

@@ -29,6 +29,8 @@ MOST_LINE = 10_000_000
 """Length of a line of a CSV file (characters)."""
 MOST_BESIDE = 10_000_000
 """Maximum length of a dictionary or plan (characters)."""
+MOST_NAMED = 20
+"""Columns that a note lists."""
 
 
 @dataclass(slots=True)
@@ -257,7 +259,9 @@ def _columns(sheet: Sheet) -> list[Column]:
 def _note_missing(sheet: Sheet, what: str, names: Iterable[str], there: Container[str]) -> None:
     """Note the names of columns that are not there, if any."""
     if missing := [name for name in names if name not in there]:
-        sheet.notes.append(f"{what}: {', '.join(one[:100] for one in missing[:20])}.")
+        more = f" and {len(missing) - MOST_NAMED} more" if len(missing) > MOST_NAMED else ""
+        named = ", ".join(one[:100] for one in missing[:MOST_NAMED])
+        sheet.notes.append(f"{what}: {named}{more}.")
 
 
 def _told(data: dict[str, Any]) -> Iterator[Column]:

@@ -211,7 +211,7 @@ class _Search:
         if first:
             names |= {one.get("id") for one in self.root.walk() if "id" in one.attributes}
         names -= {"version", ""}
-        hint = did_you_mean(name, names) or f"There are {one_of(sorted(names)[:MOST_TOLD])}."
+        hint = did_you_mean(name, names) or f"There are {one_of(names, MOST_TOLD)}."
         return hint if names else f"<{node.tag}> has no attributes."
 
     def own(self, node: Node) -> ScenarioValue:
@@ -224,6 +224,6 @@ class _Search:
         attribute = self.attribute(node, own or "")
         if attribute is None:
             names = [one.name for one in self.vocabulary.elements[node.key].attributes]
-            ways = one_of([f"{self.path}.{name}" for name in names][:MOST_TOLD])
+            ways = one_of((f"{self.path}.{name}" for name in names), MOST_TOLD)
             raise self.wrong(f"<{node.tag}> has no value of its own: write {ways}.")
         return ScenarioValue(self.path, node, attribute)

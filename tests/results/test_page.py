@@ -221,6 +221,12 @@ def test_without_a_dictionary_columns_are_known_by_their_names(tmp_path: Path) -
     )
     page = results.make(results.read(table), tmp_path)
     assert "Columns that no dictionary describes are left out: weather." in page
+    many = write(tmp_path, [row | {f"w{n}": "1" for n in range(25)} for row in runs()])
+    (note,) = (one for one in results.read(many).notes if "dictionary" in one)
+    assert note.endswith("w18, w19 and 5 more.")
+    table = write(
+        tmp_path, [row | {"weather": "sun" if row["run"] % 2 else "rain"} for row in runs()]
+    )
     (tmp_path / "sweep" / "dictionary.json").unlink()
     data = results.read(table)
     assert [one.name for one in data.varied] == ["policy", "when.at", "answer", "weather"]

@@ -125,6 +125,7 @@ def test_an_element_called_robot_comes_before_the_robots_document() -> None:
     ("path", "why"),
     [
         ("toch", 'Did you mean "touch"?'),
+        ("nix", r"There are answer, application, .*, service and \d more\.$"),
         ("person.sped", 'Did you mean "speed"?'),
         ("when.after", r"There are 2 <when>: write when\[1\] to when\[2\], or an id."),
         ("when[3].after", "There are 2 <when>."),
