@@ -60,9 +60,18 @@ class Terminal:
                     pass
             pid, status = os.waitpid(self.pid, os.WNOHANG)
             if pid:
+                self._drain()
                 os.close(self.fd)
                 return os.waitstatus_to_exitcode(status)
         raise AssertionError(self.seen)
+
+    def _drain(self) -> None:
+        """Take what was written last."""
+        try:
+            while got := os.read(self.fd, 65536):
+                self.seen += got.decode("utf-8", "replace")
+        except OSError:  # Linux tells the end so
+            return
 
 
 def test_a_terminal_step_by_step(tmp_path: Path) -> None:

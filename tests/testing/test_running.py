@@ -90,6 +90,10 @@ def test_an_interrupt_ends_all_of_it(jobs: str, tmp_path: Path) -> None:
         stderr=subprocess.PIPE,
         start_new_session=True,
     )
+    maps = Path(f"/proc/{running.pid}/maps")
+    end = time.monotonic() + 30
+    while b"lxml" not in maps.read_bytes() and time.monotonic() < end:
+        time.sleep(0.05)  # before, the interrupt is Python's own
     time.sleep(1)
     os.killpg(running.pid, signal.SIGINT)
     _, told = running.communicate(timeout=30)
