@@ -20,7 +20,12 @@ from prima.interpreter.diagnoses import (
     TURN_TOO_LONG,
 )
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
-from prima.language.arguments import check_argument, excluding_arguments, missing_argument
+from prima.language.arguments import (
+    alternatives,
+    check_argument,
+    excluding_arguments,
+    missing_argument,
+)
 from prima.language.commands import PATIENCE_MS, TABLE_4_2, CommandType, too_long
 from prima.language.values import XML_SPACE, BadValue, nearest, outside, read_value, within
 from prima.markup.spans import value_span
@@ -221,17 +226,21 @@ class AttributeReader:
             self.problem(ONLY_A_PAUSE if paused else SAYS_NOTHING, node, tag=node.tag)
 
     def check_arguments(self, node: Node, row: CommandType) -> None:
-        """Whether a Command has the arguments that its schema cannot ask for, and not too many."""
-        choices = sorted(name for name, item in row.arguments.items() if item.choice)
-        required = {name for name, item in row.arguments.items() if item.required}
-        written = {key.removesuffix("-expr") for key in node.attributes}  # with a wrong value, too
-        missing = missing_argument(row, written) if required <= written else ""
-        if missing and not self.strange(node):
-            hint = Hint(f'Write {choices[0]}="...", for one.' if choices else "")
-            self.problem(NEEDS_ARGUMENT, node, hint=hint, wrong=missing)
+        """Whether a Command has the arguments that its schema cannot ask for, and not too many.
+
+        One with a wrong value is there: its value is told already.
+        """
+        written = {key.removesuffix("-expr"): key for key in node.attributes}
+        choices = alternatives(row)
         if excluding := excluding_arguments(row, written):
-            given = [key for key in node.attributes if key.removesuffix("-expr") in choices]
-            self.problem(ONLY_ONE, node, given[-1], wrong=excluding)
+            last = [key for name, key in written.items() if name in choices][-1]
+            self.problem(ONLY_ONE, node, last, wrong=excluding)
+        required = {name for name, item in row.arguments.items() if item.required}
+        if self.strange(node) or not required <= written.keys():
+            return  # that is told already
+        if missing := missing_argument(row, written):
+            hint = Hint(f'Write {min(choices)}="...", for one.' if choices else "")
+            self.problem(NEEDS_ARGUMENT, node, hint=hint, wrong=missing)
 
     def check_length(self, node: Node, text: Text | None, timeout: int = 0) -> None:
         """Note what certainly takes longer than one utterance or question may (E3, E6)."""

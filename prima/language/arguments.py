@@ -101,7 +101,7 @@ def missing_argument(row: CommandType, given: Iterable[str]) -> str:
     for name, argument in row.arguments.items():
         if argument.required and name not in names:
             return f'{row.name} needs "{name}".'
-    choices = _choices(row)
+    choices = alternatives(row)
     if choices and not choices & names:
         return f"{row.name} needs one of {one_of(choices)}."
     return ""
@@ -109,11 +109,12 @@ def missing_argument(row: CommandType, given: Iterable[str]) -> str:
 
 def excluding_arguments(row: CommandType, given: Iterable[str]) -> str:
     """Say which arguments of ``row`` exclude each other, where several of them are given."""
-    choices = _choices(row)
+    choices = alternatives(row)
     if len(choices & set(given)) > 1:
         return f"{row.name} needs only one of {one_of(choices)}."
     return ""
 
 
-def _choices(row: CommandType) -> set[str]:
+def alternatives(row: CommandType) -> set[str]:
+    """The arguments of which a Command has exactly one."""
     return {name for name, argument in row.arguments.items() if argument.choice}

@@ -183,19 +183,8 @@ class Distributions:
         Bare numbers are seconds where times are wanted.
         """
         rows = self._rows(name)
-        head = rows[0][1] if rows else []
-        if any(";" in one for one in head):
-            raise ValueError(f"{name}: its cells stand between ';'; save it with ',' between them.")
-        if column and column not in head:
-            hint = did_you_mean(column, head)
-            raise ValueError(f'{name} has no column "{column}". {hint}'.rstrip())
-        place = head.index(column) if column else 0
-        titled = column or (head and not re.match(r"[-+.\d]", head[0]))
-        wide = next((at for at, row in rows if len(row) > 1), 0)
-        if wide and not titled:
-            remedy = "write 1.5 for 1,5, or give the columns names in the first line"
-            raise ValueError(f"{name}:{wide}: there are several cells; {remedy}.")
-        texts = [(at, row[place].strip()) for at, row in rows[bool(titled) :] if place < len(row)]
+        place, titled = _column(name, rows, column)
+        texts = [(at, row[place].strip()) for at, row in rows[titled:] if place < len(row)]
         return [(at, self._with_unit(one)) for at, one in texts if one]
 
     def _with_unit(self, text: str) -> str:
@@ -221,3 +210,25 @@ class Distributions:
         if len(rows) > MOST_VALUES:
             raise ValueError(f"{name} has more than {counted(MOST_VALUES, 'value')}.")
         return rows
+
+
+def _column(name: str, rows: list[tuple[int, list[str]]], column: str) -> tuple[int, bool]:
+    """Where a column is in the rows of a file, and whether the first row has titles.
+
+    Raises:
+        ValueError: there is no such column, or it is not clear where values end.
+    """
+    head = rows[0][1] if rows else []
+    if any(";" in one for one in head):
+        raise ValueError(f"{name}: its cells stand between ';'; save it with ',' between them.")
+    if column and column not in head:
+        hint = did_you_mean(column, head)
+        raise ValueError(f'{name} has no column "{column}". {hint}'.rstrip())
+    if column:
+        return head.index(column), True
+    titled = bool(head) and not re.match(r"[-+.\d]", head[0])
+    wide = next((at for at, row in rows if len(row) > 1), 0)
+    if wide and not titled:
+        remedy = "write 1.5 for 1,5, or give the columns names in the first line"
+        raise ValueError(f"{name}:{wide}: there are several cells; {remedy}.")
+    return 0, titled

@@ -30,7 +30,7 @@ from prima.devices.settings import Does, DriverLimits, DriverSettings, Pose
 from prima.errors import RunError, UsageError
 from prima.grammar.answers import Answers
 from prima.live.recordings import Recordings
-from prima.live.wellformed import well_formed
+from prima.live.wellformed import WRONG, well_formed
 from prima.messages import Data, Json, Record
 from prima.sim.map import Map
 
@@ -156,10 +156,10 @@ class Driver:
         self._loop = asyncio.get_running_loop()
 
     def tell(self, report: Report | News) -> None:
-        """Tell the run something, from its event loop. Where no record can hold it, the robot is lost."""
+        """Tell the run something, from its event loop; if no record can hold it, the robot is lost."""
         try:
             told = well_formed(report)
-        except (TypeError, ValueError, RecursionError) as error:
+        except WRONG as error:
             self.lose(f"what the driver tells is wrong ({type(report).__name__}): {error}")
             return
         if told is not None:

@@ -6,11 +6,17 @@ from math import isfinite
 from numbers import Integral, Real
 from typing import Any, get_args, get_type_hints
 
-from prima.devices.goals import At, Broke, Done, News, Report, Sees
+from prima.devices.goals import At, Broke, Done, Lost, News, Report, Sees, Stopped
+from prima.errors import one_of
 from prima.messages import Data, Heard, Json, Narrated, Occurred, Sensed
 
-ACTORS = frozenset(get_args(get_type_hints(Occurred)["actor"])) - {"mediator"}
-"""Who may bring an event about."""
+OCCURRED = frozenset(get_args(get_type_hints(Occurred)["actor"])) - {"mediator"}
+NARRATED = frozenset(get_args(get_type_hints(Narrated)["actor"]))
+"""Who may bring an event about, and who may do what a reader is told of."""
+
+
+WRONG = (TypeError, ValueError, OverflowError, RecursionError)
+"""What it raises of something that no record can hold."""
 
 
 def well_formed(told: Report | News) -> Report | News | None:
@@ -20,8 +26,25 @@ def well_formed(told: Report | News) -> Report | News | None:
     not told at all.
 
     Raises:
-        TypeError, ValueError, RecursionError: no record can hold it.
+        TypeError, ValueError, OverflowError, RecursionError: no record can hold it.
     """
+    return _report(told) if isinstance(told, Report) else _news(told)
+
+
+def _report(told: Report) -> Report:
+    match told:
+        case Done():
+            return Done(told.key, _data(told.data))
+        case Stopped():
+            return Stopped(told.key, _number(told.share), told.said)
+        case Broke():
+            return Broke(told.key, _text(told.device), _text(told.reason), told.lacks)
+        case Lost():
+            return Lost(told.devices, _text(told.reason))
+    return told
+
+
+def _news(told: News) -> News | None:
     match told:
         case Sensed():
             return Sensed(_data(told.values))
@@ -32,16 +55,17 @@ def well_formed(told: Report | News) -> Report | News | None:
         case Heard():
             return Heard(_text(told.text), _data(told.data), int(told.lasted))
         case Occurred():
-            if told.actor not in ACTORS:
-                raise ValueError(f"its actor must be {' or '.join(sorted(ACTORS))}")
+            _check_actor(told.actor, OCCURRED)
             return Occurred(_text(told.name), told.actor, _data(told.data), told.app)
         case Narrated():
+            _check_actor(told.actor, NARRATED)
             return Narrated(told.actor, _text(told.text))
-        case Done():
-            return Done(told.key, _data(told.data))
-        case Broke():
-            return Broke(told.key, _text(told.device), _text(told.reason), told.lacks)
     return told
+
+
+def _check_actor(actor: str, actors: frozenset[str]) -> None:
+    if actor not in actors:
+        raise ValueError(f"its actor must be {one_of(actors)}")
 
 
 def _data(value: Any) -> Data:
@@ -69,6 +93,7 @@ def _plain(value: Any) -> Json:
         case str():
             return _text(value)
         case Integral():
+            float(value)  # other programs could not read what is larger
             return int(value)
         case Real():
             return _number(value)

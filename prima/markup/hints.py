@@ -111,6 +111,16 @@ def inside_itself(tag: str) -> str:
     return f"Close the first <{tag}> before this one."
 
 
+def _holder(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
+    """The element that may stand in the parent and hold another; nothing if several could."""
+    inside = [
+        one
+        for one in vocabulary.children(parent.key)
+        if vocabulary.child(vocabulary.child(parent.key, one) or "", tag)
+    ]
+    return "block" if "block" in inside else inside[0] if len(inside) == 1 else ""
+
+
 def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
     """What to do with an element in a place where it is not allowed."""
     allowed = vocabulary.parents(tag)
@@ -122,13 +132,7 @@ def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
         )
     if parent.tag == tag:
         return inside_itself(tag)
-    inside = [
-        one
-        for one in vocabulary.children(parent.key)
-        if vocabulary.child(vocabulary.child(parent.key, one) or "", tag)
-    ]
-    if "block" in inside or len(inside) == 1:
-        holder = "block" if "block" in inside else inside[0]
+    if holder := _holder(tag, parent, vocabulary):
         return f"Put it into {with_article(f'<{holder}>')}."
     if set(allowed) & set(vocabulary.parents(parent.tag)):
         return f"Move it out of the <{parent.tag}>."

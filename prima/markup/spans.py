@@ -97,11 +97,16 @@ def _likely(node: Node, item: Attribute) -> str | None:
         return value
     if item.kind in NUMBERS:
         return f"{max(item.low or 0, 0):g}"
+    return "" if item.kind == "text" else _new_name(node, item)
+
+
+def _new_name(node: Node, item: Attribute) -> str | None:
+    """A name that nothing has yet; None if the attribute names what is elsewhere."""
     given = item.name in GIVEN and node.tag != "assign"  # which names what is declared elsewhere
-    if item.kind in NAMES and (given or item.kind == "event"):
-        name = node.tag if given else item.name
-        return f"{name.replace('-', '_')}_{node.index}"  # no other element has its number
-    return "" if item.kind == "text" else None
+    if item.kind not in NAMES or not (given or item.kind == "event"):
+        return None
+    name = node.tag if given else item.name
+    return f"{name.replace('-', '_')}_{node.index}"  # no other element has its number
 
 
 def with_namespace(text: str, node: Node, namespace: str) -> Hint:

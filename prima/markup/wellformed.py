@@ -279,10 +279,9 @@ def _wrong_end(source: Source, place: Place, message: str) -> Hint:
 def _empty(source: Source, place: Place, message: str, vocabularies: Sequence[Vocabulary]) -> Hint:
     """What to do with an open tag of an element that holds nothing: it ends by itself."""
     match = re.search(UNCLOSED, message)
-    name = match[1] if match else ""
-    alike = [one for own in vocabularies for one in own.elements.values() if one.tag == name]
-    if match is None or not alike or any(one.children or one.text for one in alike):
+    if match is None or not _holds_nothing(match[1], vocabularies):
         return Hint()
+    name = match[1]
     first = _offset(source, Place(source.file, int(match[2])))
     tags = MARKUP.finditer(source.text, first, _offset(source, place))
     begin = re.compile(rf"<{re.escape(name)}(?=[\s>])")
@@ -291,6 +290,12 @@ def _empty(source: Source, place: Place, message: str, vocabularies: Sequence[Vo
         return Hint()
     text = f"The <{name}> of line {match[2]} holds nothing: end its own tag with />."
     return replaced(text, "/>", source.span(ends[-1] - 1, ends[-1]), title=f"End <{name}> with />")
+
+
+def _holds_nothing(tag: str, vocabularies: Sequence[Vocabulary]) -> bool:
+    """Whether elements of a name are known, and hold neither text nor elements."""
+    alike = [one for own in vocabularies for one in own.elements.values() if one.tag == tag]
+    return bool(alike) and not any(one.children or one.text for one in alike)
 
 
 def _closed(source: Source, place: Place, name: str) -> tuple[Fix, ...]:

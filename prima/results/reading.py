@@ -72,9 +72,7 @@ def read(path: str | Path) -> Sheet:
         raise UsageError(f"{table}: not the table of a sweep: {error}.") from None
     _check(table, cells)
     sheet = Sheet(table, [], cells, _beside(table, PLAN) or {}, cut)
-    planned = sheet.plan.get("runs")
-    if not cut and isinstance(planned, int) and planned > len(sheet):
-        sheet.cut = f"it has {len(sheet):,} of {planned:,} runs; make the others by --resume"
+    sheet.cut = cut or _broken_off(sheet)
     sheet.columns = _columns(sheet)
     if not any(one.role == "measure" for one in sheet.columns):
         raise UsageError(f"{table}: not the table of a sweep: it has no column of a measure.")
@@ -82,6 +80,14 @@ def read(path: str | Path) -> Sheet:
         more = f" ({cut})" if cut else ""
         raise UsageError(f"{table}: the table has no rows{more}; make its runs by prima sweep.")
     return sheet
+
+
+def _broken_off(sheet: Sheet) -> str:
+    """Why a table is not whole whose sweep has not made all its runs."""
+    planned = sheet.plan.get("runs")
+    if not isinstance(planned, int) or planned <= len(sheet):
+        return ""
+    return f"it has {len(sheet):,} of {planned:,} runs; make the others by --resume"
 
 
 def table_of(path: Path) -> Path:

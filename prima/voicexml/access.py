@@ -23,8 +23,8 @@ def host_of_page(page: Page) -> str:
 def may_read(data: list[dict[str, Any]], host: str) -> bool:
     """Whether documents of a host may read data, given as its nodes.
 
-    Whoever is not named may not, where anybody is; the longest name counts, and of equal ones
-    ``deny``.
+    Without an instruction everybody may. With one, the longest name that fits the host decides;
+    of equal ones ``deny``. A host that no name fits may not.
     """
     said = [one["value"] for one in data if _is_rule(one)]
     rules = [

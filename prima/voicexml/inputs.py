@@ -102,8 +102,8 @@ class Inputs:
                     break
         if not results:
             return None
-        surest = sorted(results[:most], key=lambda one: -one[1].confidence)
-        (active, best), *others = surest
+        surest = sorted(results, key=lambda one: -one[1].confidence)
+        (active, best), *others = surest[:most]
         further = [(one.utterance, one.interpretation, one.confidence) for _, one in others]
         return TakenUtterance(
             best.utterance,

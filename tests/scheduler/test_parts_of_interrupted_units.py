@@ -1,4 +1,4 @@
-"""X2: what is recorded and told of something interrupted, above all of a unit in its midst."""
+"""X2: the records of an interruption, and how much of a unit its application is told was done."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def interrupted(what: Command | Group, *ends: str) -> Stage:
 
 
 def told(stage: Stage, behavior: str, data: Data) -> list[Data]:
-    """A device tells how much it has done; gives what the application is told of it."""
+    """Let a device report how much it has done; give what the application then gets."""
     stage.at(501).mediator.interrupted(behavior, data)
     stage.select()
     return [notice.data for _, notice in stage.notices if notice.what == "interrupted"]

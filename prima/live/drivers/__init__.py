@@ -42,7 +42,7 @@ def driver_class(kind: str, defined: Sequence[type[Driver]] = ()) -> type[Driver
             raise UsageError(f'The entry point "{kind}" in {GROUP} is not a Driver class.')
         return found
     if kind not in kinds():
-        known = sorted({*kinds(), *(one.kind for one in defined)})
+        known = {*kinds(), *(one.kind for one in defined)}
         hint = did_you_mean(kind, known) or f"The kinds are {one_of(known)}."
         raise UsageError(f'There is no driver of the kind "{kind}". {hint}')
     made: type[Driver] = importlib.import_module(f"{__name__}.{kind}").DRIVER
