@@ -42,7 +42,7 @@ class Loop:
         self._deadline = session.deadline()
         """When the session has to be stepped even if nothing happens: only a step changes it."""
         self._ended = session.over
-        """Whether every application has ended, likewise."""
+        """Whether the session is over, likewise."""
         self._full = False
         """Whether the run has made as much as it may."""
 
@@ -90,7 +90,7 @@ class Loop:
 
     @property
     def over(self) -> bool:
-        """Whether every application has ended, and none is still to come."""
+        """Whether the session is over, and no application is still to come."""
         return self._ended and not self.devices.awaits
 
     def due(self) -> int | None:

@@ -39,6 +39,7 @@ class Checker(Starts):
             "suspend": self.note_suspend,
             "resume": self.note_resume,
             "stop": self.note_stop,
+            "over": self.note_over,
         }
         for place, record in enumerate(self.records):
             if record["time"] != self.now:

@@ -49,6 +49,12 @@ class Endings(Late):
             self.hears_surely(ab)
         self.remove(ab)
 
+    def note_over(self, record: Record) -> None:
+        """E2: the run is over as all applications have ended, and what they still did."""
+        if record["outcome"] == "over":
+            for ab in self.running.values():
+                self.report(2, "E2", f"{ab.shown} still runs as the run ends")
+
     def _goes_on(self, ab: AB) -> None:
         """U2: a loop has ended, and the next one waits."""
         self.wait(ab)

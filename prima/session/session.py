@@ -155,8 +155,8 @@ class Session:
 
     @property
     def over(self) -> bool:
-        """Whether every application that was loaded has ended."""
-        return bool(self._apps.loaded) and not self._apps.living()
+        """Whether every application that was loaded has ended, and what it still did (E2)."""
+        return bool(self._apps.loaded) and not self._apps.living() and self.idle
 
     @property
     def idle(self) -> bool:

@@ -108,7 +108,7 @@ class Game:
 
     @property
     def over(self) -> bool:
-        """Whether every application has ended."""
+        """Whether the run has ended."""
         return self.rehearsal.outcome == "over" or self.rehearsal.over
 
     @property

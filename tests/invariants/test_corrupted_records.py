@@ -155,6 +155,12 @@ def after_its_end(records: Records) -> Records:
     return [*records[:index], gone, *records[index:]]
 
 
+def cut_short(records: Records) -> Records:
+    end = indexes(records, phase="start")[0] + 1
+    over = {"time": records[end - 1]["time"], "phase": "over", "outcome": "over"}
+    return [*records[:end], {**over, "actor": "mediator"}]
+
+
 FIRST = {"phase": "request"}
 WANTED = play(
     form(SAY.format("A") + SAY.format("B"), on("touch", '<turn angle="5" order="now"/>')),
@@ -369,6 +375,7 @@ FALSEHOODS = (
     ),
     Falsehood("needless", BESIDE, takes_the_floor, "13 (F3)"),
     Falsehood("gone", BROKEN, after_its_end, "3 (E2)"),
+    Falsehood("cut-short", BROKEN, cut_short, "2 (E2)"),
     # Leaving a state.
     Falsehood("not-left", LEFT, drop(0, phase="leave"), "3 (O3)"),
     Falsehood("goes-on", LEFT_DONE, drop(0, phase="leave"), "3 (O3)"),
