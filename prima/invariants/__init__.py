@@ -60,7 +60,7 @@ def check(
     records: Iterable[Record],
     policy: str = "prima",
     declared: Sequence[str] = (),
-    patience: float | None = None,
+    patience: int | None = None,
     calling: Collection[str] = (),
 ) -> list[str]:
     """Violations of all invariants but 8 and 9 in a run; of 1 to 5 under a baseline policy.
@@ -74,8 +74,8 @@ def check(
     beyond its time (X8), and nobody else takes a late answer (X10).
 
     ``declared`` are the applications in the order of their declaration (S2f), where neither
-    the records nor the order of loading tells it; ``patience`` is E6's bound, in the records'
-    unit, where they do not tell it. ``calling`` are those that have subdialogs, or are VoiceXML:
+    the records nor the order of loading tells it; ``patience`` is E6's bound (ms), where they do
+    not tell it. ``calling`` are those that have subdialogs, or are VoiceXML:
     a state of theirs need not have been left before another asks for something. Under ``none`` invariant 1 is expected to
     fail: nothing keeps devices apart.
     """

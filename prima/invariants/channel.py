@@ -5,8 +5,8 @@ from __future__ import annotations
 from prima.invariants.memory import Memory
 from prima.invariants.model import AB, Record, Tree
 
-PATIENCE = 20
-"""Seconds without a sight, word or touch of the user after which streams engage nobody (K1)."""
+PATIENCE = 20_000
+"""Milliseconds without a sight, word or touch of the user after which streams engage nobody (K1)."""
 
 
 class Channel(Memory):
@@ -54,9 +54,9 @@ class Channel(Memory):
             )
 
     @property
-    def lapses_at(self) -> float:
+    def lapses_at(self) -> int:
         """When streams come to engage nobody, if nobody is sensed until then."""
-        return self.sensed_at + PATIENCE * self.second
+        return self.sensed_at + PATIENCE
 
     @property
     def sensed(self) -> bool:

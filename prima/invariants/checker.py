@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from prima.invariants.model import AB, GONE, LINKED, Record, Tree, base
+from prima.invariants.model import AB, GONE, LINKED, Record, Tree, base, ms
 from prima.invariants.starts import Starts
 from prima.invariants.table import contradictions
 
@@ -59,7 +59,7 @@ class Checker(Starts):
         self.note_lapse(record)
         self.note_end(record)
 
-    def _until(self, time: float) -> None:
+    def _until(self, time: int) -> None:
         """Go on to the next instant that is recorded, past the moment in which K1 may lapse."""
         self.pass_time(time)
         lapse = self.lapses_at
@@ -73,11 +73,23 @@ class Checker(Starts):
 
     def _load(self, record: Record) -> None:
         if record["actor"] == "mediator":
+            self._former(record["app"])
             self.apps.setdefault(record["app"], len(self.apps))
             self.gone_apps.discard(record["app"])
             self.loaded.add(record["app"])
             self.left = {one for one in self.left if one[0] != record["app"]}  # it counts anew
             self.asked.pop(record["app"], None)
+
+    def _former(self, name: str) -> None:
+        """What still runs of an application that is loaded again is of another one (E2)."""
+        self.latest.pop(name, None)
+        former = f"{name}, unloaded"
+        known: list[Tree | AB] = [*self.trees.values(), *self.abs.values()]
+        for one in known:
+            if one.app == name:
+                one.app = former
+                self.apps[former] = self.apps[name]
+                self.gone_apps.add(former)
 
     def _unload(self, record: Record) -> None:
         if record["actor"] == "mediator":
@@ -191,7 +203,7 @@ class Checker(Starts):
             place=self.place,
             urgent=record.get("order") == "now",
             motion=record.get("motion") or "" if unit is None else "",
-            fresh_until=self.now + record["fresh"] * self.second if record.get("fresh") else None,
+            fresh_until=self.now + ms(record["fresh"]) if record.get("fresh") else None,
             inserted=record.get("inserted") or "",
             put_before=base(record.get("before") or ""),
             leaves=bool(record.get("leaves")),

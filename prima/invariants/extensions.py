@@ -6,7 +6,7 @@ import math
 from typing import TypeGuard
 
 from prima.invariants.floor import FloorRules
-from prima.invariants.model import AB, LINKED, RUNNING, WAITING, Record, Tree, base
+from prima.invariants.model import AB, LINKED, RUNNING, WAITING, Record, Tree, base, ms
 
 RESTORING = ("set-position", "set-position-and-direction", "set-direction", "face-human")
 """What X1 may put in, and the head's Command."""
@@ -20,7 +20,6 @@ GOING = (
 """What changes where the robot stands, so that it relies on no place itself."""
 FAR = 0.5
 """Metres from its place at which a stream is not where it was (X1)."""
-A_MOMENT = 1e-6
 
 
 class Extensions(FloorRules):
@@ -175,7 +174,7 @@ class Extensions(FloorRules):
 
     def wants_hold(self, tree: Tree, ab: AB, record: Record) -> None:
         """X3: the latest request says how long; while one is held, requests join it."""
-        hold = record.get("hold")
+        hold = None if record.get("hold") is None else ms(record["hold"])
         if hold != tree.hold or not self._says_nothing_of_holds(ab):
             tree.hold, tree.hold_state = hold, ab.state
         tree.requested = self.place
@@ -214,8 +213,8 @@ class Extensions(FloorRules):
             return
         if tree.until is None:
             self.report(10, "X3", f"{name} is held no longer ({outcome}), but was not")
-        elif outcome == "over" and abs(tree.until - self.now / self.second) > A_MOMENT:
-            self.report(10, "X3", f"{name} was to be held until {tree.until:g}")
+        elif outcome == "over" and tree.until != self.now:
+            self.report(10, "X3", f"{name} was to be held until {tree.until} ms")
         elif outcome == "left":
             self.let_go.append((tree, tree.hold_state))
         tree.until = tree.hold = None
@@ -224,12 +223,11 @@ class Extensions(FloorRules):
 
     def _begin_hold(self, tree: Tree, record: Record) -> None:
         """X3: a stream of which nothing is left stays open, and takes the floor if it is free."""
-        now = self.now / self.second
-        until: float = record["data"]["until"]
+        until = ms(record["data"]["until"])
         if tree.open or tree.hold is None or tree.app in self.gone_apps:
             self.report(10, "X3", f"{tree.name} is held, but nobody asks for it")
-        elif abs(until - now - tree.hold) > A_MOMENT:
-            self.report(10, "X3", f"{tree.name} is held until {until:g}, not for {tree.hold:g} s")
+        elif until - self.now != tree.hold:
+            self.report(10, "X3", f"{tree.name} is held until {until} ms, not for {tree.hold} ms")
         tree.until = until
         self.close_trees()
         if not self.floor:
@@ -238,8 +236,8 @@ class Extensions(FloorRules):
     def holds_rightly(self) -> None:
         """X3, at the end of an instant: nothing is held too long, or while it goes on."""
         for tree in self.trees.values():
-            if tree.until is not None and tree.until <= self.now / self.second + A_MOMENT:
-                self.report(10, "X3", f"{tree.name} is held beyond {tree.until:g}")
+            if tree.until is not None and tree.until <= self.now:
+                self.report(10, "X3", f"{tree.name} is held beyond {tree.until} ms")
             if tree.until is not None and tree.members:
                 self.report(
                     10, "X3", f"{tree.name} is held, but {next(iter(tree.members))} is of it"
@@ -250,7 +248,7 @@ class Extensions(FloorRules):
     def _ends_rightly(self, tree: Tree) -> None:
         """X3: a stream ends only when nobody wants it held."""
         if tree.hold is not None and "x3" in self.extensions and tree.app not in self.gone_apps:
-            self.report(10, "X3", f"{tree.name} ends, but was to be held for {tree.hold:g} s")
+            self.report(10, "X3", f"{tree.name} ends, but was to be held for {tree.hold} ms")
 
     def note_substitute(self, record: Record) -> None:
         """X6: from here on, what the robot lacks is asked for no more."""

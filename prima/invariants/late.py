@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from prima.invariants.model import AB, WAITING, Record
+from prima.invariants.model import AB, WAITING, Record, ms
 from prima.invariants.selection import Selection
 
-A_MOMENT = 0.0055
-"""Seconds by which a reaction that may start, and is outdone, may be older than its time."""
-LATE = 2.0
-"""Seconds after a question's timeout in which the user may begin to answer it still."""
+A_MOMENT = 5
+"""Milliseconds by which a reaction that may start, and is outdone, may be older than its time."""
+LATE = 2000
+"""Milliseconds after a question's timeout in which the user may begin to answer it still."""
 
 
 class Late(Selection):
@@ -38,7 +38,7 @@ class Late(Selection):
             self.report(3, "X8", f"{shown}, but is of no reaction that has a time")
             return
         if root.fresh_until > self.now:
-            self.report(3, "X8", f"{shown} before {root.fresh_until:g}")
+            self.report(3, "X8", f"{shown} before {root.fresh_until} ms")
         for other in waited:
             if other.phase == WAITING:
                 other.cause, other.fresh_until = root.cause, self.now
@@ -47,8 +47,8 @@ class Late(Selection):
         """X8 at the end of an instant: no reaction waits whose time is over."""
         if ab.cause is None or ab.fresh_until is None or "x8" not in self.extensions:
             return
-        if self.now > ab.fresh_until + A_MOMENT * self.second:
-            self.report(16, "X8", f"{ab.shown} waits, but was worth it until {ab.fresh_until:g}")
+        if self.now > ab.fresh_until + A_MOMENT:
+            self.report(16, "X8", f"{ab.shown} waits, but was worth it until {ab.fresh_until} ms")
 
     def answered_early(self, ab: AB, record: Record) -> None:
         """X8, X10: a question is answered that nobody has asked yet."""
@@ -80,13 +80,13 @@ class Late(Selection):
         if record["event"] != "speech" or record["actor"] != "user":
             return
         self.speech_at, self.speech = self.now, record.get("serial")
-        began = self.now - (record.get("data") or {}).get("lasted", 0) * self.second
+        began = self.now - ms((record.get("data") or {}).get("lasted", 0))
         lapsed, self.late_app = self.lapsed, ""
         if "x10" not in self.extensions or lapsed is None:
             late = ""
         else:
             app, when = lapsed
-            late = "" if began - when > LATE * self.second else app
+            late = "" if began - when > LATE else app
         told = record.get("app") or ""
         if told and (record.get("rule") != "X10" or told != late):
             self.report(16, "X10", f"what {told} has not asked for is told it alone")

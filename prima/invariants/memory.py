@@ -17,7 +17,16 @@ from prima.invariants.model import (
     Record,
     Tree,
     base,
+    ms,
 )
+
+
+def in_ms(records: Iterable[Record]) -> list[Record]:
+    """Records with times in ms; transcripts, which begin with ``run``, have them in seconds."""
+    made = list(records)
+    if not made or made[0]["phase"] != "run":
+        return made
+    return [{**record, "time": ms(record["time"])} for record in made]
 
 
 class Memory:
@@ -32,15 +41,12 @@ class Memory:
     ) -> None:
         self.calling = calling
         """Applications whose states may follow others that were not left."""
-        self.records = list(records)
+        self.records = in_ms(records)
         name, *extensions = policy.split("+")
         self.policy, _, self.first = name.partition(":")
         self.prima = self.policy == "prima"
         self.extensions = EXTENSIONS if "all" in extensions else frozenset(extensions)
-        written = bool(self.records) and self.records[0]["phase"] == "run"
-        self.second = 1 if written else 1000
-        """A second in the records' time: transcripts count seconds, runs milliseconds."""
-        if written and not declared:
+        if not declared and self.records and self.records[0]["phase"] == "run":
             declared = (self.records[0].get("data") or {}).get("applications", ())
         self.found: list[str] = []
         self.apps: dict[str, int] = {app: number for number, app in enumerate(declared)}
@@ -50,13 +56,13 @@ class Memory:
         self.abs: dict[str, AB] = {}
         self.waiting: dict[str, AB] = {}
         self.running: dict[str, AB] = {}
-        self.lapsed: tuple[str, float] | None = None
+        self.lapsed: tuple[str, int] | None = None
         """Whose question was not answered in time last, and when (X10)."""
         self.late_app = ""
         """Who has asked what the user has just answered too late (X10)."""
         self.speech: int | None = None
         """The number of what the user said last, and when that was."""
-        self.speech_at: float = -1
+        self.speech_at = -1
         self.answered_tree: Tree | None = None
         """A stream with a question that was answered since the latest selection (X7)."""
         self.turn: AB | None = None
@@ -73,9 +79,10 @@ class Memory:
         self.halted = False
         self.in_view = False
         """Whether the camera sees the user (V4)."""
-        self.sensed_at: float = 0
+        self.sensed_at = 0
         """When the user was last seen, heard or felt (K1)."""
-        self.now: float = 0
+        self.now = 0
+        """The time (ms)."""
         self.place = 0
         self.left: set[tuple[str, int | None]] = set()
         """Applications, and states of theirs that they have left (O3)."""
@@ -85,11 +92,11 @@ class Memory:
         """Applications of which something was refused, so that its state is not known (E3)."""
         self.requests: dict[str, Record] = {}
         """The request of each AB."""
-        self.serials: dict[int, float] = {}
+        self.serials: dict[int, int] = {}
         """The numbers of events, and when those happened."""
         self.numbered = any(one.get("serial") is not None for one in self.records)
         """Whether events are recorded: some drivers ask for Commands without any."""
-        self.turns: dict[str, float] = {}
+        self.turns: dict[str, int] = {}
         """When streams came to wait suspended, or went on: their applications may hear of it."""
         self.told_floor: list[str] = []
         """The floor according to ``floor`` records."""
@@ -107,8 +114,8 @@ class Memory:
     def _read_ahead(self) -> None:
         """Note where each name occurs last, which only later records show."""
         self.last: dict[str, int] = {}
-        self.unit_ends: dict[str, float] = {}
-        self.begins: dict[tuple[float, str], int] = {}
+        self.unit_ends: dict[str, int] = {}
+        self.begins: dict[tuple[int, str], int] = {}
         """When streams begin to be held, and the index of the record that says so."""
         self.groups: set[str] = set()
         """Units whose Commands are given beforehand (U4): others span questions (U5)."""
@@ -171,7 +178,7 @@ class Memory:
 
     def report(self, number: int, rule: str, text: str) -> None:
         """Note a violation of an invariant, with the rule behind it."""
-        self.found.append(f"invariant {number} ({rule}) at {self.now:g}: {text}")
+        self.found.append(f"invariant {number} ({rule}) at {self.now / 1000:.3f} s: {text}")
 
     def wait(self, ab: AB) -> None:
         """An AB waits from here on; what was said of an earlier wait of it says nothing."""

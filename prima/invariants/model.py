@@ -8,6 +8,12 @@ from typing import Any
 
 Record = Mapping[str, Any]
 
+
+def ms(seconds: float) -> int:
+    """Seconds in milliseconds, in which all times are compared."""
+    return round(seconds * 1000)
+
+
 LINKED, WAITING, RUNNING, GONE = "linked", "waiting", "running", "gone"
 BASELINES = ("fifo", "fair", "fixed", "none")
 EXTENSIONS = frozenset(("x1", "x2", "x3", "x4", "x5", "x6", "x7", "x8", "x9", "x10"))
@@ -35,15 +41,15 @@ class AB:
     cause: int | None
     """The event reacted to: the reactive flag, until it starts (C5)."""
     parents: set[str]
-    requested: float
+    requested: int
     place: int
     """The index of its request among the records."""
     urgent: bool = False
     """Whether it is wanted now, and never linked (O2)."""
     restartable: bool = False
     motion: str = ""
-    fresh_until: float | None = None
-    """Until when the reaction is worth starting (X8)."""
+    fresh_until: int | None = None
+    """Until when (ms) the reaction is worth starting (X8)."""
     spans: bool = False
     """Whether it is a unit that spans questions and states (U5), as far as X7 asks."""
     connect: bool = False
@@ -56,12 +62,12 @@ class AB:
     starts: int = 0
     started: int = -1
     """The index of its latest start among the records."""
-    started_at: float = -1
+    started_at: int = -1
     reacted: int | None = None
     """The event that it reacted to when it started last."""
-    followed_at: float = -1
+    followed_at: int = -1
     """When a parent of it ended, its loop ended, or a window asked for it (S2c)."""
-    freed_at: float = -1
+    freed_at: int = -1
     """When the last of its parents ended or was cancelled."""
     interrupted: bool = False
     """Whether it has to start again from its beginning (X2)."""
@@ -76,7 +82,7 @@ class AB:
     listening: bool = False
     silent: bool = False
     """Whether O2 may have made the mediator deaf for it while it runs."""
-    said: tuple[str, str, float] | None = None
+    said: tuple[str, str, int] | None = None
     """Why it waits, because of whom, and since when, as its latest ``hold`` says."""
 
     def inside(self, other: AB) -> bool:
@@ -121,12 +127,12 @@ class Tree:
     engaged: bool = False
     cause: int | None = None
     causes: set[int] = field(default_factory=set)
-    hold: float | None = None
-    """How long (s) its latest request wants it held afterwards (X3)."""
+    hold: int | None = None
+    """How long (ms) its latest request wants it held afterwards (X3)."""
     hold_state: int | None = None
     """The state that wants that."""
-    until: float | None = None
-    """Until when (s) it is held."""
+    until: int | None = None
+    """Until when (ms) it is held."""
     joined: int = -1
     """The index of the record by which a request joined it, being held."""
     requested: int = -1

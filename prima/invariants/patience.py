@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.invariants.model import AB, LINKED, WAITING, Record, base
+from prima.invariants.model import AB, LINKED, WAITING, Record, base, ms
 from prima.invariants.streams import Streams
 
 SECONDS = 60
@@ -15,16 +15,16 @@ class Patience(Streams):
     def _read_ahead(self) -> None:
         super()._read_ahead()
         head = self.records[0].get("data") or {} if self.records else {}
-        self.patience: float = head.get("patience", SECONDS) * self.second
-        """The bound, in the records' unit; 0 if there is none."""
-        self._kept: dict[str, float] = {}
+        self.patience = ms(head.get("patience", SECONDS))
+        """The bound (ms); 0 if there is none."""
+        self._kept: dict[str, int] = {}
         self._kept_now: set[str] = set()
-        self._answered: dict[str, float] = {}
+        self._answered: dict[str, int] = {}
         """When the user has answered a question of a stream last."""
         self._starving: set[str] = set()
         """Of which it has been told."""
 
-    def pass_time(self, time: float) -> None:
+    def pass_time(self, time: int) -> None:
         """Count what goes by up to a time in which nothing changes."""
         for name in self._kept_now:
             self._kept[name] = self._kept.get(name, 0) + time - self.now
@@ -60,8 +60,7 @@ class Patience(Streams):
 
     def overdue(self, ab: AB) -> bool:
         """Whether others have kept it from the speaker for as long as they may."""
-        slack = 1e-6 * self.second
-        return self.patience > 0 and self._kept.get(ab.name, 0) >= self.patience - slack
+        return self.patience > 0 and self._kept.get(ab.name, 0) >= self.patience
 
     def its_turn(self, ab: AB) -> bool:
         """E6: whether it goes before all but reactions, as nobody has a word after an answer."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from prima.invariants.extensions import Extensions
 from prima.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Cut, Record, Tree
 
-A_MOMENT_LATER = 0.0015
-"""Seconds after a selection by which an application has heard of it."""
+A_MOMENT_LATER = 1
+"""Milliseconds after a selection by which an application has heard of it."""
 
 
 class Streams(Extensions):
@@ -32,10 +32,10 @@ class Streams(Extensions):
             self.report(15, "C3", f"a window of {tree.name} opens within another")
         if self.owed[tree.name]:
             self.owed[tree.name] -= 1
-        turned = self.turns.get(tree.name, -self.second)
+        turned = self.turns.get(tree.name, -1000)
         if self.heard[tree.name] > 0:
             self.heard[tree.name] -= 1
-        elif self.now - turned > A_MOMENT_LATER * self.second:
+        elif self.now - turned > A_MOMENT_LATER:
             self.report(15, "O3", f"a window of {tree.name} opens, but no end is heard")
         else:
             del self.turns[tree.name]
@@ -57,7 +57,7 @@ class Streams(Extensions):
         if tree is None:
             return
         if tree.until is not None:
-            self.report(10, "X3", f"{tree.name} ends, but is held until {tree.until:g}")
+            self.report(10, "X3", f"{tree.name} ends, but is held until {tree.until} ms")
             tree.until = None
         for ab in list(tree.members.values()):
             self.report(3, "C1", f"{ab.shown} is {ab.phase}, but its tree has ended: it is lost")

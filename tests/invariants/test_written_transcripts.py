@@ -1,0 +1,32 @@
+"""Transcripts with physics, whose times are written in seconds, are held to the rules."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from prima.invariants import check
+from tests.helpers.rehearsing import rehearse
+
+ASKS = (
+    '<form id="f"><field name="q" type="boolean"><prompt timeout="5s">Well?</prompt>'
+    "<noinput><reprompt/></noinput></field></form>"
+)
+GOES = '<form id="f"><block><topological-move to="kidode-room"/></block></form>'
+SPEAKS = '<form id="f"><block><speak>Welcome to our museum.</speak></block></form>'
+AWAY = '<person x="-3" y="0"/>'
+
+
+def test_the_user_is_absent_to_the_millisecond(tmp_path: Path) -> None:
+    touched = '<when at="9002ms"><touch sensor="head"/></when>'  # as floats, 20 s later is too late
+    made = rehearse(tmp_path, ASKS, AWAY + touched, other=GOES, until="60s")
+    starts = [one for one in made.records if one["phase"] == "start" and one["app"] == "other"]
+    assert starts[0]["time"] == (9002 + 20_000) / 1000 and check(made.records) == []
+
+
+def test_an_application_that_is_loaded_again_is_another_one(tmp_path: Path) -> None:
+    again = '<unload application="app"/><wait for="100ms"/><load application="app"/>'
+    made = rehearse(tmp_path, SPEAKS, f'<when at="500ms">{again}</when>')
+    said = [one["time"] for one in made.records if one["phase"] == "start"]
+    ends = [one["time"] for one in made.records if one["phase"] == "end"]
+    assert len(said) == 2 and said[1] == ends[0] > 0.6, made.table()
+    assert check(made.records) == []
