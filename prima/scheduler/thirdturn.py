@@ -12,8 +12,6 @@ def owe(mediation: Mediation) -> None:
     """X7: when a question was answered, note what its asker says to that."""
     memory = mediation.memory
     stream, memory.answered = memory.answered, None
-    if memory.owed is not None and memory.owed.state in (GONE, RUNNING):
-        memory.owed = None
     if stream is not None and mediation.has("x7"):
         memory.owed = acknowledgement(stream, memory)
 

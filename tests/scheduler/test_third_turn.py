@@ -168,6 +168,36 @@ def test_x7_an_application_that_ends_owes_nothing() -> None:
     assert check(stage.records, "prima+x7") == []
 
 
+def test_x7_an_application_that_gives_up_both_its_word_and_what_comes_before_owes_nothing() -> None:
+    stage = Stage("prima+x7", {"fa": "fa", "ea": "ea", "eb": "ea"})
+    stage.request("ea", ask())
+    stage.request("eb", command("gesture", name="nod"))
+    assert stage.select() == ["ea#1", "eb#1"]
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", HEAD, say("Thank you.")))
+    assert stage.select() == []
+    stage.at(2100).leave("ea")
+    stage.request("fa", say("Well."))
+    assert stage.select() == ["fa#1"]
+    assert check(stage.records, "prima+x7") == []
+
+
+def test_x7_an_answer_that_comes_early_is_answered_behind_what_is_being_said() -> None:
+    """X10: the question is asked once more as the user begins to answer it."""
+    stage = Stage("prima+x7+x10")
+    stage.request("ea", say("Sorry?"), ask())
+    assert stage.select() == ["ea#1"]
+    stage.at(1000).request("fa", say("That feels good."), cause=TOUCH)
+    assert stage.select() == []
+    question = stage.mediator.coming_question("ea")
+    assert question is not None
+    stage.at(1100).mediator.answered(question, {"outcome": "filled"}, "X10", TOUCH + 1)
+    stage.settle(lambda: stage.request("ea", HEAD, say("Thank you.")))
+    stage.select()
+    stage.at(2000).end("ea#1")
+    stage.select()
+    assert {"ea#3", "ea#4"} & stage.running and "fa#1" not in stage.running
+
+
 def test_x7_its_own_reaction_waits_as_well() -> None:
     stage = Stage("prima+x7")
     stage.request("ea", ask())
