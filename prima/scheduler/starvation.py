@@ -67,7 +67,6 @@ def count_waits(mediation: Mediation) -> None:
 
 def note_waits(mediation: Mediation) -> None:
     """E6: note who is kept waiting by whom from here on, and when the next one will starve."""
-    mediation.starving = None
     if not (mediation.patience and mediation.policy.floor):
         return
     due = [_due(mediation, ab) for ab in mediation.memory.waiting.values()]
@@ -91,6 +90,5 @@ def _due(mediation: Mediation, ab: Behavior) -> int | None:
 def forget_waits(mediation: Mediation) -> None:
     """E5: in an emergency nobody keeps anybody waiting."""
     count_waits(mediation)
-    mediation.starving = None
     for ab in mediation.memory.waiting.values():
         ab.wait.since = ab.wait.kept_since = -1

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import pytest
 
+from prima.language.commands import PATIENCE_MS
+from prima.messages import Step
 from tests.helpers.stage import TRACK, Stage, command, say
 
 TURN = command("turn", angle=3)
 
 
-def tracked(bound: int | None = None, apps: dict[str, str] | None = None) -> Stage:
+def tracked(
+    bound: int | None = None, apps: dict[str, str] | None = None, patience: int = PATIENCE_MS
+) -> Stage:
     """The FA follows the user for ever."""
-    stage = Stage(bound=bound, apps=apps)
+    stage = Stage(bound=bound, apps=apps, patience=patience)
     stage.request("fa", TRACK)
     stage.select()
     return stage
@@ -38,12 +42,31 @@ def test_e4_a_bound_counts_the_loops_that_were_begun_while_another_waited(bound:
     assert found == ([("ea#1", 20, "fa#1.21")] if bound > 20 else [])
 
 
-def test_e4_it_is_told_once_and_of_no_ab_of_the_same_application() -> None:
-    stage = tracked()
+def test_e4_it_is_told_once_whatever_the_patience() -> None:
+    stage = tracked(patience=12_000)
     stage.at(1).request("ea", TURN)
-    stage.request("fa", TURN)
     assert loops(stage) == {}
-    assert [(r["behavior"], r["actor"]) for r in stage.phases("starve")] == [("ea#1", "mediator")]
+    found = [(r["behavior"], r["actor"], r["rule"]) for r in stage.phases("starve")]
+    assert found == [("ea#1", "mediator", "E4")]
+
+
+def test_e4_branches_of_one_tree_starve_nobody_of_it() -> None:
+    stage = Stage()
+    stage.request("fa", steps=[Step(TRACK, ()), Step(TURN, ())])
+    assert stage.select() == ["fa#1.1"]
+    assert loops(stage) == {} and stage.holds("fa#2")[0] == "S1"
+    assert stage.phases("starve") == []
+
+
+def test_e4_a_loop_keeps_others_waiting_from_the_first_instant() -> None:
+    stage = tracked(patience=5000)
+    stage.request("ea", TURN)
+    stage.select()
+    assert stage.mediator.deadline() == 5000
+    for time in range(500, 5500, 500):
+        stage.at(time).end(next(iter(stage.running)), goal=False)
+        stage.select()
+    assert [(r["time"], r["rule"]) for r in stage.phases("starve")] == [(5000, "S1")]
 
 
 def test_e4_another_priority_is_not_counted() -> None:
@@ -122,6 +145,7 @@ def test_e6_without_floor_or_patience_nothing_is_counted(policy: str, patience: 
     stage.select()
     assert stage.phases("starve") == []
     assert stage.mediator.memory.behaviors["fa#1"].wait.kept == 0
+    assert stage.mediator.deadline() == 132_500, "that of the device (E1)"
 
 
 def test_e6_the_first_who_will_starve_is_looked_for_first() -> None:
@@ -146,10 +170,26 @@ def test_e6_waiting_for_its_own_application_is_no_starving() -> None:
     assert stage.phases("starve") == []
 
 
+def test_e6_time_stands_still_while_its_own_application_speaks() -> None:
+    stage = Stage(patience=5000)
+    stage.request("ea", say("First."))
+    stage.select()
+    stage.request("fa", steps=[Step(say("One."), ()), Step(say("Two."), ())])
+    stage.select()
+    stage.at(3000).end("ea#1")
+    assert stage.select() == ["fa#1"]
+    stage.at(9000).request("ea", say("Ouch!"), cause=7)
+    stage.select()
+    stage.at(9100).end("fa#1")
+    assert stage.select() == ["ea#2"], "it is not overdue"
+    assert stage.phases("starve") == []
+
+
 def test_e6_in_an_emergency_time_stands_still() -> None:
     stage = waiting(since=1000)
     stage.at(4000).mediator.emergency(True, True, 8)
     stage.select()
+    assert stage.mediator.deadline() is None
     stage.at(8000).mediator.emergency(False, True, 9)
     assert stage.select() == ["ea#1"]
     assert turns(stage, 9999) == ["ea#2"]
