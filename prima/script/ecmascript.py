@@ -189,7 +189,7 @@ def stringify(value: Any, around: tuple[int, ...] = ()) -> str:
     """A value as JSON (25.5.2); what it cannot have is left out, or null.
 
     Raises:
-        ScriptError: something holds itself, as a scope does.
+        ScriptError: something holds itself.
     """
     if isinstance(value, str):
         return _quoted(value)
@@ -197,7 +197,7 @@ def stringify(value: Any, around: tuple[int, ...] = ()) -> str:
         return "null"
     if not isinstance(value, list | dict):
         return "null" if value is UNDEFINED else text(value)
-    if id(value) in around or isinstance(value, Named):
+    if id(value) in around:
         raise ScriptError("TypeError: circular reference")
     around = (*around, id(value))
     if isinstance(value, list):

@@ -278,7 +278,7 @@ class Engine:
         function = self._giving.get(code)
         if function is None:
             self._check(self._syntax.expression, code)
-            body = f"{{$s[$n] = (\n{code}\n)}}"
+            body = f"{sandbox.DECLARE}($s, $n, (\n{code}\n))"
             function = self._function(f"{self._names},$s,$n", f"{self._withs}{body}")
             self._giving[code] = function
         self._evaluate(code, function, (*scopes, scope, name))

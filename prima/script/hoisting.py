@@ -140,7 +140,7 @@ class _Hoister:
         name = node.child_by_field_name("name")
         if name is None:
             return
-        top, text = node.parent == self.code.root, self.code.of(name)
+        top, text = node.parent == self.code.root, self.code.name(name)
         if top and node.type in DECLARED_FUNCTIONS:
             end = self.code.end(name)
             self.edits.append((end, end, HIDDEN))

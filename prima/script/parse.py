@@ -30,6 +30,7 @@ MOST_STEPS = 0.1
 SHORT = 100
 """Bytes of code that cannot take much work: it is not counted, which takes as long as to parse them."""
 BRACKET = re.compile(r"[()\[\]{}]")
+ESCAPE = re.compile(r"\\u(?:([0-9A-Fa-f]{4})|\{0*([0-9A-Fa-f]{1,5})\})")
 ASTRAL = re.compile("[\U00010000-\U0010ffff]")
 LETTER = "\u2135"
 """A letter of 16 bits that is parsed in place of a longer one, so that offsets count characters."""
@@ -64,6 +65,13 @@ class Code:
     def of(self, node: Node) -> str:
         """The text of a node."""
         return self.text[self.start(node) : self.end(node)]
+
+    def name(self, node: Node) -> str:
+        """The name that a node is, whatever letters of it are written as ``\\u0061``."""
+        text = self.of(node)
+        if "\\" not in text:
+            return text
+        return ESCAPE.sub(lambda found: chr(int(found[1] or found[2], 16)), text)
 
     @property
     def sound(self) -> bool:

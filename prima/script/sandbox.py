@@ -27,7 +27,7 @@ def source(name: str) -> str:
 PRELUDE = source("repeatable.js")
 
 SAFE, GUARD, EVALUATE = "\u01c0safe", "\u01c0guard", "\u01c0evaluate"
-GIVE = "\u01c0give"
+GIVE, DECLARE = "\u01c0give", "\u01c0declare"
 NAME = "\u01c0name"
 """What :data:`GUARDS` makes, by names that hardly any document has."""
 

@@ -80,7 +80,7 @@ class Walk:
 
     def tell(self, node: Node, how: str, scope: CodeScope) -> None:
         """Note a name."""
-        self.found.append((self.code.start(node), self.code.of(node), how, scope))
+        self.found.append((self.code.start(node), self.code.name(node), how, scope))
 
     def push(self, node: Node | None, scope: CodeScope) -> None:
         """Go through a node in a scope."""
@@ -113,7 +113,7 @@ class Walk:
         elif node.type == "method_definition":
             self.push(name, scope)
         elif name is not None:
-            inner.names.add(self.code.of(name))
+            inner.names.add(self.code.name(name))
         for part in ("parameter", "parameters"):
             self.bind(node.child_by_field_name(part), inner)
         self.push(node.child_by_field_name("body"), inner)
@@ -223,7 +223,7 @@ class Walk:
         """Declare the names of a target: a name, a pattern or a list of parameters."""
 
         def declare(node: Node) -> None:
-            home.names.add(self.code.of(node))
+            home.names.add(self.code.name(node))
             self.tell(node, "declare", home)
 
         self._target(target, declare, home)
@@ -253,8 +253,16 @@ class Walk:
                 waiting += node.named_children
             else:
                 self.push(node, scope)
-                if (found := self.of_scope(node)) is not None:
-                    self.given.add(self.code.start(found[1]))
+                self.member_given(node, scope)
+
+    def member_given(self, node: Node, scope: CodeScope) -> None:
+        """A member is given a value: that of a scope, or a script's own, as ``this``, is a variable."""
+        holder, part = node.child_by_field_name("object"), node.child_by_field_name("property")
+        own = holder is not None and holder.type == "this" and scope.function is self.top
+        if (found := self.of_scope(node)) is not None:
+            self.given.add(self.code.start(found[1]))
+        elif own and part is not None and part.type == "property_identifier":
+            self.tell(part, "write", scope)
 
 
 VISITS: Mapping[str, Callable[[Walk, Node, CodeScope], None]] = {

@@ -10,7 +10,7 @@ from prima.script.evaluation import ScriptError
 from prima.script.globals import GLOBALS, IDENTIFIER, STRANGE, WORD
 from prima.script.hoisting import HIDDEN, Hoisted
 from prima.script.names import script_names
-from prima.script.sandbox import GUARD, NAME, SAFE, source
+from prima.script.sandbox import DECLARE, GUARD, NAME, SAFE, source
 
 HELPERS = source("engine.js")
 INTO = "$into$"
@@ -77,13 +77,14 @@ def wrapped(script: Hoisted, scopes: tuple[str, ...]) -> tuple[str, str]:
     loose = sorted(script_names(script.code).written - {*script.variables} - GLOBALS)
     known = "||".join(f"n in {_short(scope)}" for scope in scopes)
     declare = (
-        f"for(const n of {json.dumps(script.variables)})if(!(n in {INTO})){INTO}[n]=undefined;"
+        f"for(const n of {json.dumps(script.variables)})if(!(n in {INTO})){DECLARE}({INTO},n);"
         f"for(const n of {json.dumps(loose)})"
         f"if(!({known}||n in globalThis)){INTO}[n]=undefined;"
     )
     give = "".join(f"{INTO}.{name}={NAME}({name}{HIDDEN},'{name}');" for name in script.functions)
     export = "".join(
-        f"if(typeof {name}!=='undefined'){INTO}.{name}={name};" for name in script.others
+        f"if(typeof {name}!=='undefined'){DECLARE}({INTO},'{name}',{name});"
+        for name in script.others
     )
     inner = (
         f"(function(){{{give}\n{script.code}\n;{export}}}).call({INTO})"  # this is the scope, too

@@ -77,6 +77,8 @@ class Scopes:
         (["function f() { return f.name; } function* g() {}", "var h = f;"], "[f(), g.name, h.name]", ["f", "g", "f"]),
         (["var ap_ = 1, do_ = 2, di_ = 3, lo_ = 4; function f() { return di_; }", "di_ = 5; lo_++;"], "[ap_, do_, f(), lo_]", [1, 2, 5, 5]),
         (["class K { m() { var x = 1; return x; } }"], "[new K().m(), typeof x]", [1, "undefined"]),
+        (["var a = 1; let b = 2; function f() {} c = 3; var all = [delete a, delete b, delete document.f, delete c];"], "[all, a, b, typeof f, typeof c]", [[False, False, False, True], 1, 2, "function", "undefined"]),
+        ([r"var \u0061b = 1; function f\u0061() { return \u{61}b; } l\u{6f}ose = 2; let \u0063 = 3;"], "[ab, fa(), loose, c]", [1, 1, 2, 3]),
     ],
 )  # fmt: skip
 def test_what_a_script_declares_is_a_variable_of_its_scope(
@@ -106,6 +108,23 @@ def test_what_a_script_declares_hides_what_is_further_out() -> None:
     scopes.engine.set(application, "m", 4)
     scopes.run("f();")
     assert scopes.value("'m' in document") is False
+
+
+def test_a_scope_does_not_list_itself() -> None:
+    scopes = Scopes()
+    scopes.run("var a = 1, all = []; for (var name in document) all.push(name);")
+    assert scopes.value("all") == ["a", "all", "name"]
+    assert scopes.value("JSON.stringify(dialog)") == "{}"
+    assert scopes.value("dialog.dialog === dialog") is True
+
+
+def test_variables_of_a_scope_are_kept_by_its_owner_as_well() -> None:
+    scopes = Scopes()
+    scopes.engine.set(scopes.document, "a", 1)
+    scopes.engine.unset(scopes.document, "b")
+    scopes.engine.assign(scopes.document, "c", "3", scopes.all)
+    assert scopes.value("[delete a, delete b, delete document.c]") == [False] * 3
+    assert scopes.value("[a, 'b' in document, c]") == [1, True, 3]
 
 
 def test_what_was_declared_before_an_error_is_there() -> None:

@@ -213,6 +213,7 @@ def test_a_variable_that_is_used_before_it_is_declared_is_told(
         '<form><field name="x" type="boolean"><filled><log expr="x$.utterance"/></filled></field></form>',
         '<form><block><log expr="typeof x"/></block></form>',
         '<form><block><script>var x = 1; y = 2;</script><log expr="x + y"/></block></form>',
+        r'<script>this.x = 1; var \u0079 = 2;</script><form><block><log expr="x + y"/></block></form>',
         '<script src="x.js"/><form><block><log expr="fromfile(1)"/></block></form>',
         '<script src="gone.js"/><form><block><log expr="anything"/></block></form>',
         '<form><block><foreach item="x" array="[1]"><log expr="x"/></foreach></block></form>',

@@ -1,5 +1,5 @@
 (function () {
-const give = globalThis['\u01c0give'], Text = String;
+const give = globalThis['\u01c0give'], declare = globalThis['\u01c0declare'], Text = String;
 const stringify = JSON.stringify, isArray = Array.isArray, text = String, parse = JSON.parse;
 const number = Number, own = Object.hasOwn, freeze = Object.freeze, keys = Object.keys;
 const prototype = Object.getPrototypeOf, base = Object.prototype, Known = Map, List = Array;
@@ -48,17 +48,17 @@ const unmarked = (_, v) => typeof v === 'object' && v !== null && own(v, '\0')
 return {
   scope: function () { return empty(); },
   nothing: function () { return freeze(empty()); },
-  named: function (name) { const made = empty(); made[name] = made; return made; },
+  named: function (name) { const made = empty(); declare(made, name, made); return made; },
   event: function (name, message, data) {
     return { __proto__: root, event: { name, message, data: data === null ? {} : data },
       _event: name, _message: message };
   },
   clock: function (o, t) { o.session = { time: t }; },
-  set: function (o, k, v) { o[k] = v; },
-  unset: function (o, k) { o[k] = undefined; },
+  set: function (o, k, v) { declare(o, k, v); },
+  unset: function (o, k) { declare(o, k); },
   has: function (o, k) { return own(o, k); },
   defined: function (o, k) { return own(o, k) && o[k] !== undefined; },
-  hand: function (o, k, from) { o[k] = from[k]; },
+  hand: function (o, k, from) { declare(o, k, from[k]); },
   view: function (o) { return view(o); },
   detach: function (o, k) { o[k] = copy(o[k], new Known()); },
   text: function (v) { return v === undefined ? 'undefined' : typeof v !== 'object' || v === null
@@ -68,7 +68,7 @@ return {
   items: function (v) { return isArray(v) ? v.length : -1; },
   listed: function (v) { const made = [];
     for (let i = 0; i < v.length; i++) made[i] = v[i]; return made; },
-  pick: function (o, k, v, i) { o[k] = v[i]; },
+  pick: function (o, k, v, i) { declare(o, k, v[i]); },
   item: function (v, i) { const x = v[i];
     return typeof x === 'string' ? give(x) : x; },
 }; })()

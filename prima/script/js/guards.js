@@ -33,8 +33,17 @@
     const whole = short(said, said.length);
     return apply(indexOf, whole, ['\0']) < 0 ? whole : box(whole);
   };
+  // A declared variable lasts as long as its scope: nothing deletes it. A scope that is a variable
+  // of itself is not listed among its variables.
+  const own = Object.hasOwn;
+  const declare = (scope, name, value) => {
+    if (own(scope, name)) scope[name] = value;
+    else define(scope, name,
+      { __proto__: null, value: value, writable: true, enumerable: value !== scope });
+  };
   const given = {
     '\u01c0give': give,
+    '\u01c0declare': declare,
     '\u01c0safe': safe,
     '\u01c0guard': (f) => (guards[f.length] || any)(f),
     '\u01c0evaluate': guards[1]((code) => { evaluate(code); }),
