@@ -9,7 +9,6 @@ from prima.grammar.answers import Answers
 from prima.grammar.builtin import TYPES
 from prima.interpreter.places import source
 from prima.interpreter.transfers import Thrown
-from prima.interpreter.vocabulary.questions import USUAL_CONFIDENCE
 from prima.markup.tree import Node
 from prima.messages import Hypothesis, Json, Say
 from prima.script.budget import Budget
@@ -17,7 +16,7 @@ from prima.voicexml.document import Page
 from prima.voicexml.fetching import held, refusal
 from prima.voicexml.matching import GrammarMatch, Listener, keys, listener, phrase, ways
 from prima.voicexml.owner import MachineOwner
-from prima.voicexml.settings import number, setting
+from prima.voicexml.settings import setting
 from prima.voicexml.state import Context, TakenUtterance
 
 UNIVERSALS = {"help": "help", "cancel": "cancel", "exit": "exit"}
@@ -25,7 +24,6 @@ UNIVERSALS = {"help": "help", "cancel": "cancel", "exit": "exit"}
 DEAF = frozenset(["record", "transfer"])
 """Items that wait even where no grammar listens."""
 MOST_RESULTS = 100
-MODES = ("dtmf", "voice")
 
 
 @dataclass(slots=True)
@@ -117,8 +115,7 @@ class Inputs:
 
     def most_results(self, context: Context) -> int:
         """How many results are wanted at most (6.3.2)."""
-        wanted = number(context, "maxnbest", 1)
-        return int(wanted) if 1 <= wanted <= MOST_RESULTS else 1
+        return int(min(float(setting(context, "maxnbest")), MOST_RESULTS))
 
     def noted(self, context: Context, text: str) -> tuple[str, str] | None:
         """What no grammar has taken, and whether by keys; None if nobody listens to such (6.3.6)."""
@@ -128,8 +125,7 @@ class Inputs:
 
     def modes(self, context: Context) -> list[str]:
         """The kinds of input that the application takes (6.3.6)."""
-        told = setting(context, "inputmodes").split()
-        return [one for one in told if one in MODES] or [*MODES]
+        return setting(context, "inputmodes").split()
 
     def _ways(self, context: Context, text: str) -> Iterator[tuple[str, str]]:
         """An utterance as keys and as speech, as far as the application takes such input."""
@@ -143,8 +139,7 @@ class Inputs:
     ) -> list[Taken]:
         """What grammars of one scope take: of ``first``'s, or the first that takes anything."""
         most = self.most_results(context)
-        least = number(context, "confidencelevel", USUAL_CONFIDENCE)
-        least = least if 0 <= least <= 1 else USUAL_CONFIDENCE
+        least = float(setting(context, "confidencelevel"))
         results: list[Taken] = []
         for active in self._active:
             if first is not None and active.level is not first.level:

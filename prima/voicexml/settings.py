@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+from prima.interpreter.vocabulary.questions import USUAL_CONFIDENCE
 from prima.markup.tree import Node
 from prima.voicexml.arranging import is_unit, parts_of
+from prima.voicexml.checks.attributes import fits
 from prima.voicexml.elements import ITEMS
 from prima.voicexml.state import Context
+from prima.voicexml.vocabulary import PROPERTIES
 
-DEFAULTS = {"timeout": "5s", "bargein": "true", "maxnbest": "1", "termchar": "#"}
+DEFAULTS = {
+    "timeout": "5s",
+    "bargein": "true",
+    "maxnbest": "1",
+    "termchar": "#",
+    "inputmodes": "dtmf voice",
+    "confidencelevel": str(USUAL_CONFIDENCE),
+}
 """Values of properties that no document sets."""
 
 
@@ -22,18 +32,12 @@ def form_items(context: Context) -> list[Node]:
 
 
 def setting(context: Context, name: str) -> str:
-    """A property's value, innermost first (6.3)."""
+    """A property's value, innermost first; a value of the wrong kind is none (6.3)."""
     page_roots = [context.page.root, context.root.root if context.root else None]
+    kind = PROPERTIES.get(name)
     for node in (context.item, context.form, *page_roots):
         for child in reversed(node.all("property") if node is not None else []):
-            if child.get("name") == name:
-                return child.get("value")
+            value = child.get("value")
+            if child.get("name") == name and (kind is None or fits(kind, value)):
+                return value
     return DEFAULTS.get(name, "")
-
-
-def number(context: Context, name: str, default: float) -> float:
-    """A property as a number."""
-    try:
-        return float(setting(context, name))
-    except ValueError:
-        return default

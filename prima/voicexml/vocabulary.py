@@ -190,3 +190,25 @@ EXPRESSIONS = frozenset(
     ]
 )
 """Attributes that hold ECMAScript."""
+FETCHED_VALUES = {"maxage": "number", "maxstale": "number"}
+"""What all elements that fetch may say (6.1.2)."""
+FETCHED = ("audio", "document", "grammar", "object", "script", "data")
+PROPERTIES = {
+    **dict.fromkeys(
+        [
+            *("timeout", "interdigittimeout", "termtimeout", "completetimeout", "fetchtimeout"),
+            *("incompletetimeout", "maxspeechtimeout", "fetchaudiodelay", "fetchaudiominimum"),
+        ],
+        "time",
+    ),
+    **dict.fromkeys(["confidencelevel", "sensitivity", "speedvsaccuracy"], "share"),
+    **{f"{what}fetchhint": "prefetch safe" for what in FETCHED},
+    **{f"{what}{age}": "number" for what in FETCHED for age in FETCHED_VALUES},
+    "inputmodes": "modes",
+    "recordutterance": "true false",
+    "termchar": "key",
+    "bargein": "true false",
+    "bargeintype": "speech hotword",
+    "maxnbest": "integer",
+}
+"""What properties of the Recommendation hold (6.3)."""

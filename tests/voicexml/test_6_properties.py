@@ -90,6 +90,22 @@ def test_a_property_counts_where_it_is_nearest(level: int) -> None:  # 6.3.1
     assert question(call)["timeout"] == level * 1000
 
 
+@pytest.mark.parametrize(
+    ("name", "outer", "wrong", "argument", "value"),
+    [
+        ("timeout", "2s", "two", "timeout", 2000),
+        ("bargein", "false", "no", "bargein", False),
+    ],
+)
+def test_a_value_of_the_wrong_kind_leaves_the_one_further_out(
+    name: str, outer: str, wrong: str, argument: str, value: object
+) -> None:  # 6.3.1
+    inner = f'<property name="{name}" value="{wrong}"/>'
+    call = Call(f'<property name="{name}" value="{outer}"/>' + ask(inner + YES))
+    call.play()
+    assert question(call)[argument] == value
+
+
 def test_of_two_properties_of_one_level_the_last_counts() -> None:  # 6.3.1
     call = Call(
         '<property name="timeout" value="1s"/><property name="timeout" value="2s"/>'

@@ -19,7 +19,13 @@ from prima.voicexml.arranging import UNIT
 from prima.voicexml.checks.attributes import bad_value, fits, instead_of
 from prima.voicexml.checks.guests import command_problems
 from prima.voicexml.checks.names import check_name, check_script_names
-from prima.voicexml.vocabulary import EXPRESSIONS, NAMESPACE, PRIMA_NAMESPACE
+from prima.voicexml.vocabulary import (
+    EXPRESSIONS,
+    FETCHED_VALUES,
+    NAMESPACE,
+    PRIMA_NAMESPACE,
+    PROPERTIES,
+)
 
 LATER = "When it is to listen, this will be error.badfetch or error.unsupported."
 LONGEST_CODE, LONGEST_VALUE = 60, 40
@@ -37,29 +43,6 @@ LATER_VALUES = {
     "voice": {"age": "number", "variant": "integer"},
 }
 """Keys that nobody can press, events that nothing throws or takes, and what no voice can do."""
-FETCHED_VALUES = {"maxage": "number", "maxstale": "number"}
-"""What all elements that fetch may say (6.1.2)."""
-FETCHED = ("audio", "document", "grammar", "object", "script", "data")
-PROPERTIES = {
-    **dict.fromkeys(
-        [
-            *("timeout", "interdigittimeout", "termtimeout", "completetimeout", "fetchtimeout"),
-            *("incompletetimeout", "maxspeechtimeout", "fetchaudiodelay", "fetchaudiominimum"),
-        ],
-        "time",
-    ),
-    **dict.fromkeys(["confidencelevel", "sensitivity", "speedvsaccuracy"], "share"),
-    **{f"{what}fetchhint": "prefetch safe" for what in FETCHED},
-    **{f"{what}{age}": "number" for what in FETCHED for age in FETCHED_VALUES},
-    "inputmodes": "modes",
-    "recordutterance": "true false",
-    "termchar": "key",
-    "bargein": "true false",
-    "bargeintype": "speech hotword",
-    "maxnbest": "integer",
-}
-"""What properties of the Recommendation hold (6.3)."""
-
 NO_DIALOG = NO_SUCH_FORM.says(
     'There is no dialog "{name}" here: this will be error.badfetch.', severity="warning"
 )
