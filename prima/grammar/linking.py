@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from urllib.parse import unquote, urldefrag, urlsplit
+from urllib.parse import urlsplit
 
 from prima.errors import PrimaError, Span, suggestion
 from prima.grammar.builtin import built_in
@@ -19,7 +19,7 @@ from prima.grammar.legacy import FORMATS, settle
 from prima.grammar.media import check_form, media_type
 from prima.grammar.model import GrammarDocument, Reference, Rule
 from prima.grammar.prefixes import index_choices
-from prima.markup.uris import join
+from prima.markup.uris import join, parted
 
 MOST_DOCUMENTS = 64
 MOST_BYTES = 20_000_000
@@ -126,18 +126,17 @@ class Library:
     def _resolve(self, document: GrammarDocument, reference: Reference) -> Rule | None:
         uri = reference.uri
         if uri.startswith("#"):
-            return self._local(document, reference, unquote(uri[1:]))
+            return self._local(document, reference, parted(uri)[1])
         if uri.startswith("builtin:"):
             return self._built_in(document, reference)
         if not uri:
             self.problems.note(reference.where, "bad-value", "The reference names no rule.")
             return None
         try:
-            where, name = urldefrag(joined(base_of(document), uri, reference.where))
+            where, name = parted(joined(base_of(document), uri, reference.where))
         except GrammarError as error:
             self.problems.extend(error.problems)
             return None
-        name = unquote(name)
         if self._refusal is not None and (why := self._refusal(document.uri, where)):
             self.problems.note(reference.where, "no-such-file", f'"{where[:200]}": {why}.')
             return None

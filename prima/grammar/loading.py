@@ -18,6 +18,7 @@ from prima.grammar.xmlform import read_xml
 from prima.markup.limits import LIMITS, too_large
 from prima.markup.reader import parse
 from prima.markup.tree import Inner, Node, Source
+from prima.markup.uris import parted
 
 _NAMED = re.compile(rf"(?:builtin:.*|(?:{'|'.join(TYPES)})(?:\?.*)?)", re.DOTALL)
 _DECLARED = re.compile(r"""(<\?xml[^>]*?)\s+encoding\s*=\s*(?:"[^"]*"|'[^']*')""")
@@ -153,7 +154,7 @@ def _external(
     library: Library, node: Node, base: str, media: str, rule: str
 ) -> tuple[GrammarDocument, str]:
     where = partial(node.attribute_place, "src")
-    uri, fragment = urldefrag(joined(base, node.get("src").strip(), where))
+    uri, fragment = parted(joined(base, node.get("src").strip(), where))
     check_known(media, where(), "")
     document = library.fetch(uri, media, where)
     library.problems.check()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from urllib.parse import urldefrag, urlsplit
+from urllib.parse import urlsplit
 
 from prima.errors import DocumentError
 from prima.graph.labels import (
@@ -33,6 +33,7 @@ from prima.graph.voicenodes import (
 )
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
+from prima.markup.uris import parted
 from prima.voicexml.arranging import is_unit, parts_of
 from prima.voicexml.document import FetchError, Page, VoiceDocument
 from prima.voicexml.reading import read_page
@@ -260,7 +261,7 @@ class _VoiceGraph(Transitions[Node]):
             self.graph.edge(self.here, "", "computed", told, code)
             return
         uri = node.get(plain).strip()
-        base, fragment = urldefrag(self.page.resolve(uri, node) if uri[:1] != "#" else uri)
+        base, fragment = parted(self.page.resolve(uri, node) if uri[:1] != "#" else uri)
         if urlsplit(base).scheme == "service" and fragment in self.page.dialogs:
             told, base = f"{told}, asks {base}", ""
         if urlsplit(base).scheme or base.startswith("//"):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import posixpath
-from urllib.parse import quote, urljoin, urlsplit
+from urllib.parse import quote, unquote, urldefrag, urljoin, urlsplit
 
 
 def legal(uri: str) -> str:
@@ -28,3 +28,9 @@ def join(base: str, uri: str) -> str:
     whole = posixpath.normpath(posixpath.join(folder, path))
     end = "/" if path.endswith("/") else ""
     return f"{whole}{end}{query}{asked}{mark}{rest}"
+
+
+def parted(uri: str) -> tuple[str, str]:
+    """A URI without its fragment, and the name that the fragment means: ``%C3%A9`` is ``é``."""
+    base, fragment = urldefrag(uri)
+    return base, unquote(fragment)

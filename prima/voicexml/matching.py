@@ -22,6 +22,7 @@ from prima.grammar.text import fold
 from prima.interpreter.places import source
 from prima.interpreter.transfers import Thrown
 from prima.markup.tree import Node
+from prima.markup.uris import parted
 from prima.messages import Json
 from prima.script.budget import Budget
 from prima.voicexml.document import Page
@@ -151,7 +152,7 @@ def _given(node: Node, uri: str, fetch: Fetch) -> tuple[Node | str | bytes, str]
         return node, ""
     if node.tag != "grammar" or uri.startswith("builtin:"):
         return uri, ""
-    name, rule = urldefrag(uri)
+    name, rule = parted(uri)
     return fetch(name), rule
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from urllib.parse import unquote, urldefrag, urlsplit
+from urllib.parse import unquote, urlsplit
 
 from prima.errors import DocumentError, Problem, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_FORM, UNDECLARED_VARIABLE
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
+from prima.markup.uris import parted
 from prima.voicexml.caught import thrown_in
 from prima.voicexml.document import Fetch, FetchError, Page
 from prima.voicexml.reading import read_page
@@ -87,9 +88,9 @@ class Pages:
     def _target(self, page: Page, node: Node) -> tuple[Page | None, str]:
         """Where an element leads: to which document, if it is known, and which dialog."""
         uri = node.get(LEADING.get(node.key, "")).strip()
+        base, name = parted(page.resolve(uri, node)) if uri else ("", "")
         if uri[:1] == "#":
-            return page, uri[1:]
-        base, name = urldefrag(page.resolve(uri, node)) if uri else ("", "")
+            return page, name
         return self._pages.get(urlsplit(base).path), name
 
 

@@ -7,7 +7,7 @@ from urllib.parse import urldefrag
 
 from prima.interpreter.transfers import Thrown
 from prima.markup.tree import Node
-from prima.markup.uris import legal
+from prima.markup.uris import legal, parted
 from prima.script.evaluation import Scope
 from prima.voicexml.document import Page
 from prima.voicexml.fetching import load_page
@@ -146,7 +146,7 @@ class Documents:
         """
         if not uri:
             raise Thrown.at(node, "error.badfetch", "there is no URI")
-        target, fragment = urldefrag(legal(uri))
+        target, fragment = parted(legal(uri))
         page = None
         if target or request is not None:
             whole = urldefrag((base or context.page).resolve(uri, node))[0]

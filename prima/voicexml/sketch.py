@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 from itertools import chain
-from urllib.parse import urldefrag, urlsplit
+from urllib.parse import urlsplit
 
 from prima.interpreter.acts import Act, CommandRun, Expression, Foreach, Goto, Handler, If
 from prima.interpreter.elements import (
@@ -27,6 +27,7 @@ from prima.interpreter.elements import (
 from prima.interpreter.entering import FormTarget
 from prima.interpreter.units import Finder, Reach, thrown_by
 from prima.markup.tree import Node
+from prima.markup.uris import parted
 from prima.messages import Json
 from prima.script.choices import PossibleText, choices
 from prima.voicexml.acting import (
@@ -191,8 +192,8 @@ class Sketch:
         """The dialog of a URI, or those of all URIs that begin so."""
         own = self.page.uri
         if uri.text[:1] == "#" or (not uri.text and not uri.whole):
-            return [FormTarget(f"{own}#{uri.text[1:]}", uri.whole)]
-        base, name = urldefrag(self.page.resolve(uri.text, node) if uri.text else "")
+            return [FormTarget(f"{own}#{parted(uri.text)[1]}", uri.whole)]
+        base, name = parted(self.page.resolve(uri.text, node) if uri.text else "")
         parts = urlsplit(base)
         if parts.scheme == "service" and name:
             return [FormTarget(f"{own}#{name}", uri.whole)]

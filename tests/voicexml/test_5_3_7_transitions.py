@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from prima.voicexml.reading import read_page
 from tests.helpers.dialogs import CITIES, FAIL, PAGE, PASS, YES, Case, Cases, block, logged, run
 from tests.helpers.voice import Call, vxml
 
@@ -270,6 +271,14 @@ def test_a_fragment_leads_to_a_dialog_of_another_document() -> None:  # 5.3.7
                    '<form id="b"><block><log>b</log></block></form>'),
     )  # fmt: skip
     assert call.logs() == ["b"]
+
+
+def test_a_fragment_may_be_written_with_percent_signs() -> None:  # 6.1.1
+    other = vxml('<form id="a"/><form id="é"><block><log>é</log></block></form>')
+    start = '<form id="form"><block><goto next="other.vxml#%C3%A9"/></block></form>'
+    text = vxml('<form id="a"><block><goto next="#f%6Frm"/></block></form>' + start)
+    assert Call(text, other=other).logs() == ["é"]
+    assert read_page("app.vxml", "app.vxml", text.encode()).warnings() == []
 
 
 def test_a_fragment_alone_keeps_the_documents_variables() -> None:  # 5.3.7

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from prima.loading import validate
+from tests.helpers.dialogs import GRAMMAR, ask
 from tests.helpers.old_documents import run
 from tests.helpers.voice import Call
 
@@ -51,6 +52,14 @@ def test_a_grammar_in_a_file_may_have_a_scope() -> None:
             ' xml:lang="en" root="r" scope="document"><rule id="r">tea</rule></grammar>'
         },
     )
+    call.answer("tea")
+    assert call.logs() == ["tea"]
+
+
+def test_a_rule_may_be_named_with_percent_signs() -> None:
+    text = ask('<grammar src="g.grxml#r%31"/>')
+    held = f'<grammar {GRAMMAR} xml:lang="en"><rule id="r1" scope="public">tea</rule></grammar>'
+    call = Call(text, **{"g.grxml": held})
     call.answer("tea")
     assert call.logs() == ["tea"]
 

@@ -11,6 +11,7 @@ from urllib.parse import urldefrag, urlsplit
 from prima.checks.prices.model import Gap
 from prima.errors import DocumentError
 from prima.markup.tree import Node
+from prima.markup.uris import parted
 from prima.voicexml.document import FetchError, Page, VoiceDocument
 from prima.voicexml.reading import read_page
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
@@ -78,7 +79,7 @@ class PricedPages:
         uri = node.get(plain).strip()
         if not uri:
             return PageTarget()
-        base, dialog = urldefrag(page.resolve(uri, node) if uri[:1] != "#" else uri)
+        base, dialog = parted(page.resolve(uri, node) if uri[:1] != "#" else uri)
         if urlsplit(base).scheme == "service" and dialog in page.dialogs:
             base = ""
         if urlsplit(base).scheme or base.startswith("//"):

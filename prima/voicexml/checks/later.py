@@ -12,6 +12,7 @@ from prima.errors.diagnoses.values import BAD_VALUE, EXCLUSIVE
 from prima.language.commands import TABLE_4_2
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
+from prima.markup.uris import parted
 from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.shared import IsolatedSyntax, syntax
@@ -94,9 +95,9 @@ def _check_node(node: Node, lang: str) -> Iterator[Problem]:
 def _targets(node: Node, dialogs: set[str]) -> Iterator[Problem]:
     for attribute in ("next", "src"):
         target = node.get(attribute)
-        name = target[1:]
+        name = parted(target)[1]
         if target.startswith("#") and node.key != "grammar" and name not in dialogs:
-            hint = suggestion(name, dialogs, *value_span(node, attribute, name))
+            hint = suggestion(name, dialogs, *value_span(node, attribute, target[1:]))
             yield NO_DIALOG.at(node.attribute_place(attribute), hint, name=name)
 
 
