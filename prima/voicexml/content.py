@@ -92,7 +92,7 @@ class Content(Speaker):
         """Elements that control does not come back from."""
         match node.tag:
             case "throw":
-                name = self.word(node, "event", context, local)
+                name = self.event(node, context, local)
                 message = self.word(node, "message", context, local)
                 raise Thrown(name, message, source(node))
             case "goto":
@@ -244,32 +244,42 @@ class Content(Speaker):
                 self.engine.detach(values, name)
             except ScriptError as error:
                 raise self.failure(error, node, "namelist") from None
-        event = self.word(node, "event", context, local)
+        event = self.event(node, context, local)
         raise GoBack(values, event, self.word(node, "message", context, local))
 
     # Scripts, data and the transcript -----------------------------------------------------
 
     def script(self, node: Node, scope: Scope, context: Context, local: Scope) -> Flow:
         """Run a script; what it declares belongs to the scope it stands in (5.3.12)."""
-        code, attribute = node.own_text, ""
-        uri = self.word(node, "src", context, local)
-        if uri:
-            data = yield from fetch(self.owner, context.page.resolve(uri, node), node)
+        code = node.own_text
+        attribute = next((one for one in ("src", "srcexpr") if one in node.attributes), "")
+        if attribute:
+            data = yield from fetch(self.owner, self.resource(node, context, local), node)
             code = decoded(data, node.get("charset"))
-            attribute = "src" if "src" in node.attributes else "srcexpr"
         try:
             self.engine.script(code, scope, context.scopes(local))
         except ScriptError as error:
-            if uri:
+            if attribute:
                 error = ScriptError(f"line {error.line}: {error}")
             raise self.failure(error, node, attribute) from None
+
+    def resource(self, node: Node, context: Context, local: Scope) -> str:
+        """The URI of what an element fetches.
+
+        Raises:
+            Thrown: ``error.badfetch`` where there is none.
+        """
+        uri = self.word(node, "src", context, local)
+        if not uri:
+            raise Thrown.at(node, "error.badfetch", "there is no URI")
+        return context.page.resolve(uri, node)
 
     def data(self, node: Node, scope: Scope, context: Context, local: Scope) -> Flow:
         """Fetch an XML document as a read-only DOM (VoiceXML 2.1, 5)."""
         if node.get("name"):
             self.check_name(node)
         request = UriRequest(node.get("method"), self.named(node, context, local))
-        uri = context.page.resolve(self.word(node, "src", context, local), node)
+        uri = self.resource(node, context, local)
         content = yield from fetch(self.owner, uri, node, request)
         if not node.get("name"):
             return

@@ -82,12 +82,23 @@ class VoiceEvaluator:
             return node.get(name)
         if dynamic not in node.attributes:
             return ""
-        found = self._said(node, dynamic, WORD if name in TOLD else NAME, context, local)
+        found = self.said(node, dynamic, WORD if name in TOLD else NAME, context, local)
         if found is None:
             raise self.failure(ScriptError("it has no value"), node, dynamic)
         return str(found)
 
-    def _said(self, node: Node, attribute: str, how: str, context: Context, local: Scope) -> Json:
+    def event(self, node: Node, context: Context, local: Scope) -> str:
+        """The event that an element throws, if it throws one.
+
+        Raises:
+            Thrown: ``error.semantic`` where it has no name, or the expression fails.
+        """
+        name = self.word(node, "event", context, local)
+        if not name and not node.attributes.keys().isdisjoint(("event", "eventexpr")):
+            raise Thrown.at(node, "error.semantic", "the event has no name")
+        return name
+
+    def said(self, node: Node, attribute: str, how: str, context: Context, local: Scope) -> Json:
         """What a function of the engine makes of the value of an attribute's expression."""
         code = self.code(node, attribute)
         try:

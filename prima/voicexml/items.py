@@ -59,7 +59,7 @@ class Items:
         What a link's attributes say is of the place where it was heard, not of its own.
         """
         content, local = self.owner.content, self.owner.local()
-        event = content.word(node, "event", context, local)
+        event = content.event(node, context, local)
         if event:
             raise Thrown(event, content.word(node, "message", context, local), source(node))
         uri = content.word(node, "next", context, local)

@@ -7,7 +7,6 @@ from urllib.parse import urldefrag
 
 from prima.interpreter.places import source
 from prima.language.commands import TABLE_4_2
-from prima.language.values import shown
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Step
 from prima.script.evaluation import Scope
@@ -15,7 +14,7 @@ from prima.voicexml.arranging import ARRANGING, Arranged, Queued, arrange, longe
 from prima.voicexml.cues import MAX_CUES, MAX_NAME, break_ms, later, milliseconds, rate_of
 from prima.voicexml.document import FetchError, Page, of_web
 from prima.voicexml.elements import SILENT
-from prima.voicexml.evaluating import VoiceEvaluator
+from prima.voicexml.evaluating import WORD, VoiceEvaluator
 from prima.voicexml.owner import MachineOwner
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
 from prima.voicexml.settings import setting
@@ -204,10 +203,10 @@ class Speaker(VoiceEvaluator):
         """
         name = node.get("src")
         if "expr" in node.attributes:
-            uri = self.value(node, "expr", context, local)
+            uri = self.said(node, "expr", WORD, context, local)
             if uri is None:
                 return  # an undefined one is not said at all, nor is what it holds
-            name = shown(uri)
+            name = str(uri)
             ms = self.owner.items_of.recorder.lengths.get(name)
             if ms is not None:  # what a record has taken is played back as its words (2.3.6)
                 opened = speech.open(ms)

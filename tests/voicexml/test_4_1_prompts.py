@@ -203,6 +203,11 @@ def test_a_recording_whose_expression_is_undefined_is_not_heard_at_all() -> None
     assert said('One. <audio expr="undefined">Two.</audio> Three.') == ["One. Three."]
 
 
+def test_a_recording_whose_expression_gives_anything_else_is_heard() -> None:  # 4.1.3
+    assert said('One. <audio expr="null">Two.</audio> Three.') == ["One. Two. Three."]
+    assert said("<audio expr=\"['a.wav']\"/>") == ["[a.wav]"]
+
+
 def test_a_recordings_text_may_hold_a_recording() -> None:  # 4.1.3
     assert said('<audio src="a.wav"><audio src="b.wav">Text.</audio></audio>') == ["Text."]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.helpers.dialogs import CITIES, PASS, SILENT, Case, Cases, ask, logged, run, thrown
+from tests.helpers.dialogs import CITIES, GO, PASS, SILENT, Case, Cases, ask, logged, run, thrown
 from tests.helpers.voice import Call
 
 COUNTED = """<form><var name="n" expr="0"/>{handlers}<field name="f"><option>x</option></field>
@@ -337,6 +337,24 @@ def test_an_event_of_a_very_long_name_is_taken_in_no_time() -> None:
         </block></form>"""
     )
     assert (call.logs(), call.ended) == (["pass"], "exit")
+
+
+@pytest.mark.parametrize("event", ['event=""', "eventexpr=\"''\""])
+@pytest.mark.parametrize(
+    "body",
+    [
+        "<form>{catch}<block><throw {event}/></block></form>",
+        "<menu>{catch}<choice {event}>go</choice></menu>",
+        "<link {event}>{go}</link><form>{catch}<field><option>yes</option></field></form>",
+        '<form><subdialog src="#b"/></form><form id="b">{catch}<block><return {event}/></block></form>',
+    ],
+)
+def test_an_event_without_a_name_is_error_semantic(body: str, event: str) -> None:  # 5.2.1
+    catch = '<catch><log expr="_event"/><exit/></catch>'
+    call = Call(body.format(catch=catch, event=event, go=GO))
+    if "<block>" not in body:
+        call.answer("go")
+    assert call.logs() == ["error.semantic"]
 
 
 NOTED = """<nomatch><log expr="[application.lastresult$.utterance,

@@ -99,6 +99,12 @@ def test_foreach_may_stand_in_foreach() -> None:  # 2.1, 6
     ) == ["1 2; 3;"]
 
 
+@pytest.mark.parametrize("element", ["script", 'data name="d"'])
+def test_an_expression_that_gives_no_uri_is_error_badfetch(element: str) -> None:  # 2.1, 3 and 5
+    content = f"<block><{element} srcexpr=\"''\"/></block>"
+    assert Call(logged("error.badfetch", content)).logs() == ["error.badfetch"]
+
+
 def test_a_scripts_srcexpr_is_evaluated() -> None:  # 2.1, 3
     call = Call(
         block('<var name="n" expr="\'s\'"/><script srcexpr="n + \'.js\'"/><log expr="a"/>'),
