@@ -452,6 +452,14 @@ def test_a_variable_that_no_expression_can_name_is_warned_of(name: str, warned: 
     assert [one.code for one in found] == ["bad-value"] * warned
 
 
+@pytest.mark.parametrize("scope", ["dialog", "application"])
+def test_a_scope_that_a_script_has_frozen_takes_no_answer(scope: str) -> None:  # 5.1.5
+    freeze = f"<block><script>Object.freeze({scope});</script></block>"
+    field = f"<field name='f'><prompt>Q?</prompt>{YES}</field>"
+    catch = '<catch event="error.semantic"><log expr="_event"/><exit/></catch>'
+    assert run(f"<form>{catch}{freeze}{field}</form>", "yes").logs() == ["error.semantic"]
+
+
 def test_session_variables_can_be_read_in_every_way() -> None:
     reads = {
         "session.connection === session.connection": "true",
