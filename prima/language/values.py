@@ -7,6 +7,7 @@ everywhere; lengths are metres, angles degrees.
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Callable
@@ -298,6 +299,8 @@ def shown(value: object) -> str:
         if math.isinf(value):
             return "Infinity" if value > 0 else "-Infinity"
         return f"{value:.15g}"
+    if isinstance(value, dict | list | tuple):
+        return json.dumps(value, ensure_ascii=False)
     return str(value)
 
 

@@ -180,6 +180,11 @@ def test_a_wrong_argument_is_an_event_when_it_is_asked_for() -> None:
     assert call.logs() == ["error.semantic"]
 
 
+def test_a_wrong_argument_is_told_in_ecmascripts_words() -> None:
+    call = Call(f'<form {P}><block><p:turn angle-expr="[{{a: null}}, true]"/></block></form>')
+    assert 'angle "[{"a": null}, true]" is not a number.' in call.ended
+
+
 def test_a_wrong_argument_at_the_very_end_ends_the_application_with_its_error() -> None:
     call = Call(f"<form {P}><block><p:turn angle='far'/></block></form>")
     assert call.ended.startswith("error.semantic")
