@@ -43,8 +43,8 @@ NEVER_RAISED = UNKNOWN_EVENT.says('Nothing raises an event "{name}".')
 def check_caught(root: Node, thrown: Iterable[str]) -> Iterator[Problem]:
     """Warnings of handlers whose event is most likely a slip: others may be thrown by anybody."""
     known = {*EVENTS, *thrown}
-    begins = {name for one in known for name in beginnings(one)}
-    strange = [(node, name) for node, name in caught_in(root) if name not in begins]
+    begins = {"", *(name for one in known for name in beginnings(one))}
+    strange = [one for one in caught_in(root) if one[1].rstrip(".") not in begins]
     for node, name in strange[:MOST_GUESSES]:
         other = "" if name.startswith(OPEN) else slip_of(name, known)
         if other:

@@ -324,6 +324,7 @@ CATCHES = VXML.format("", '<catch event="{}"><exit/></catch><form><block>{}</blo
             ("error.badfetch.http.404", ""),
             ("error.mine", ""),
             (".", ""),
+            ("order.", ""),
             ("exit", ""),
         ),
         *(("error.unsupported.fly", ""), ("maxspeechtimeout", ""), ("connection", "")),
