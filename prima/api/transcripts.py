@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from prima.errors import UsageError
 from prima.messages import Record
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from prima.interpreter.bounds import ElementVisit
     from prima.transcript.measures import Measure, Summary
     from prima.transcript.record import Entry
@@ -162,11 +163,12 @@ def skim(path: str | Path) -> Transcript:
 
 def records_of(path: str | Path, cut: list[str] | None) -> Iterator[Record]:
     """A transcript's records one by one; see :func:`read`."""
-    from prima.transcript.lines import MAX_LINE, read_lines
+    from prima.loading.files import at_once
+    from prima.transcript.lines import INCOMPLETE, MAX_LINE, read_lines
 
     count = 0
     try:
-        with Path(path).open(encoding="utf-8-sig") as stream:
+        with open(path, encoding="utf-8-sig", opener=at_once) as stream:
             lines = iter(lambda: stream.readline(MAX_LINE + 2), "")
             for record in read_lines(str(path), lines, cut):
                 count += 1
@@ -176,5 +178,5 @@ def records_of(path: str | Path, cut: list[str] | None) -> Iterator[Record]:
     except UnicodeDecodeError as error:
         if cut is None or count == 0 or error.reason != "unexpected end of data":
             raise UsageError(f"{path}: not a transcript: it is not UTF-8.") from None
-        message = "the record is cut off within a character; the transcript is incomplete."
+        message = f"the record is cut off within a character; {INCOMPLETE}"
         cut.append(f"{path}:{count + 1}: {message}")

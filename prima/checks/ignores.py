@@ -30,7 +30,7 @@ from prima.errors.diagnoses.validation import (
     UNUSED_IGNORE,
 )
 from prima.markup.encodings import decode
-from prima.markup.toml import parse_toml
+from prima.markup.toml import MOST_CHARACTERS, parse_toml
 from prima.markup.tree import MARKUP, Source
 
 SETTINGS = "prima.toml"
@@ -314,7 +314,7 @@ def read_settings(file: str) -> IgnoreSettings:
     settings = IgnoreSettings(file)
     try:
         with open(file, encoding="utf-8") as stream:
-            tree = parse_toml(text := stream.read())
+            tree = parse_toml(text := stream.read(MOST_CHARACTERS + 1))
     except (OSError, ValueError) as error:
         settings.problems.append(NOT_TOML.at(Place(file), error=error))
         return settings

@@ -19,6 +19,7 @@ from prima.errors.visible import escaped
 from prima.experiments.batch import run_batch
 from prima.experiments.plan import BatchPlan, BatchRow, Options
 from prima.experiments.rows import format_counts, format_head, format_row, row_data
+from prima.loading.files import at_once
 from prima.pool import warm_up
 
 MOST_LISTED = 50_000_000
@@ -34,7 +35,8 @@ def listed(name: str) -> list[str]:
     UsageError: it cannot be read, or is empty.
     """
     try:
-        with open(0 if name == "-" else name, "rb", closefd=name != "-") as stream:
+        given, opener = (0, None) if name == "-" else (name, at_once)
+        with open(given, "rb", closefd=name != "-", opener=opener) as stream:
             data = stream.read(MOST_LISTED + 1)
     except (OSError, ValueError) as error:
         raise UsageError(f"{name}: cannot be read: {getattr(error, 'strerror', error)}.") from None

@@ -129,7 +129,10 @@ why_option = click.option(
     "--why", "--explain", is_flag=True, help="Print the rule that put each row there."
 )
 
-
+TRANSCRIPTS = ("run", "replay", "journal")
+"""What commands write that may replace a transcript."""
+TRANSCRIPT = rb'{"time":[\d.]+,"phase":"run",'
+"""How transcripts begin."""
 PATIENCE = "Longest time an application may keep another from the speaker; default 60s (rule E6)."
 """The help of ``--patience``."""
 
@@ -211,11 +214,19 @@ def tell_cut(*transcripts: Transcript) -> None:
     for transcript in transcripts:
         if message := transcript.cut or transcript.early:
             tell(f"prima: {message}")
-            head = transcript.records[0].get("data", {}) if transcript.records else {}
-            if "live" in head and not head.get("redacted"):
+            if _goes_on(transcript):
                 tell(how_to_go_on(transcript.name))
     if any(transcript.cut for transcript in transcripts):
         raise click.exceptions.Exit(2)
+
+
+def _goes_on(transcript: Transcript) -> bool:
+    """Whether a live run can go on from its journal: all lines but the last are whole."""
+    from prima.transcript.lines import INCOMPLETE
+
+    head = transcript.records[0].get("data", {}) if transcript.records else {}
+    torn = not transcript.cut or transcript.cut.endswith(INCOMPLETE)
+    return torn and "live" in head and not head.get("redacted")
 
 
 def how_to_go_on(journal: str) -> str:
@@ -262,7 +273,8 @@ def check_output(output: str | Path, made: str, *inputs: str | Path) -> None:
         inputs: the files that it is made from.
 
     Raises:
-        UsageError: it is an input, a document, or a scenario's expected table.
+        UsageError: it is an input, a document, a scenario's expected table, or a transcript
+            that would be replaced by something else.
     """
     from pathlib import Path
 
@@ -272,8 +284,8 @@ def check_output(output: str | Path, made: str, *inputs: str | Path) -> None:
     if any(same_file(output, path) for path in inputs):
         raise UsageError(f"{output}: the {made} is made from this file; write elsewhere.")
     path, real = Path(output), Path(os.path.realpath(output))
-    if real.is_file() and _begins_document(real):
-        raise UsageError(f"{output}: this file is a document; write elsewhere.")
+    if kind := _protected(real, made):
+        raise UsageError(f"{output}: this file is a {kind}; write elsewhere.")
     beside = [one.with_suffix(".xml") for one in (path, real) if one.suffix == ".txt"]
     for scenario in (*map(Path, inputs), *beside):
         if scenario.is_file() and is_scenario(scenario) and same_file(golden_of(scenario), path):
@@ -282,21 +294,25 @@ def check_output(output: str | Path, made: str, *inputs: str | Path) -> None:
             )
 
 
-def _begins_document(path: Path) -> bool:
-    """Whether a file begins as a document that somebody has written."""
+def _protected(path: Path, made: str) -> str:
+    """What a file begins as that nothing of this kind replaces; empty if it is no such file."""
     import re
 
     from prima.loading import is_grammar
     from prima.markup.sniff import root_of
     from prima.testing.finding import GLANCE
 
+    if not path.is_file():
+        return ""
     try:
         with path.open("rb") as stream:
             data = stream.read(GLANCE)
     except OSError:
-        return False  # writing reports the error
+        return ""  # writing reports the error
+    if made not in TRANSCRIPTS and re.match(TRANSCRIPT, data):
+        return "transcript"
     root = rb"<(?:[\w.-]+:)?(?:prima|scenario|world|robot|vxml)(?:[\s>/]|$)"
-    return bool(re.match(root, root_of(data))) or is_grammar(data)
+    return "document" if re.match(root, root_of(data)) or is_grammar(data) else ""
 
 
 def copy_folder(source: Path, folder: str) -> None:

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import sys
 from itertools import zip_longest
+from typing import TYPE_CHECKING
 
 import click
 from click.exceptions import Exit
 
 from prima.cli.common import check_output, tell, tell_cut, write_for_programs
+
+if TYPE_CHECKING:
+    from prima.api import Transcript
 
 
 @click.command()
@@ -30,7 +34,8 @@ def replay(transcript: str, scenario: str | None, output: str | None) -> None:
     if output not in (None, "-"):
         check_output(output, "replay", transcript, *([scenario] if scenario else []))
     original = api.read(transcript, partial=True)
-    tell_cut(original)
+    if original.cut:
+        tell_cut(original)
     again = api.replay(original, scenario)
     if output == "-":
         write_for_programs()
@@ -38,13 +43,20 @@ def replay(transcript: str, scenario: str | None, output: str | None) -> None:
     elif output is not None:
         write_whole(output, again.dumps())
     given, made = original.dumps(), again.dumps()
-    if given == made:
-        tell("the same, byte for byte")
-    elif original.early and made.startswith(given):
-        tell("the same, byte for byte, as far as the transcript goes")
-    else:
-        tell(f"the replay differs from line {_first_difference(given, made)}")
+    if given != made and not (original.early and made.startswith(given)):
+        tell(_differs(original, _first_difference(given, made)))
         raise Exit(1)
+    tell_cut(original)
+    far = "" if given == made else ", as far as the transcript goes"
+    tell(f"the same, byte for byte{far}")
+
+
+def _differs(original: Transcript, number: int) -> str:
+    """The message that a replay differs from a line on, with the remedy where there is one."""
+    from prima.live.journal import CHANGED, sound_above
+
+    remedy = sound_above(original.name, number) if "live" in original.records[0]["data"] else ""
+    return f"the replay differs from line {number}: {CHANGED} {remedy}".rstrip()
 
 
 def _first_difference(given: str, made: str) -> int:

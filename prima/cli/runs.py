@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, NamedTuple
 
 from prima.errors import UsageError
@@ -20,8 +21,8 @@ class GivenRun(NamedTuple):
 
 def is_markup(path: str) -> bool:
     """Whether a file is XML, by its name and its beginning."""
-    if path.endswith(".jsonl"):
-        return False
+    if path.endswith(".jsonl") or not os.path.isfile(path):
+        return False  # what a pipe gives can be read once
     try:
         with open(path, "rb") as stream:
             return stream.read(64).removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"<"

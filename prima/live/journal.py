@@ -212,8 +212,17 @@ def lacking(broken: CutJournal, made: Iterable[Record]) -> list[Record]:
     for number, before in enumerate(broken.records[1:], start=2):
         record = next(again, None)
         if record is None or finished(record) != before:
-            raise UsageError(f"{broken.path}:{number}: {CHANGED}")
+            remedy = sound_above(broken.path, number)
+            raise UsageError(f"{broken.path}:{number}: {CHANGED} {remedy}")
     return list(again)
+
+
+def sound_above(journal: str, number: int) -> str:
+    """How to go on from a journal whose lines above one are as they were written."""
+    return (
+        f"The lines above it are sound. To go on from there: head -n {number - 1} {journal} >"
+        " sound.jsonl, then prima live --resume sound.jsonl."
+    )
 
 
 GOES_ON = "the run was cut off here, and goes on"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -112,6 +113,13 @@ def read_file(path: str | Path) -> bytes:
         raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
     except ValueError:
         raise UsageError(f"{path!r} is not a file's name.") from None
+
+
+def at_once(path: str, flags: int) -> int:
+    """An opener for ``open`` that does not wait for somebody who writes to a named pipe."""
+    file = os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+    os.set_blocking(file, True)
+    return file
 
 
 def read_head(path: Path) -> tuple[bytes, int]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
+MOST_CHARACTERS = 2_000_000
+"""Characters of a text that is read."""
 MOST_PARTS = 100
 """Parts of a dotted key: reading one takes the square of their number."""
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+"""
@@ -15,8 +17,10 @@ def parse_toml(text: str) -> dict[str, Any]:
     """Read TOML.
 
     Raises:
-        ValueError: it is malformed, or too deep.
+        ValueError: it is malformed, too long or too deep.
     """
+    if len(text) > MOST_CHARACTERS:
+        raise ValueError(f"it has more than {MOST_CHARACTERS:,} characters")
     if _LONG_KEY.search(text):
         raise ValueError(f"it has a key of more than {MOST_PARTS} parts")
     import tomllib  # most projects have no such files

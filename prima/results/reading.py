@@ -58,6 +58,8 @@ def read(path: str | Path) -> Sheet:
         UsageError: it is no such table, or cannot be read.
     """
     table = table_of(Path(path))
+    if table.exists() and not table.is_file():
+        raise UsageError(f"{table}: cannot be read: it is not a file.")
     try:
         cut = ""
         if table.suffix == ".parquet":

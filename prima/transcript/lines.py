@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 MAX_LINE = 1_000_000
 """Maximum length of a line of a transcript."""
+INCOMPLETE = "the transcript is incomplete."
+"""The end of the message of a transcript whose last line is cut off."""
 MAX_LINES, MAX_CHARACTERS, MAX_VALUES = 1_000_000, 400_000_000, 20_000_000
 """Maximum number of lines, characters and values (about) of a transcript that is read: more than
 any run writes."""
@@ -204,7 +206,7 @@ def _why(error: Exception, text: str, invalid: type[Exception]) -> str:
     if "needs" in str(error):
         return f"not a transcript's record: {error}."
     if text.lstrip().startswith("{") and not text.endswith("\n"):
-        return "the record is cut off; the transcript is incomplete."
+        return f"the record is cut off; {INCOMPLETE}"
     if text.lstrip().startswith("<"):
         return "this is not a line of JSON but of XML. Transcripts are written by prima run -o."
     return "this is not a line of JSON. Transcripts are written by prima run -o."

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import itertools
+import os
 import re
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -192,3 +194,34 @@ def test_a_diff_shortens_what_no_application_says(prima: Prima, tmp_path: Path) 
     write(tmp_path, "t.jsonl", record("event", actor="user", event="x") + told[0])
     write(tmp_path, "u.jsonl", record("event", actor="user", event="x") + told[1])
     assert len(prima("diff", "t.jsonl", "u.jsonl").out) < 30_000
+
+
+PIPES = [
+    "show p",
+    "explain p 0",
+    "diff p t",
+    "report p",
+    "export p --to csv",
+    "replay p",
+    "run --from p",
+]
+
+
+@pytest.mark.parametrize("words", PIPES)
+def test_nothing_waits_for_a_pipe_that_nobody_writes_to(words: str, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "p")
+    write(tmp_path, "t", record("note", text="x"))
+    process(tmp_path, *words.split()).check(2, "p: ")
+
+
+def test_a_table_that_is_a_pipe(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "p.csv")
+    process(tmp_path, "report", "p.csv").check(2, "p.csv: cannot be read: it is not a file.")
+
+
+def test_a_pipe_is_compared_as_a_file_is(tmp_path: Path) -> None:
+    write(tmp_path, "t.jsonl", record("note", text="x"))
+    os.mkfifo(tmp_path / "p")
+    with subprocess.Popen(["cp", "t.jsonl", "p"], cwd=tmp_path) as writer:
+        process(tmp_path, "diff", "p", "t.jsonl").check(0, "rows: all the same")
+    assert writer.returncode == 0

@@ -213,6 +213,14 @@ def test_what_a_scenario_brings_to_light_is_ignored_in_its_application(tmp_path:
     assert api.load_scenario(visit).problems == []
 
 
+def test_settings_without_end_are_read_to_a_limit(tmp_path: Path) -> None:
+    path = write(tmp_path, "<block><exit/></block>")
+    with (tmp_path / "prima.toml").open("wb") as stream:
+        stream.truncate(3_000_000_000)
+    (problem,) = api.validate([path])
+    assert "it has more than 2,000,000 characters" in problem.message
+
+
 def test_an_editor_ignores_the_same(tmp_path: Path) -> None:
     path = write(tmp_path, IGNORE.format(WHY) + SILENT.format("x"))
     assert editor.check(Workspace(), path) == {path: []}

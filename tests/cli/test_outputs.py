@@ -48,6 +48,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert prima("run", "s.xml", "-o", "t.jsonl", cwd=folder).returncode == 0
     assert prima("test", "s.xml", "--update", "--yes", cwd=folder).returncode == 0
     assert (folder / "s.txt").exists()
+    shutil.copy(folder / "t.jsonl", folder / "other.jsonl")
     os.link(folder / "t.jsonl", folder / "linked.jsonl")
     (folder / "pointed.txt").symlink_to("s.txt")
     return folder
@@ -78,6 +79,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "run --ea app.xml -o s.txt",
         "report t.jsonl -o t.jsonl",
         "report t.jsonl -o linked.jsonl",
+        "report other.jsonl -o t.jsonl",
         "report t.jsonl -o s.xml",
         "report t.jsonl -o s.txt",
         "report t.jsonl --scenario s.xml -o world.xml",
@@ -85,6 +87,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "graph app.xml -o other.vxml --to svg",
         "graph t.jsonl -o s.txt --to dot",
         "export t.jsonl -o t.jsonl --to csv",
+        "export other.jsonl -o t.jsonl --to csv",
         "export t.jsonl -o app.xml --to eaf",
         "export t.jsonl -o s.txt --to csv",
         "diff t.jsonl t.jsonl --format html -o t.jsonl",
@@ -160,6 +163,11 @@ def test_other_files_may_be_replaced(tmp_path: Path, text: str) -> None:
     path = tmp_path / "f.txt"
     path.write_text(text, encoding="utf-8")
     check_output(path, "page")
+
+
+def test_a_transcript_may_be_replaced_by_another(made: Path) -> None:
+    for kind in ("run", "replay"):
+        check_output(made / "t.jsonl", kind)
 
 
 def test_only_a_scenario_has_an_expected_table(tmp_path: Path) -> None:

@@ -239,7 +239,31 @@ def test_a_journal_is_replayed_as_far_as_it_goes(journal: Path) -> None:
     changed.write_text("".join(lines))
     ran = prima("replay", str(changed))
     assert ran.returncode == 1
-    assert f"the replay differs from line {at + 1}\n" in ran.stderr
+    assert f"the replay differs from line {at + 1}: the documents do not give" in ran.stderr
+
+
+def test_a_journal_that_has_lost_a_line_tells_what_is_sound_of_it(journal: Path) -> None:
+    lines = journal.read_text().splitlines(keepends=True)
+    lost = journal.with_name("lost.jsonl")
+    at = next(number for number, line in enumerate(lines) if '"phase":"start"' in line)
+    lost.write_text("".join(lines[:at] + lines[at + 1 :]))
+    remedy = f"head -n {at} {lost} > sound.jsonl, then prima live --resume sound.jsonl."
+    for words, code in (("replay",), 1), (("live", "--resume"), 2):
+        ran = prima(*words, str(lost))
+        assert ran.returncode == code and remedy in ran.stderr, ran.stderr
+        assert "Go on with" not in ran.stderr
+    sound = journal.with_name("sound.jsonl")
+    sound.write_text("".join(lines[:at]))
+    assert prima("live", "--resume", str(sound)).returncode == 0
+
+
+def test_no_run_goes_on_from_a_journal_with_a_bad_line_in_its_midst(journal: Path) -> None:
+    lines = journal.read_text().splitlines(keepends=True)
+    spoilt = journal.with_name("spoilt.jsonl")
+    spoilt.write_text("".join([*lines[:5], "x\n", *lines[5:]]))
+    ran = prima("show", str(spoilt))
+    assert ran.returncode == 2 and "spoilt.jsonl:6: " in ran.stderr
+    assert "Go on with" not in ran.stderr
 
 
 @pytest.mark.parametrize("verb", ["live --resume", "replay"])
