@@ -118,6 +118,7 @@ def without_ignored(loaded: Loaded) -> Loaded:
 @seldom_collected()
 def load_whole(path: Path, data: bytes, whole: bool = False, robot: str = "") -> Loaded:
     """Load a scenario; ``whole`` looks into all documents of its VoiceXML applications as well."""
+    from prima.devices.profile import read_robot
     from prima.sim.devices import Cast
     from prima.sim.hearing import check_hearing
     from prima.sim.rehearsal import check_cast, check_names
@@ -125,6 +126,7 @@ def load_whole(path: Path, data: bytes, whole: bool = False, robot: str = "") ->
 
     scenario, told = look_at_scenario(str(path), data)
     if robot:
+        read_robot(robot, read_file(robot))  # what is wrong with it is not the scenario's fault
         scenario.robot = os.path.relpath(robot, path.parent)
     reading = Reading(path, {path.name: digest(data)}, [*told], whole=whole)
     reading.applications(scenario)

@@ -90,14 +90,14 @@ def added(text: str, node: Node, item: Attribute) -> Hint:
 
 
 def _likely(node: Node, item: Attribute) -> str | None:
-    """A value to begin with, which is right where it stands; None if it depends on other elements."""
+    """A value to begin with, which is right where it stands; None if only the author knows one."""
     if item.default or item.choices:
         return item.default or item.choices[0]
     if value := BY_NAME.get(item.name) or BY_KIND.get(item.kind):
         return value
     if item.kind in NUMBERS:
         return f"{max(item.low or 0, 0):g}"
-    return "" if item.kind == "text" else _new_name(node, item)
+    return _new_name(node, item)
 
 
 def _new_name(node: Node, item: Attribute) -> str | None:

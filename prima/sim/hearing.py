@@ -7,7 +7,7 @@ from itertools import chain, product
 
 from prima.devices.profile import Profile
 from prima.errors import Hint, Place, Problem, Span, meant, one_of, suggestion
-from prima.errors.diagnoses.names import UNSUPPORTED_COMMAND
+from prima.errors.diagnoses.names import UNKNOWN_EVENT, UNSUPPORTED_COMMAND
 from prima.interpreter.elements import Document
 from prima.interpreter.events import STANDARD, KnownEvents, beginnings, event_place, near
 from prima.interpreter.surroundings import (
@@ -22,7 +22,7 @@ from prima.interpreter.surroundings import (
 )
 from prima.language.commands import TABLE_4_2
 from prima.language.values import read_value
-from prima.markup.spans import value_span
+from prima.markup.spans import instead, value_span
 from prima.markup.tree import Node
 from prima.sim.devices import Cast
 from prima.sim.expected import COMMANDS
@@ -53,6 +53,7 @@ CANNOT = UNSUPPORTED_COMMAND.says(
     "This robot cannot do {command}: it lacks {lacks}. This never happens.",
     "Name another Command, or a robot that can do it.",
 )
+A_TIME = UNKNOWN_EVENT.says('Nothing raises an event "{name}".')
 
 
 def check_hearing(cast: Cast) -> list[Problem]:
@@ -220,13 +221,24 @@ def _triggers(nodes: list[Node], events: list[KnownEvents], cast: Cast) -> Itera
         ending = ENDINGS if attribute == "reason" else frozenset()
         if name in begins or name in ending or name.startswith(OPEN):
             continue
-        if other := near(name, chain(ending, known)):
+        if attribute == "on" and _is_time(name):
+            remedy = instead(f'Write at="{name}".', node, "on", "at", name)
+            yield A_TIME.at(node.attribute_place("on", value=False), remedy, name=name)
+        elif other := near(name, chain(ending, known)):
             message = f'Nothing raises an event "{name}".'
             if other in ending:
                 message = f'No application ends with "{name}".'
             remedy = meant(other, *value_span(node, attribute))
             place = node.attribute_place(attribute)
             yield Problem(place, "warning", "unknown-event", message, remedy)
+
+
+def _is_time(text: str) -> bool:
+    try:
+        read_value("duration", text)
+    except ValueError:
+        return False
+    return True
 
 
 def _late(nodes: list[Node], until: int) -> Iterator[Problem]:

@@ -32,3 +32,49 @@ def test_an_event_is_known_in_its_handlers_alone(content: str, name: str, tmp_pa
     found = [one for one in json.loads(done.stdout) if one["severity"] == "error"]
     assert [one["column"] for one in found] == ([text.index(name) + 1] if name else [])
     assert all(f'"{name}" is there in a handler only' in one["message"] for one in found)
+
+
+@pytest.mark.parametrize(
+    ("code", "says"),
+    [
+        ("event.text", "Write event.data.text."),
+        ("event?.nme", 'Did you mean "name"?'),
+        ("1 + event . from.length", "Write event.data.from."),
+        ("event.data.text + event.name + event.message", ""),
+        ("event.toString()", ""),
+        ("'event.text' + event.name", ""),
+        ("[1].map(event => event.text)", ""),
+    ],
+)
+def test_an_event_has_three_parts(code: str, says: str, tmp_path: Path) -> None:
+    text = (
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a"><form id="m">'
+        f'<on event="message"><log expr="{code}"/></on></form></prima>'
+    )
+    (tmp_path / "a.xml").write_text(text)
+    done = prima("validate", "a.xml", "--format", "json", cwd=tmp_path)
+    found = [one for one in json.loads(done.stdout) if one["code"] == "undeclared-variable"]
+    assert [(one["severity"], one["remedy"]) for one in found] == [("warning", says)] * bool(says)
+
+
+@pytest.mark.parametrize(
+    ("prompts", "told"),
+    [
+        ("<prompt/>", 1),
+        ("<prompt> </prompt>", 1),
+        ('<prompt>A?</prompt><prompt count="2"/>', 0),
+        ('<prompt timeout="2s"/>', 0),
+        ('<prompt bargein="false"/>', 0),
+        ('<prompt><value expr="1"/></prompt>', 0),
+        ("", 0),
+    ],
+)
+def test_a_prompt_that_asks_nothing_is_told(prompts: str, told: int, tmp_path: Path) -> None:
+    text = (
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a"><form id="m">'
+        f'<field name="x" type="text">{prompts}<noinput><exit/></noinput></field></form></prima>'
+    )
+    (tmp_path / "a.xml").write_text(text)
+    done = prima("validate", "a.xml", "--format", "json", cwd=tmp_path)
+    found = [one for one in json.loads(done.stdout) if one["code"] == "nothing-to-say"]
+    assert [one["severity"] for one in found] == ["warning"] * told

@@ -8,8 +8,11 @@ from time import thread_time
 import pytest
 
 from prima import api
+from prima.errors import DocumentError, UsageError
 from prima.markup.limits import LIMITS
+from tests import ROOT
 
+SCENARIO = ROOT / "documents" / "scenarios" / "touched-on-the-way.xml"
 MANY, BESIDE = 3_000, 200
 
 
@@ -68,3 +71,14 @@ def test_a_folder_is_listed_once_for_all_applications_that_are_not_there(
     found = api.validate([path])
     assert len([one for one in found if "nunber-" in one.message]) == 300
     assert folders == [folder]
+
+
+def test_a_wrong_robot_beside_a_scenario_is_told_in_its_own_place(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"nix\.xml: cannot be read: No such file"):
+        api.load_scenario(SCENARIO, robot=str(tmp_path / "nix.xml"))
+    world = str(ROOT / "documents" / "worlds" / "office.xml")
+    with pytest.raises(DocumentError) as caught:
+        api.load_scenario(SCENARIO, robot=world)
+    (problem,) = caught.value.problems
+    assert problem.place.file == world
+    assert problem.message == "This is a world; a robot is needed here."

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from prima import api
 from prima.markup.hints import meant_value
 
 
@@ -21,3 +24,14 @@ from prima.markup.hints import meant_value
 )
 def test_a_time_without_a_unit(text: str, usual: str, meant: str) -> None:
     assert meant_value("duration", text, usual) == meant
+
+
+def test_no_fix_writes_an_empty_text(tmp_path: Path) -> None:
+    path = tmp_path / "a.xml"
+    path.write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><meta/><form id="f">'
+        '<block><send to="x"><param value="1"/></send><exit/></block></form></prima>'
+    )
+    found = [one for one in api.validate([path]) if one.code == "missing-attribute"]
+    assert len(found) == 3
+    assert not any(one.fixes for one in found)

@@ -52,5 +52,8 @@ LONG_TURN = Diagnosis(
 )
 
 NOTHING_TO_SAY = Diagnosis(
-    "nothing-to-say", "Nothing to say", "A Command that speaks has no text.", rule="E3"
+    "nothing-to-say",
+    "Nothing to say",
+    "A Command that speaks has no text. Of a question's prompt that is a warning.",
+    rule="E3",
 )

@@ -7,9 +7,10 @@ from collections.abc import Iterator, Sequence
 
 from prima.errors import Diagnosis, Problem
 from prima.errors.diagnoses.behaviour import SHARED_DEVICE
+from prima.errors.diagnoses.values import NOTHING_TO_SAY
 from prima.interpreter.acts import CommandRun, GroupTemplate, StepTemplate, Text, run_commands
 from prima.interpreter.checks.facts import Facts
-from prima.interpreter.elements import Field, Form, Unit
+from prima.interpreter.elements import Field, Form, Prompt, Unit
 from prima.interpreter.units import long_unit, speak, unit_speaks
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
@@ -27,6 +28,9 @@ LITERAL_VALUE = Diagnosis(
     message='"{text}" is said as it is written.',
     remedy='Write <value expr="{name}"/>.',
 )
+ASKS_NOTHING = NOTHING_TO_SAY.says(
+    "<prompt> has nothing to say.", "Write its text inside it, or remove it.", severity="warning"
+)
 ONE_AFTER_THE_OTHER = SHARED_DEVICE.says(
     "This branch shares {devices} with another: they run one after the other.",
     "Write them one after the other, in a <seq>.",
@@ -41,7 +45,15 @@ def check_texts(facts: Facts) -> Iterator[Problem]:
     for form, items in facts.forms:
         for item in items:
             for prompt in item.prompts if isinstance(item, Field) else ():
+                if not (prompt.text or prompt.timeout or prompt.bargein is not None):
+                    yield from _silent(prompt)
                 yield from _literal(facts, prompt.node, prompt.text, form)
+
+
+def _silent(prompt: Prompt) -> Iterator[Problem]:
+    """A prompt without a text; behind another, it is how a question is asked again in silence."""
+    if prompt.count == 1:
+        yield ASKS_NOTHING.at(prompt.node.place)
 
 
 def _literal(facts: Facts, node: Node, text: Text | None, form: Form | None) -> Iterator[Problem]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import chain
 
-from prima.errors import Hint, Place, Problem, Span, suggestion
+from prima.errors import Hint, Place, Problem, Span, replaced, suggestion
 from prima.errors.diagnoses.names import UNDECLARED_VARIABLE
 from prima.interpreter.acts import Assign, Clear, Expression, Return
 from prima.interpreter.checks.facts import Facts
@@ -17,8 +17,11 @@ from prima.markup.spans import Declarations, value_span
 from prima.markup.tree import Node
 from prima.script.globals import HANDLED
 from prima.script.known import Known, NameScope
-from prima.script.names import expression_names, script_names
+from prima.script.names import Names, expression_names, script_names
 
+PART = re.compile(r"(\s*\??\.\s*)([\w$]++)(?!\s*\()")
+"""What stands behind ``event`` where a part of it is asked for; a call asks for none."""
+PARTS = ("name", "message", "data")
 CALL = re.compile(r"\s*\(")
 SCOPED = ("document", "dialog", "application")
 """Scopes that the name of a variable may begin with."""
@@ -39,6 +42,10 @@ NO_EVENT_HERE = UNDECLARED_VARIABLE.says(
     'No event is handled here: "{name}" is there in a handler only.',
     "Keep what you need of it in a variable: the handler can <assign> it.",
 )
+NO_PART = UNDECLARED_VARIABLE.says(
+    'An event has no "{name}" of its own; it has name, message and data.',
+    severity="warning",
+)
 IN_SCRIPT = UNDECLARED_VARIABLE.says(
     'The script uses "{name}", which nothing declares.', severity="warning"
 )
@@ -47,6 +54,19 @@ IN_SCRIPT = UNDECLARED_VARIABLE.says(
 def place_in(expr: Expression, characters: int) -> Place:
     """The place of a character of an expression or script."""
     return expr.node.source.inside(expr.node.index, expr.attribute, characters)
+
+
+def _parts_of_event(expr: Expression, names: Names, known: Known) -> Iterator[Problem]:
+    """Parts that code asks an event for and that no event has."""
+    if "event" in known or "event" not in names.handled:
+        return
+    for use in names.uses:
+        found = PART.match(expr.code, use.start + len("event"))
+        if use.name == "event" and not use.holder and found and found[2] not in PARTS:
+            place, name = place_in(expr, found.start(2)), found[2]
+            span = Span.of(place, name)
+            remedy = replaced(f"Write event.data.{name}.", f"data.{name}", span)
+            yield NO_PART.at(place, suggestion(name, PARTS, span) or remedy, name=name)
 
 
 class Variables:
@@ -70,6 +90,7 @@ class Variables:
         for name, start in names.handled.items():
             if not (name in known or id(expr.node) in self._handling):
                 yield NO_EVENT_HERE.at(place_in(expr, start), name=name)
+        yield from _parts_of_event(expr, names, known)
 
     @cached_property
     def _handling(self) -> set[int]:
@@ -79,10 +100,12 @@ class Variables:
 
     def of_script(self, expr: Expression, known: Known) -> Iterator[Problem]:
         """The names that a script uses and nothing declares."""
-        for name, start in script_names(expr.code).free.items():
+        names = script_names(expr.code)
+        for name, start in names.free.items():
             if name not in known:
                 place = place_in(expr, start)
                 yield IN_SCRIPT.at(place, _meant(place, name, known), name=name)
+        yield from _parts_of_event(expr, names, known)
 
     def given(self) -> Iterator[Problem]:
         """Variables that acts give a value, clear or return."""
