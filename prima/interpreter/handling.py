@@ -66,6 +66,7 @@ class Handling:
                 return
             thrown.sought = True
             raise thrown
+        fiber.local = None  # what the failed content has declared may have filled the memory
         fiber.local = self.event_scope(event)
         fiber.commands = ()
         if handler.reactive is not None:  # else a throw keeps what it has (C5)

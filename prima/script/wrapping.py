@@ -11,6 +11,7 @@ from prima.script.globals import GLOBALS, IDENTIFIER, STRANGE, WORD
 from prima.script.hoisting import HIDDEN, Hoisted
 from prima.script.names import script_names
 from prima.script.sandbox import DECLARE, GUARD, NAME, SAFE, source
+from prima.script.syntax import FAILURES, script_error
 
 HELPERS = source("engine.js")
 INTO = "$into$"
@@ -28,7 +29,10 @@ class Helpers(dict[str, Any]):
         self._guarded = context.eval(f"(all, name) => {GUARD}(all[name])")
 
     def __missing__(self, name: str) -> Any:
-        found = self[name] = self._guarded(self._all, name)
+        try:
+            found = self[name] = self._guarded(self._all, name)
+        except FAILURES as error:  # as where the engine's memory is full
+            raise script_error(error) from None
         return found
 
 

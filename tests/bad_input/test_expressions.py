@@ -164,3 +164,22 @@ def test_a_long_text_made_of_two(prima: Prima, tmp_path: Path) -> None:
     body = block("<log expr=\"'a'.repeat(9000) + 'b'\"/><exit/>")
     prima("run", stage(tmp_path, app(body)), "-o", "t").check(0)
     assert len(messages(tmp_path / "t")[0]) == 9001
+
+
+FILLS = "for (var i = 0; ; i++) a.push({i: i})"
+
+
+@pytest.mark.parametrize("how", ["none", "ea"])
+def test_a_script_that_fills_the_memory_is_an_error_of_its_document(
+    prima: Prima, tmp_path: Path, how: str
+) -> None:
+    told = "it threw null, or used too much memory"
+    local = app(form(f"<block><script>var a = []; {FILLS}</script></block>{CATCH}"))
+    prima("run", stage(tmp_path, local), "--isolate", how, "-o", "t").check(0)
+    assert told in messages(tmp_path / "t")[0]
+    kept = app(
+        '<var name="a" expr="[]"/>' + form(f"<block><script>{FILLS}</script></block>{CATCH}")
+    )
+    prima("run", stage(tmp_path, kept), "--isolate", how, "-o", "t").check(
+        3, "error.semantic", told
+    )

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from prima import api
 from prima.interpreter.acts import Expression
 from prima.interpreter.application import Interpreter
 from prima.interpreter.frame import Fiber
@@ -226,3 +229,25 @@ def test_a_watch_sees_a_variable_that_hides_what_it_takes_for_granted(name: str,
     bench.event("message", it={"x": 3} if name == "sensor" else 3)
     bench.step(Sensed({"y": 0}))
     assert bench.logs() == ["near"]
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ('<form id="m"><block><log expr="sensor.moving"/><exit/></block></form>', 1),
+        ('<form id="m"><block><log expr="typeof sensor"/><exit/></block></form>', 0),
+        ('<var name="sensor"/><form id="m"><block><log expr="sensor"/><exit/></block></form>', 0),
+        (
+            '<form id="m"><watch name="go" when="sensor.moving"/><block><speak>Hi.</speak>'
+            '<log expr="sensor.moving"/></block><on event="go"><exit/></on></form>',
+            0,
+        ),
+    ],
+)
+def test_sensors_are_there_where_one_is_watched(content: str, told: int, tmp_path: Path) -> None:
+    path = tmp_path / "a.xml"
+    path.write_text(
+        f'<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a">{content}</prima>'
+    )
+    found = [one for one in api.validate([path]) if one.code == "undeclared-variable"]
+    assert [(one.severity, one.message[:9]) for one in found] == [("warning", "No <watch")] * told

@@ -40,6 +40,16 @@ DEAD_CONTENT = Diagnosis(
     message="<{tag}> comes after <{leaving}> and is never reached.",
     remedy="Put it before <{leaving}>, or remove it.",
 )
+NO_CALLER = Diagnosis(
+    "no-caller",
+    "Return to nobody",
+    "A <return> stands in a form that no subdialog calls, and to which no called form leads. There"
+    " is nothing to come back to: the application ends.",
+    rule="VoiceXML 2.0, 5.3.10",
+    severity="warning",
+    message='No subdialog leads to the form "{form}": this ends the application.',
+    remedy="Write <exit/> to end it, or call the form by a <subdialog>.",
+)
 
 
 def check_reachable(facts: Facts) -> Iterator[Problem]:
@@ -61,6 +71,9 @@ def check_reachable(facts: Facts) -> Iterator[Problem]:
         elif name not in left:
             diagnosis = DEAD_END_INSIDE if name in inside else DEAD_END
             yield diagnosis.at(form.node.place_of("id"), form=name)
+    for holder, act in facts.acts.of(Return):
+        if holder is not None and holder.id in reached - inside:
+            yield NO_CALLER.at(act.node.place, form=holder.id)
 
 
 def _reached(facts: Facts, names: Iterable[str], calls: bool) -> set[str]:

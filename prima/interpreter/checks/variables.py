@@ -46,6 +46,11 @@ NO_PART = UNDECLARED_VARIABLE.says(
     'An event has no "{name}" of its own; it has name, message and data.',
     severity="warning",
 )
+NO_SENSOR = UNDECLARED_VARIABLE.says(
+    "No <watch> is in force here: sensor is there only where one is.",
+    "Write a <watch> into this form or the document.",
+    severity="warning",
+)
 IN_SCRIPT = UNDECLARED_VARIABLE.says(
     'The script uses "{name}", which nothing declares.', severity="warning"
 )
@@ -91,6 +96,14 @@ class Variables:
             if not (name in known or id(expr.node) in self._handling):
                 yield NO_EVENT_HERE.at(place_in(expr, start), name=name)
         yield from _parts_of_event(expr, names, known)
+        if "sensor" in names.read and not (self._senses or "sensor" in known):
+            yield NO_SENSOR.at(place_in(expr, names.read["sensor"]))
+
+    @cached_property
+    def _senses(self) -> bool:
+        """Whether the document watches any sensor."""
+        document = self.facts.document
+        return bool(document.watches) or any(form.watches for form in document.forms.values())
 
     @cached_property
     def _handling(self) -> set[int]:
