@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from prima.api.rehearsing import Sink, fetcher
+from prima.api.rehearsing import Sink, check_isolate, check_numbers, fetcher
 from prima.api.transcripts import Transcript
 from prima.errors import UsageError
 from prima.language.values import LONGEST_MS
 from prima.loading import Loaded, load_scenario
+from prima.loading.files import paths_of
 from prima.loading.heads import check_files
 from prima.messages import Record
 
@@ -41,7 +42,7 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded | None = None) 
     from prima.journal import replay_records
     from prima.transcript.lines import check_head, finished
 
-    head = transcript.records[0]
+    head = transcript.kept()[0]
     check_head(head, transcript.name)
     if head["data"].get("redacted"):
         message = "what users said was left out of this journal, so it cannot be run again."
@@ -67,8 +68,8 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded | None = None) 
 def run_live(
     scenario: str | Path | None = None,
     robot: str | Path | None = None,
-    fas: Iterable[str | Path] = (),
-    eas: Iterable[str | Path] = (),
+    fas: str | Path | Iterable[str | Path] = (),
+    eas: str | Path | Iterable[str | Path] = (),
     world: str | Path | None = None,
     maps: Iterable[str] = (),
     services: str | Path | None = None,
@@ -83,8 +84,8 @@ def run_live(
     late: int | None = 250,
     sync: bool = False,
     redact: bool = False,
-    drivers: Iterable[str | Path] = (),
-    hosts: Iterable[str] = (),
+    drivers: str | Path | Iterable[str | Path] = (),
+    hosts: str | Iterable[str] = (),
     sink: Sink | None = None,
     warn: Callable[[str], None] | None = None,
     keep: bool = True,
@@ -133,18 +134,28 @@ def run_live(
     def name(path: str | Path | None) -> str:
         return "" if path is None else str(path)
 
-    def names(paths: Iterable[str | Path]) -> tuple[str, ...]:
-        return tuple(map(str, paths))
-
     chosen = Chosen(
         name(robot), name(scenario), name(world),
-        names(fas), names(eas), tuple(maps), name(services),
+        tuple(paths_of(fas)), tuple(paths_of(eas)), tuple(maps), name(services),
     )  # fmt: skip
+    check_numbers(bound=bound)
+    check_numbers(0, patience=patience, until=until, late=late)
+    check_isolate(isolate)
     if not 0 < speed <= FASTEST:
         raise UsageError(f"The speed is {speed:g}: write a number above 0, up to {FASTEST:g}.")
-    web = fetcher(list(hosts), len(chosen.fas) + len(chosen.eas) + 1)
+    web = fetcher(hosts, len(chosen.fas) + len(chosen.eas) + 1)
     settings = LiveSettings(
-        policy, bound, patience, isolate, speed, until, sync, late, redact, names(drivers), web
+        policy,
+        bound,
+        patience,
+        isolate,
+        speed,
+        until,
+        sync,
+        late,
+        redact,
+        tuple(paths_of(drivers)),
+        web,
     )
     given = [None if path is None else str(path) for path in (output, resume)]
     visit = prepared(chosen, settings, *given)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from prima.api.transcripts import Transcript, rows_of
-from prima.errors import UsageError
+from prima.errors import UsageError, one_of
 from prima.loading import Loaded, load_scenario, seeded
 from prima.loading.heads import chosen_policy, run_record
 
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 # Modules that only some functions need are imported there, so that short commands start quickly.
 
+ISOLATED = ("ea", "all", "none")
+"""Which scripts may run in a process of their own."""
 Sink = Callable[[str], object]
 
 
@@ -30,7 +32,7 @@ def rehearse(
     bound: int | None = None,
     sink: Sink | None = None,
     keep: bool = True,
-    hosts: Iterable[str] = (),
+    hosts: str | Iterable[str] = (),
     isolate: str = "ea",
     patience: int | None = None,
     visits: bool = False,
@@ -61,7 +63,8 @@ def rehearse(
 
     Raises:
         DocumentError: documents have errors.
-        UsageError: a policy or file is unknown, or a host is not a host name.
+        UsageError: a policy or file is unknown, a host is not a host name, or a number is
+            out of range.
     """
     from collections import deque
 
@@ -71,6 +74,9 @@ def rehearse(
     from prima.transcript.measures import Measure
     from prima.transcript.record import Entry
 
+    check_numbers(bound=bound)
+    check_numbers(0, patience=patience, seed=seed)
+    check_isolate(isolate)
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
     loaded = seeded(loaded, seed)
     cast = loaded.cast
@@ -78,7 +84,7 @@ def rehearse(
     chosen = chosen_policy(name, loaded)
     if patience is None:
         patience = cast.scenario.patience
-    web = fetcher(list(hosts), len(cast.documents))
+    web = fetcher(hosts, len(cast.documents))
     rehearsal = Rehearsal(cast, chosen, bound, web, isolate, patience)
     head = run_record(loaded, name, bound, patience)
     fold = Fold() if folded else None
@@ -141,8 +147,9 @@ def _doing(app: Application, owed: bool) -> str:
     return "waiting for a service's answer" if owed else "waiting for an event"
 
 
-def fetcher(hosts: list[str], applications: int) -> Web | None:
+def fetcher(given: str | Iterable[str], applications: int) -> Web | None:
     """A fetcher for some hosts, or None; only then are network modules imported."""
+    hosts = [given] if isinstance(given, str) else list(given)
     if not hosts:
         return None
     from prima.loading.web import Hosts
@@ -153,3 +160,24 @@ def fetcher(hosts: list[str], applications: int) -> Web | None:
                 f'"{host}" is not a host name: write a name and a port, such as example.org:8080.'
             )
     return Hosts(hosts, applications)
+
+
+def check_numbers(least: int = 1, **given: int | None) -> None:
+    """Refuse what is no whole number, or too small a one.
+
+    Raises:
+        UsageError: one is.
+    """
+    for name, number in given.items():
+        if number is not None and (type(number) is not int or number < least):
+            raise UsageError(f"{name}={number!r}: write a whole number from {least}.")
+
+
+def check_isolate(isolate: str) -> None:
+    """Refuse an unknown word for which scripts run in a process of their own.
+
+    Raises:
+        UsageError: it is one.
+    """
+    if isolate not in ISOLATED:
+        raise UsageError(f'isolate="{isolate}": write {one_of(ISOLATED)}.')

@@ -51,6 +51,16 @@ class Transcript:
     """The run, if it was folded while it was made."""
     _run: Run | None = field(default=None, repr=False, compare=False)
 
+    def kept(self) -> list[Record]:
+        """The records.
+
+        Raises:
+            UsageError: they were not kept.
+        """
+        if not self.records:
+            raise UsageError(f"{self.name}: its records were not kept: run it with keep=True.")
+        return self.records
+
     def rows(self) -> list[Row]:
         """The rows of the table."""
         return rows_of(self.name, self.run().entries) if self.made is None else self.made
@@ -59,14 +69,14 @@ class Transcript:
         """The run as folded from its records, once.
 
         Raises:
-            UsageError: a record lacks a field of its phase.
+            UsageError: a record lacks a field of its phase, or none were kept.
         """
         from prima.transcript.run import run_of
 
         if self.folded is not None:
             return self.folded
         if self._run is None or len(self._run.entries) != len(self.records):
-            self._run = run_of(self.records, self.name)
+            self._run = run_of(self.kept(), self.name)
         return self._run
 
     def table(self, why: bool = False, columns: int = 80) -> str:
@@ -100,7 +110,7 @@ class Transcript:
         """The transcript as JSON lines."""
         from prima.transcript.lines import line
 
-        made = ({**record, "time": record["time"] * 1000} for record in self.records)
+        made = ({**record, "time": record["time"] * 1000} for record in self.kept())
         return "".join(line(record) for record in made)
 
 
@@ -180,3 +190,5 @@ def records_of(path: str | Path, cut: list[str] | None) -> Iterator[Record]:
             raise UsageError(f"{path}: not a transcript: it is not UTF-8.") from None
         message = f"the record is cut off within a character; {INCOMPLETE}"
         cut.append(f"{path}:{count + 1}: {message}")
+    except ValueError:
+        raise UsageError(f"{path!r} is not a file's name.") from None

@@ -49,7 +49,7 @@ def export(
     cut = [held.cut] if held and held.cut else []
 
     def records(cuts: list[str]) -> Iterable[Record]:
-        return records_of(name, cuts) if held is None else held.records
+        return records_of(name, cuts) if held is None else held.kept()
 
     made = timeline(name, records(cut))
     made.check_names(tags)

@@ -52,7 +52,7 @@ def export(transcript: str, to: str | None, output: str | None, langs: tuple[str
 
     form = _format(to, output)
     if output is not None:
-        check_output(output, "export")
+        check_output(output, "export", transcript)
     made = api.export(transcript, form, output or sys.stdout.buffer, _languages(langs))
     if output:
         amount = f"{counted(made.tiers, 'tier')} with {made.marks} intervals and points"

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from prima.api.rehearsing import check_isolate, check_numbers
 from prima.errors import UsageError
 from prima.experiments.cluster import pool_of
 from prima.experiments.explore import Exploration, ExplorationPlan
@@ -64,8 +65,10 @@ def sweep(
         UsageError: a factor, level, policy or file is wrong, or pyarrow is not installed.
         RunError: no process can be started.
     """
-    _check_numbers(seeds=seeds, runs=runs, workers=workers, bound=bound)
-    _check_numbers(0, patience=patience)
+    check_numbers(seeds=seeds, runs=runs, workers=workers, bound=bound)
+    check_numbers(0, patience=patience)
+    if isolate is not None:
+        check_isolate(isolate)
     question = question_of(
         _names(scenarios),
         {path: levels_text(levels) for path, levels in (vary or {}).items()},
@@ -118,8 +121,9 @@ def explore(
         UsageError: what is to be moved cannot be, or a file cannot be written.
         RunError: no process can be started.
     """
-    _check_numbers(within=within, depth=depth, runs=runs, workers=workers)
-    _check_numbers(0, step=step)
+    check_numbers(within=within, depth=depth, runs=runs, workers=workers)
+    check_numbers(0, step=step)
+    check_isolate(isolate)
     moves = (moves,) if isinstance(moves, str) else moves
     plan = ExplorationPlan(
         os.fspath(scenario), tuple(moves), within, depth, step, runs, policy, isolate
@@ -130,17 +134,6 @@ def explore(
     for _ in carried_out(exploration, pool_of(on, workers), output, resume):
         pass
     return Explored(exploration).data()
-
-
-def _check_numbers(least: int = 1, **given: int | None) -> None:
-    """Refuse what is no whole number, or too small a one.
-
-    Raises:
-        UsageError: one is.
-    """
-    for name, number in given.items():
-        if number is not None and (type(number) is not int or number < least):
-            raise UsageError(f"{name}={number!r}: write a whole number from {least}.")
 
 
 def _table(made: Sweep, output: str | Path | None, pool: Pool, resume: bool) -> pyarrow.Table:

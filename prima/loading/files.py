@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -70,6 +70,13 @@ def path_of(path: str | Path) -> Path:
     from pathlib import Path
 
     return Path(path)
+
+
+def paths_of(given: str | Path | Iterable[str | Path]) -> list[str]:
+    """Paths as texts; one that is given alone is one, and not its letters."""
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        return [str(given)]
+    return [str(path) for path in given]
 
 
 def _absolute(path: str | Path) -> Path:

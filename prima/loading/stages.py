@@ -4,22 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import repeat
+from typing import TYPE_CHECKING
 
 from prima.errors import DocumentError, Problem, UsageError
 from prima.loading.applications import read_application
-from prima.loading.files import path_of, read_file
+from prima.loading.files import path_of, paths_of, read_file
 from prima.loading.folders import documents_folder
 from prima.loading.reading import STAGE, other_kind
 from prima.loading.scenarios import Loaded, load_whole, without_ignored
 from prima.loading.voicedocuments import mappings
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
 
 def stage(
-    fas: Iterable[str],
-    eas: Iterable[str],
-    says: Iterable[str] = (),
-    world: str | None = None,
-    robot: str | None = None,
+    fas: str | Path | Iterable[str | Path],
+    eas: str | Path | Iterable[str | Path],
+    says: str | Iterable[str] = (),
+    world: str | Path | None = None,
+    robot: str | Path | None = None,
     maps: Iterable[str] = (),
     entrances: bool = False,
 ) -> Loaded:
@@ -28,7 +32,7 @@ def stage(
     Args:
         fas: paths of the robot's own applications.
         eas: paths of the place's.
-        says: what the user says to the questions, one after the other.
+        says: what the user says to the questions, one after the other; a text is the first.
         world: path of another world; the robot is at its first place.
         robot: path of another robot's profile.
         maps: folders of VoiceXML documents and where they are served, as ``URI=FOLDER``.
@@ -38,16 +42,17 @@ def stage(
         DocumentError: with the problems of all files, if any is an error.
         UsageError: a file cannot be read, or two of the applications have one id.
     """
-    fas, eas = list(fas), list(eas)
-    given = [*zip(repeat("fa"), fas), *zip(repeat("ea"), eas)]
-    for path in (*fas, *eas, *filter(None, (robot, world))):
+    given = [*zip(repeat("fa"), paths_of(fas)), *zip(repeat("ea"), paths_of(eas))]
+    others = [str(path) for path in (robot, world) if path]
+    for path in [*(path for _, path in given), *others]:
         read_file(path)  # a missing file is a wrong option, not a wrong document
     demo = documents_folder()
-    world = world or str(demo / "worlds" / "room.xml")
-    robot = robot or str(demo / "robots" / "papero.xml")
-    inside = f"{_standing(world)}{_applications(given, maps)}{_answers(says)}"
+    place = str(world or demo / "worlds" / "room.xml")
+    body = str(robot or demo / "robots" / "papero.xml")
+    said = [says] if isinstance(says, str) else says
+    inside = f"{_standing(place)}{_applications(given, maps)}{_answers(said)}"
     try:
-        loaded = load_whole(path_of(STAGE), _scenario(world, robot, entrances, inside))
+        loaded = load_whole(path_of(STAGE), _scenario(place, body, entrances, inside))
     except DocumentError as error:
         own = (one.code for one in error.problems if one.place.file == STAGE)
         if "duplicate-id" in own:

@@ -16,7 +16,7 @@ from prima.errors import (
 from prima.interpreter.elements import Document
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.loading.applications import fetcher, in_folder, read_native, services_of
-from prima.loading.files import path_of, read_file
+from prima.loading.files import path_of, paths_of, read_file
 from prima.loading.folders import documents_folder
 from prima.loading.kinds import GRAMMAR_FILES, is_grammar, is_surely_ours, is_voicexml
 from prima.loading.reading import Reading
@@ -31,22 +31,22 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-def validate(paths: Iterable[str | Path], maps: Iterable[str] = ()) -> list[Problem]:
+def validate(paths: str | Path | Iterable[str | Path], maps: Iterable[str] = ()) -> list[Problem]:
     """Give all problems of documents of any kind; a scenario's also those of what it names.
 
     Those that authors ignore, in a document or in ``prima.toml``, are left out. Of very many the
     last says only how many there are more (:func:`prima.errors.listed`).
 
     Args:
-        paths: the documents.
+        paths: the documents, or one.
         maps: folders of VoiceXML documents and where they are served, as ``URI=FOLDER``.
 
     Raises:
         UsageError: a file cannot be read, or a mapping is none.
     """
-    paths = list(paths)
-    validation = Validation(mappings(maps, map(str, paths)))
-    problems = [problem for path in paths for problem in validation.problems(path)]
+    named = paths_of(paths)
+    validation = Validation(mappings(maps, named))
+    problems = [problem for path in named for problem in validation.problems(path)]
     return listed(sorted(once([*problems, *validation.ignored()])), LIMITS.problems)
 
 

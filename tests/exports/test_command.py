@@ -45,7 +45,7 @@ def test_it_writes_to_a_pipe_from_a_pipe(to: str, folder: Path, demo: api.Transc
         (["t.jsonl", "--to", "textgird"], 'Did you mean "textgrid"?'),
         (["t.jsonl", "--to", "pdf"], "Name csv, eaf, mcap, textgrid or vtt."),
         (["none.jsonl", "--to", "csv"], "none.jsonl: cannot be read"),
-        (["t.jsonl", "--to", "csv", "-o", "t.jsonl"], "this is the transcript itself"),
+        (["t.jsonl", "--to", "csv", "-o", "t.jsonl"], "the export is made from this file"),
         (["t.jsonl", "--to", "csv", "-o", "no/t.csv"], "no/t.csv: cannot be written"),
         (["t.jsonl", "--to", "eaf", "--lang", "e_n"], "is not a language tag"),
         (

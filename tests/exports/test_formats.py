@@ -172,7 +172,7 @@ def test_whatever_overlaps_every_file_is_well_formed(data: st.DataObject, tmp_pa
     times = st.integers(0, 40).map(lambda tenths: tenths / 10)
     names = st.sampled_from(["a#1", "a#2", "b#1", "b#2.1", "b#2.2", "user#1"])
     records: Records = []
-    for time in sorted(data.draw(st.lists(times, max_size=25))):
+    for time in sorted(data.draw(st.lists(times, min_size=1, max_size=25))):
         name = data.draw(names)
         devices = data.draw(st.lists(st.sampled_from(["arm", "speaker"]), unique=True))
         records.append(

@@ -1,0 +1,76 @@
+"""What callers of the package give wrongly is told as what they gave."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import prima
+from tests import ROOT
+
+DOCUMENTS = ROOT / "documents"
+SCENARIO = DOCUMENTS / "scenarios" / "touched-on-the-way.xml"
+FOLLOW, MUSEUM = DOCUMENTS / "fa" / "follow.xml", DOCUMENTS / "ea" / "museum.xml"
+
+
+@pytest.mark.parametrize("call", [prima.rehearse, prima.run_live])
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"bound": 0}, "bound=0: write a whole number from 1."),
+        ({"patience": -1}, "patience=-1: write a whole number from 0."),
+        ({"isolate": "some"}, 'isolate="some": write all, ea or none.'),
+        ({"hosts": "http://a"}, '"http://a" is not a host name'),
+    ],
+)
+def test_a_wrong_value_is_told_before_anything_runs(
+    call: Callable[..., object], given: dict[str, Any], told: str
+) -> None:
+    with pytest.raises(prima.UsageError) as caught:
+        call(SCENARIO, **given)
+    assert told in str(caught.value)
+
+
+def test_a_sweep_is_made_of_no_wrong_word() -> None:
+    with pytest.raises(prima.UsageError, match='isolate="some"'):
+        prima.sweep(SCENARIO, isolate="some", workers=1)
+
+
+def test_a_seed_is_no_negative_number() -> None:
+    with pytest.raises(prima.UsageError, match="seed=-1"):
+        prima.rehearse(SCENARIO, seed=-1)
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda made: made.rows(),
+        lambda made: made.run(),
+        lambda made: made.dumps(),
+        lambda made: prima.replay(made, SCENARIO),
+        lambda made: prima.diff(made, made),
+        lambda made: prima.export(made, "csv", io.BytesIO()),
+    ],
+)
+def test_records_that_were_not_kept_are_missed(use: Callable[[prima.Transcript], object]) -> None:
+    made = prima.rehearse(SCENARIO, keep=False, isolate="none")
+    with pytest.raises(prima.UsageError, match="its records were not kept: run it with keep=True"):
+        use(made)
+    assert made.summary().seconds > 30
+    assert prima.rehearse(SCENARIO, keep=False, rows=True, isolate="none").rows()
+
+
+def test_one_path_is_not_its_letters() -> None:
+    assert prima.validate(str(MUSEUM)) == prima.validate(MUSEUM) == prima.validate([MUSEUM])
+    for fa, ea in ((FOLLOW, MUSEUM), (str(FOLLOW), [MUSEUM])):
+        made = prima.stage(fa, ea, robot=DOCUMENTS / "robots" / "papero.xml")
+        assert [one.id for one in made.cast.documents] == ["follow", "museum"]
+
+
+def test_a_name_that_no_file_can_have(tmp_path: Path) -> None:
+    with pytest.raises(prima.UsageError, match="is not a file's name"):
+        prima.read(f"{tmp_path}/a\0b")
