@@ -166,7 +166,8 @@ def nearby(path: Path, *spans: Span, listed: dict[Path, list[Path]]) -> Hint:
     folder = path.parent
     if folder not in listed:
         try:
-            listed[folder] = sorted(islice(folder.iterdir(), MOST_BESIDE))
+            beside = islice(folder.iterdir(), MOST_BESIDE)
+            listed[folder] = sorted(one for one in beside if not one.is_dir())
         except (OSError, ValueError):
             listed[folder] = []
     alike = sorted(listed[folder], key=lambda one: one.suffix == path.suffix)  # the last one counts

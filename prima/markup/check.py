@@ -270,7 +270,10 @@ def _unknown_attribute(node: Node, name: str, rules: _Rules, missing: list[Attri
     if not hint and rules.element.text and name in TEXTS:
         hint = Hint(f"Write the text inside: <{node.tag}>...</{node.tag}>.")
     if not hint:
-        hint = suggestion(name, known, attribute_span(node, name))
+        near = nearest_word(name, known)
+        hint = meant(near, attribute_span(node, name))
+        if near in node.attributes:
+            hint = Hint(f'Remove it: there is "{near}" already.')
     if not hint:
         hint = Hint(f"It may have {one_of(known)}." if known else "It has no attributes.")
     place = node.attribute_place(name, value=False)

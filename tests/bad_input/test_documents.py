@@ -132,7 +132,7 @@ MEANING = [
     ("unknown-element", block("<speek>x</speek>"), "2:21", 'Did you mean "speak"?'),
     ("voicexml-element", block("<catch/>"), "2:21", 'Write <on event="...">'),
     ("misplaced", form("<speak>x</speak>"), "2:14", "<speak> cannot stand in <form>. Put it into a <block>."),
-    ("unknown-attribute", block('<turn angel="3" angle="1"/>'), "2:27", 'Did you mean "angle"?'),
+    ("unknown-attribute", block('<turn angel="3" angle="1"/>'), "2:27", 'Remove it: there is "angle" already.'),
     ("missing-attribute", block("<turn/>"), "2:21", "needs"),
     ("not-a-number", block('<turn angle="x"/>'), "2:34", "Write digits"),
     ("nan", block('<turn angle="NaN"/>'), "2:34", "is not a number"),

@@ -82,3 +82,13 @@ def test_a_wrong_robot_beside_a_scenario_is_told_in_its_own_place(tmp_path: Path
     (problem,) = caught.value.problems
     assert problem.place.file == world
     assert problem.message == "This is a world; a robot is needed here."
+
+
+def test_no_folder_is_meant_by_the_name_of_a_file(tmp_path: Path) -> None:
+    (tmp_path / "robots").mkdir()
+    path = tmp_path / "scenario.xml"
+    path.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" robot="robot.xml"/>'
+    )
+    (problem,) = [one for one in api.validate([path]) if "robot.xml" in one.message]
+    assert "robots" not in problem.remedy and not problem.fixes

@@ -35,3 +35,13 @@ def test_no_fix_writes_an_empty_text(tmp_path: Path) -> None:
     found = [one for one in api.validate([path]) if one.code == "missing-attribute"]
     assert len(found) == 3
     assert not any(one.fixes for one in found)
+
+
+def test_no_fix_writes_an_attribute_that_is_there(tmp_path: Path) -> None:
+    path = tmp_path / "a.xml"
+    path.write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><form id="f">'
+        '<block><topological-move too="lab" to="lab"/><exit/></block></form></prima>'
+    )
+    (problem,) = api.validate([path])
+    assert problem.remedy == 'Remove it: there is "to" already.' and not problem.fixes

@@ -63,7 +63,7 @@ def place_in(expr: Expression, characters: int) -> Place:
 
 def _parts_of_event(expr: Expression, names: Names, known: Known) -> Iterator[Problem]:
     """Parts that code asks an event for and that no event has."""
-    if "event" in known or "event" not in names.handled:
+    if "event" in known:
         return
     for use in names.uses:
         found = PART.match(expr.code, use.start + len("event"))
@@ -95,7 +95,8 @@ class Variables:
         for name, start in names.handled.items():
             if not (name in known or id(expr.node) in self._handling):
                 yield NO_EVENT_HERE.at(place_in(expr, start), name=name)
-        yield from _parts_of_event(expr, names, known)
+        if "event" in names.handled and id(expr.node) in self._handling:
+            yield from _parts_of_event(expr, names, known)
         if "sensor" in names.read and not (self._senses or "sensor" in known):
             yield NO_SENSOR.at(place_in(expr, names.read["sensor"]))
 
