@@ -39,6 +39,8 @@ TWO_RULES = DUPLICATE_ID.says('There are two rules "{name}".')
 NO_RULE = NO_SUCH_RULE.says('There is no rule "{name}".')
 TEXT_BESIDE_RULES = STRAY_TEXT.says("This grammar has rules; its own text has no effect.")
 EMPTY_GRAMMAR = EMPTY_ANSWER.says("This grammar has no words.", "Write what it takes.")
+NO_RULES = Hint("Remove root: this grammar holds no <rule>.")
+"""What to do about the name of a rule where there is none."""
 MOST_REPEATED = 999
 """The greatest number of ``repeat``."""
 BAD_REPEAT = BAD_VALUE.says("{wrong}", 'Write one such as "0-1".')
@@ -67,6 +69,8 @@ class _DialogueGrammarReader:
         if not rules:
             if not node.nodes and not fold(node.text):
                 self.note(EMPTY_GRAMMAR, node)
+            if "root" in node.attributes:
+                self.note(NO_RULE, node, "root", NO_RULES, name=node.get("root"))
             self._define("root", self._expansion(node))
         self.document.root = node.get("root", rules[0].get("id")) if rules else "root"
         self._rule_named(node, self.document.root, "root")
@@ -114,7 +118,7 @@ class _DialogueGrammarReader:
             elif (part := self._part(item)) is not None:
                 parts.append(part)
         held = sequence(parts)
-        return self._repeated(node, held) if node.get("repeat") else held
+        return self._repeated(node, held) if "repeat" in node.attributes else held
 
     def _part(self, node: Node) -> Part | None:
         match node.tag:
