@@ -16,6 +16,7 @@ from prima.report import strip
 from prima.scheduler.policy import BASELINES
 from prima.transcript.rules import RULES
 from tests import ROOT
+from tests.helpers.command import prima
 from tests.helpers.pages import run
 
 
@@ -80,3 +81,8 @@ def test_a_rule_that_is_not_there_is_told(tmp_path: Path) -> None:
     code, made = run(["explain"], tmp_path)
     assert code == 0 and any(line.startswith("F2 ") for line in made)
     assert max(map(len, made)) <= 80
+
+
+def test_every_example_of_a_rule_is_as_it_expects() -> None:
+    done = prima("test", "documents/rules", cwd=ROOT)
+    assert done.returncode == 0, done.stdout
