@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
 # Modules that only some functions need are imported there, so that short commands start quickly.
 
-ISOLATED = ("ea", "all", "none")
-"""Which scripts may run in a process of their own."""
 Sink = Callable[[str], object]
 
 
@@ -179,5 +177,7 @@ def check_isolate(isolate: str) -> None:
     Raises:
         UsageError: it is one.
     """
-    if isolate not in ISOLATED:
-        raise UsageError(f'isolate="{isolate}": write {one_of(ISOLATED)}.')
+    from prima.script.isolated import ISOLATIONS
+
+    if isolate not in ISOLATIONS:
+        raise UsageError(f'isolate="{isolate}": write {one_of(ISOLATIONS)}.')

@@ -124,8 +124,10 @@ def read_file(path: str | Path) -> bytes:
 
 def at_once(path: str, flags: int) -> int:
     """An opener for ``open`` that does not wait for somebody who writes to a named pipe."""
-    file = os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
-    os.set_blocking(file, True)
+    nonblock = getattr(os, "O_NONBLOCK", 0)  # Windows has none
+    file = os.open(path, flags | nonblock)
+    if nonblock:
+        os.set_blocking(file, True)
     return file
 
 
