@@ -22,6 +22,7 @@ from prima.interpreter.elements import Document
 from prima.loading import Loaded, load_text, with_robot, with_scenario
 from prima.loading.files import Files, in_place_of_files, read_file
 from prima.loading.writing import write_whole
+from prima.markup.collecting import seldom_collected
 from prima.markup.limits import LIMITS
 from prima.messages import Json
 from prima.sim.paths import ScenarioValue
@@ -163,7 +164,7 @@ class Stage:
         for name, number in self.settings.limits.items():
             setattr(LIMITS, name, number)
         try:
-            with in_place_of_files(self.files):
+            with in_place_of_files(self.files), seldom_collected():
                 return self._run(variant)
         except DocumentError as error:
             wrong = [str(one) for one in error.problems if one.severity == "error"]
