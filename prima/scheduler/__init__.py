@@ -1,1 +1,1 @@
-"""The mediator: which application's behaviour runs when (thesis chapter 4)."""
+"""The mediator: decides which application's behaviour runs when (thesis chapter 4)."""

@@ -14,7 +14,7 @@ Table = Mapping[str, CommandType]
 
 
 MOST_AT_ONCE = 500
-"""Commands of an application that may wait at the same time, beside one another."""
+"""The maximum number of an application's Commands that may wait side by side."""
 
 
 class CommandRefused(Exception):
@@ -30,7 +30,7 @@ class CommandRefused(Exception):
 def check_command(
     command: Command, app: Application, table: Table, most: int = LONGEST_TURN_MS
 ) -> None:
-    """Refuse a Command that the rules or this robot do not know, and fill in defaults.
+    """Refuse a Command unknown to the rules or to this robot, and fill in defaults.
 
     ``most`` is how long (ms) it may keep the speaker.
 
@@ -65,7 +65,7 @@ def check_command(
 
 
 def silence(command: Command) -> float:
-    """How long (ms) it keeps the speaker without a word: its pauses, and a question's timeout."""
+    """How long (ms) a Command keeps the speaker silent: its pauses and a question's timeout."""
     if command.text is None and command.type != "q-and-a":
         return 0
     times = [cue.value for cue in command.cues if cue.kind in ("pause", "lasts")]
@@ -75,7 +75,7 @@ def silence(command: Command) -> float:
 
 
 def substitute(steps: list[Step], table: Table) -> list[tuple[Command, str]]:
-    """X6: put other Commands in the place of those that the robot lacks; gives what they were."""
+    """X6: substitute other Commands for those that the robot lacks; returns the originals."""
     made = []
     for command in commands_of(steps):
         row = table.get(command.type)
@@ -92,13 +92,13 @@ def check_steps(
     owned: frozenset[str] | None = None,
     most: int = LONGEST_TURN_MS,
 ) -> None:
-    """Check all Commands of a request before any of them is taken in.
+    """Check all Commands of a request before accepting any of them.
 
-    ``owned`` are the devices of the unit that they are requested in, if any (U5), and ``most`` is
+    ``owned`` are the devices of the unit in which they are requested, if any (U5); ``most`` is
     how long (ms) each may keep the speaker.
 
     Raises:
-        CommandRefused: for the first bad one.
+        CommandRefused: for the first invalid one.
     """
     for command in commands_of(steps):
         check_command(command, app, table, most)
@@ -106,11 +106,11 @@ def check_steps(
 
 
 def check_number(steps: list[Step], waiting: int) -> None:
-    """E3: refuse what would let too many Commands wait at once: each is ranked again and again.
+    """E3: refuse requests that let too many Commands wait at once, as each is ranked repeatedly.
 
     Args:
-        steps: what is asked for; each step that no other follows counts as one branch.
-        waiting: how many of the application's Commands wait already.
+        steps: the request; each step that no other follows counts as one branch.
+        waiting: how many of the application's Commands are already waiting.
 
     Raises:
         CommandRefused: there are more than :data:`MOST_AT_ONCE`.
@@ -134,7 +134,7 @@ def check_units(steps: list[Step], table: Table, owned: frozenset[str] | None) -
     """U4, U5: check what is inside units; ``owned`` are the devices of the one around them.
 
     Raises:
-        CommandRefused: for the first bad Command.
+        CommandRefused: for the first invalid Command.
     """
     for step in steps:
         if isinstance(step.what, Group):
@@ -145,7 +145,7 @@ def check_units(steps: list[Step], table: Table, owned: frozenset[str] | None) -
 
 
 def check_in_unit(command: Command, row: CommandType, owned: frozenset[str]) -> None:
-    """U4, U5: refuse in a unit what is not one piece, or needs a device that the unit lacks.
+    """U4, U5: refuse Commands in a unit that cannot be part of one or need a device it lacks.
 
     Raises:
         CommandRefused: with ``error.semantic``.
@@ -167,12 +167,12 @@ def group_devices(group: Group, table: Table) -> frozenset[str]:
 
 
 class Maker:
-    """Makes ABs and streams; it alone gives out their names and serial numbers."""
+    """Makes ABs and streams, and assigns their names and serial numbers."""
 
     def __init__(self, table: Table) -> None:
         self.table = table
         self.serial = 0
-        # By application's name: one that is loaded again gives no name out twice.
+        # By application's name: one that is loaded again does not reuse names.
         self._behaviors: dict[str, int] = {}
         self._streams: dict[str, int] = {}
 
@@ -235,6 +235,6 @@ def link(parent: Behavior, child: Behavior) -> None:
 
 
 def parent_in(unit: Behavior) -> Behavior | None:
-    """O1, U5: the latest Command that was requested in a unit, if it is in working memory still."""
+    """O1, U5: the latest Command requested in a unit, if it is still in working memory."""
     latest = unit.inside.latest if unit.inside is not None else None
     return latest if latest is not None and latest.state is not GONE else None

@@ -1,4 +1,4 @@
-"""Atomic Behaviors, Communication Streams, and what is known of an application.
+"""Atomic Behaviors, Communication Streams, and the mediator's data on applications.
 
 An AB tree *is* a Communication Stream (thesis 4.4): a :class:`Stream` holds the
 ABs of its trees, and each :class:`Behavior` its parents and children. A feedback
@@ -18,7 +18,7 @@ from prima.scheduler.robot_state import Effects
 
 HIGH: Final = 1
 State = Literal["linked", "waiting", "running", "gone"]
-"""The states of an AB in working memory (thesis Figure 4.3), and out of it."""
+"""The states of an AB in working memory (thesis Figure 4.3) and outside it."""
 LINKED: Final = "linked"
 WAITING: Final = "waiting"
 RUNNING: Final = "running"
@@ -27,7 +27,7 @@ GONE: Final = "gone"
 
 @lru_cache(maxsize=1000)
 def in_order(devices: frozenset[str]) -> tuple[str, ...]:
-    """Devices in the order in which they are looked at and told."""
+    """Devices in the order in which they are checked and reported."""
     return tuple(sorted(devices))
 
 
@@ -39,7 +39,7 @@ class Stream:
     app: Application
     members: dict[str, Behavior] = field(default_factory=dict)
     turn: int = 0
-    """When an AB of it started last, as a counter; 0 while none has (S2b, S2d)."""
+    """When one of its ABs started last, as a counter; 0 before the first (S2b, S2d)."""
     spoken: bool = False
     """Whether an AB of it has spoken (F6)."""
     engaged: bool = False
@@ -47,32 +47,32 @@ class Stream:
     causes: set[int] = field(default_factory=set)
     """Serial numbers of the events that the stream has reacted to (F2)."""
     suspended: bool = False
-    """Whether another stream has taken the floor and nothing of this one has started since (C2)."""
+    """Whether another stream has taken the floor and no AB of this one has started since (C2)."""
     waits: bool = False
     """Whether another application has kept an AB of it waiting since it was suspended (C2)."""
     answered: int = -1
-    """The instant in which the user has answered a question of it (E6)."""
+    """The instant in which the user answered one of its questions (E6)."""
     place: int = 0
     """When the stream was suspended, as a counter: the greatest was suspended last (S2d). One
     that resumes keeps its place until the selection is over; 0 for others."""
     effects: Effects = field(default_factory=Effects)
-    """What its Commands have done to the robot's state (X1)."""
+    """How its Commands have changed the robot's state (X1)."""
     hold: int | None = None
     """How long (ms) the stream is kept open for an event, by its latest request (X3)."""
     hold_state: int = 0
-    """The document's state whose hint that is."""
+    """The document's state that gave this hint."""
     words: Command | None = None
-    """What is said when the stream resumes, by its latest request (X9)."""
+    """The words to say when the stream resumes, by its latest request (X9)."""
     words_due: bool = False
     """Whether another application has spoken since the stream was suspended (X9)."""
     held_until: int | None = None
-    """Until when it is held (ms); None while it is not."""
+    """Until when it is held (ms); None if it is not."""
 
     @property
     def open(self) -> bool:
         """Whether the stream has an AB in working memory, or is held (C1, X3).
 
-        Nobody asks while a window is open: streams end in the selection, after all windows.
+        This is not used while a window is open: streams end in the selection, after all windows.
         """
         return bool(self.members) or self.held_until is not None
 
@@ -82,15 +82,15 @@ class Stream:
         return any(ab.state is RUNNING for ab in self.members.values())
 
     def present(self) -> list[Behavior]:
-        """What runs and waits; what is linked competes for nothing."""
+        """The running and waiting ABs; linked ABs do not compete."""
         return [ab for ab in self.members.values() if not ab.dormant]
 
     def contending(self) -> list[Behavior]:
-        """The same as F2 and K1 see it: of what was put in, what it was put in for (X1, X4)."""
+        """The same for F2 and K1: an inserted AB counts as the one it was inserted for (X1, X4)."""
         return [one for ab in self.members.values() if not ab.dormant for one in ab.meant()]
 
     def latest(self) -> Behavior | None:
-        """The latest of its ABs that its application has requested, if any is in memory (O1)."""
+        """The latest of its ABs in memory that its application has requested, if any (O1)."""
         return next(
             (ab for ab in reversed(self.members.values()) if ab.unit is None and not ab.inserted),
             None,
@@ -99,29 +99,29 @@ class Stream:
 
 @dataclass(slots=True, eq=False)
 class Application:
-    """What the mediator keeps of an application: nothing of its documents."""
+    """The mediator's data on an application, without its documents."""
 
     name: str
     kind: str
     order: int
     latest: Behavior | None = None
-    """The latest AB that it has requested, outside of units."""
+    """The latest AB that it has requested outside units."""
     window: Stream | None = None
     """The stream in whose window it handles the end of a Command (C3)."""
     continuing: Stream | None = None
-    """A stream that O3 cancelled: it goes on with what is asked for in this instant."""
+    """A stream that O3 cancelled: requests of this instant continue it."""
     units: dict[int, Behavior] = field(default_factory=dict)
     """Its units that span questions (U5), by the numbers that it gave them."""
     members: dict[str, Behavior] = field(default_factory=dict)
     """Its ABs in working memory, in the order of their requests."""
     last_turn: int = -1
-    """When an AB of it started last, as a counter (policy ``fair``)."""
+    """When one of its ABs started last, as a counter (policy ``fair``)."""
     gone: bool = False
 
 
 @dataclass(slots=True)
 class AwaitedRun:
-    """Commands that an application sent at once and whose end it awaits."""
+    """Commands that an application sent together and whose end it awaits."""
 
     number: int
     app: Application
@@ -135,33 +135,33 @@ class Wait:
     """How an AB waits, from when it may compete until it starts."""
 
     blocked: tuple[str, str] = ("", "")
-    """The rule that keeps it from starting, and the AB or stream for whose sake."""
+    """The rule that keeps it from starting, and the AB or stream that the rule protects."""
     loops: int = 0
     """How many loops of another application's feedback Command it has waited (E4)."""
     since: int = -1
-    """Since when (ms) another application keeps it waiting; -1 while none does."""
+    """Since when (ms) another application keeps it waiting; -1 if none does."""
     starves: bool = False
     """Whether that has been reported."""
     kept: int = 0
-    """How long (ms) others have kept it from the speaker alone (E6)."""
+    """How long (ms) others have kept it from the speaker, with no rule to do so (E6)."""
     kept_since: int = -1
-    """Since when (ms) they do so; -1 while they do not."""
+    """Since when (ms) they have done so; -1 if they do not."""
     overdue: bool = False
-    """Whether they have done so for as long as they may."""
+    """Whether they have done so for the maximum time."""
 
 
 @dataclass(slots=True, eq=False)
 class Inside:
-    """What is inside a unit (U4, U5)."""
+    """The contents of a unit (U4, U5)."""
 
     spans: bool = False
     """Whether the unit spans questions and states (U5)."""
     open: bool = False
-    """Whether more may come into it: it does not end when it is empty."""
+    """Whether more may be added: it does not end when it is empty."""
     members: dict[str, Behavior] = field(default_factory=dict)
     """The unit's own ABs that are in working memory."""
     busy: dict[str, Behavior] = field(default_factory=dict)
-    """By which of those the unit's devices are used."""
+    """Which of those use the unit's devices."""
     latest: Behavior | None = None
     """The latest of its Commands (O1)."""
 
@@ -175,7 +175,7 @@ class Behavior:
     app: Application
     stream: Stream
     type: CommandType | None
-    """Its Command's row of Table 4.2; None of a unit."""
+    """Its Command's row of Table 4.2; None for a unit."""
     command: Command | None
     devices: frozenset[str]
     requested: int
@@ -185,12 +185,12 @@ class Behavior:
     unit: Behavior | None = None
     """The unit that it is in."""
     inside: Inside | None = None
-    """What is in it, if it is a unit."""
+    """Its contents, if it is a unit."""
     state: State = WAITING
     reaction: int | None = None
     """The serial number of the event reacted to: the reactive flag, until the AB starts (C5)."""
     stale: int | None = None
-    """From when (ms) on a reaction that has not started is not worth starting (X8)."""
+    """From when (ms) on a reaction that has not started is no longer worth starting (X8)."""
     parent: str | None = None
     waits_for: set[str] = field(default_factory=set)
     children: list[Behavior] = field(default_factory=list)
@@ -199,29 +199,29 @@ class Behavior:
     wait: Wait = field(default_factory=Wait)
     started: int = -1
     loop: int = 0
-    """Which loop of a feedback Command runs, or ran last (U2)."""
+    """The number of a feedback Command's loop that is running, or ran last (U2)."""
     last_loop: bool = False
-    """Whether no other loop follows."""
+    """Whether this is the last loop."""
     resumed: bool = False
     listening: bool = False
     silent: bool = False
-    """Nobody hears of its end any more."""
+    """Whether nobody is notified of its end any more."""
     left: bool = False
-    """Its state has been left (O3): a question ends as soon as it listens."""
+    """Whether its state has been left (O3): a question then ends as soon as it listens."""
     connect: bool = False
-    """Whether the robot has to face the user before it starts (X4)."""
+    """Whether the robot has to face the user before the AB starts (X4)."""
     inserted: str = ""
-    """The rule by which the mediator itself put the AB in (X1, X4, X9)."""
+    """The rule by which the mediator itself inserted the AB (X1, X4, X9)."""
     reacted: int = -1
-    """The event that it started for, where it was a reaction: it yields to later ones (X2)."""
+    """The event to which it reacts, if it is a reaction: it yields to later ones (X2)."""
     restarting: bool = False
     """Whether the AB was interrupted and has not started again (X2)."""
     since: Data | None = None
-    """The mark from which it goes on after an interruption, as its device told it (X2)."""
+    """The mark from which it resumes after an interruption, as its device reported it (X2)."""
     late: int | None = None
-    """When it will have run for longer than it may (U5, E1), once it has started."""
+    """When it will have run for too long (U5, E1), once it has started."""
     told: Record | None = None
-    """What its records have in common: see :mod:`prima.scheduler.recorder`."""
+    """The common fields of its records: see :mod:`prima.scheduler.recorder`."""
 
     @property
     def id(self) -> str:
@@ -230,7 +230,7 @@ class Behavior:
 
     @property
     def in_order(self) -> tuple[str, ...]:
-        """Its devices in the order in which they are looked at and told."""
+        """Its devices in the order in which they are checked and reported."""
         return in_order(self.devices)
 
     @property
@@ -240,7 +240,7 @@ class Behavior:
 
     @property
     def leaves(self) -> bool:
-        """Whether the AB leaves the user; nothing in a unit does (K2)."""
+        """Whether the AB leaves the user; an AB in a unit never does (K2)."""
         return self.type is not None and self.type.leaves
 
     @property
@@ -250,7 +250,7 @@ class Behavior:
 
     @property
     def asks(self) -> bool:
-        """Whether it is a question, or has one in it: it lasts as long as the user thinks."""
+        """Whether it is or contains a question, which lasts as long as the user thinks."""
         return "speech-recognition" in self.devices
 
     @property
@@ -275,12 +275,12 @@ class Behavior:
 
     @property
     def in_group(self) -> bool:
-        """Whether the AB is a part of a unit that shares the unit's fate (U4)."""
+        """Whether the AB is part of a unit and shares the unit's fate (U4)."""
         return self.unit is not None and not self.unit.spans
 
     @property
     def dormant(self) -> bool:
-        """Whether the AB is linked, or inside a unit that is: it neither runs nor waits."""
+        """Whether the AB, or the unit around it, is linked: it neither runs nor waits."""
         return self.state is LINKED or (self.unit is not None and self.unit.dormant)
 
     @property
@@ -290,13 +290,13 @@ class Behavior:
         return what is not None and what.restartable and not self.silent
 
     def next_loop(self) -> None:
-        """U2: one more loop of a feedback Command, an AB with a name of its own, begins."""
+        """U2: begin another loop of a feedback Command: an AB with a name of its own."""
         if self.loop:
             self.parent = self.id
         self.loop += 1
 
     def meant(self) -> list[Behavior]:
-        """The AB itself; of one that was put in (X1, X4, X9) what it was put in for, while that is there."""
+        """The AB itself, or those in memory for which it was inserted (X1, X4, X9)."""
         if not self.inserted:
             return [self]
         behind = [

@@ -10,13 +10,13 @@ from prima.scheduler.streams import let_go
 
 
 def e5(mediation: Mediation, pressed: bool, resume: bool, serial: int) -> None:
-    """E5: the stop is pressed, or released with or without going on.
+    """E5: the stop is pressed, or released with or without resuming.
 
     Args:
         mediation: what is shared.
         pressed: whether it is pressed.
-        resume: whether what was stopped goes on.
-        serial: that of the event by which applications are told.
+        resume: whether what was stopped resumes.
+        serial: the number of the event by which applications are notified.
     """
     mediation.recorder.add(
         "emergency",
@@ -37,7 +37,7 @@ def e5(mediation: Mediation, pressed: bool, resume: bool, serial: int) -> None:
 
 
 def _give_up(mediation: Mediation) -> None:
-    """Delete all that was stopped."""
+    """Delete everything that was stopped."""
     memory = mediation.memory
     for name in list(mediation.holds):
         let_go(mediation, memory.streams[name], "left")
@@ -51,7 +51,7 @@ def _give_up(mediation: Mediation) -> None:
 
 
 def _halt_inner(mediation: Mediation, inside: Inside, given_up: bool) -> None:
-    """Stop what runs in a unit, which does not settle as done meanwhile."""
+    """Stop what runs in a unit, without letting the unit settle as done meanwhile."""
     was_open, inside.open = inside.open, True
     for inner in list(inside.members.values()):
         if given_up:
@@ -62,14 +62,14 @@ def _halt_inner(mediation: Mediation, inside: Inside, given_up: bool) -> None:
 
 
 def halt(mediation: Mediation, ab: Behavior) -> None:
-    """Stop a running AB, which waits from here on to start again, unless nobody wants it."""
+    """Stop a running AB; it waits to start again unless it is no longer wanted."""
     inside = ab.inside
     left = inside is not None and inside.spans and not inside.open
     given_up = ab.silent or ab.last_loop or left
     if inside is not None:
         _halt_inner(mediation, inside, given_up)
         if not (inside.members or inside.open or given_up):
-            settle(mediation, ab)  # all that was left of it had been given up
+            settle(mediation, ab)  # everything left of it had been given up
             return
     if ab.command is not None:
         mediation.order("abort", ab)

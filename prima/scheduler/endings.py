@@ -1,4 +1,4 @@
-"""How ABs leave working memory: by their own end, by O2, O3 and E2, and with their unit (U5)."""
+"""How ABs leave working memory: when they end, by O2, O3 or E2, or with their unit (U5)."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from prima.scheduler.memory import WorkingMemory
 
 
 def running_as(memory: WorkingMemory, name: str) -> Behavior | None:
-    """The running AB of that name in the transcript, if it runs still."""
+    """The AB with that name in the transcript, if it is still running."""
     running = memory.running
     ab = running.get(name) or running.get(name.partition(".")[0])
     return ab if ab is not None and ab.id == name else None
 
 
 def question(memory: WorkingMemory) -> Behavior | None:
-    """The question that runs, if any (V1)."""
+    """The running question, if any (V1)."""
     ab = memory.occupied.get("speech-recognition")
     while ab is not None and ab.inside is not None:
         ab = ab.inside.busy.get("speech-recognition")
@@ -36,7 +36,7 @@ def question(memory: WorkingMemory) -> Behavior | None:
 
 
 def u2(mediation: Mediation, ab: Behavior, goal: bool, data: Data, inbound: bool) -> None:
-    """U1, U2: an AB ends by itself, or one loop of a feedback Command does."""
+    """U1, U2: an AB, or one loop of a feedback Command, ends by itself."""
     ending = goal or ab.last_loop or not ab.feedback
     outcome = str(data.get("outcome", "done")) if ending else "again"
     mediation.recorder.end(ab, outcome, goal, data, inbound)
@@ -55,7 +55,7 @@ def u2(mediation: Mediation, ab: Behavior, goal: bool, data: Data, inbound: bool
 
 
 def _note_answer(mediation: Mediation, ab: Behavior, outcome: str) -> None:
-    """E6, X7: what the user has said ends a question."""
+    """E6, X7: note that a question has ended by what the user said."""
     if ab.type is not None and "speech-recognition" in ab.type.devices:
         ab.stream.answered = mediation.now
         if outcome == "filled" and ab.unit is None:
@@ -63,13 +63,13 @@ def _note_answer(mediation: Mediation, ab: Behavior, outcome: str) -> None:
 
 
 def note_rolling(mediation: Mediation, ab: Behavior) -> None:
-    """F5: a body that a feedback Command moves rolls on when no next loop follows."""
+    """F5: note that the body rolls on after a loop of this Command unless another one follows."""
     if ab.feedback and "locomotion" in ab.devices:
         mediation.rolling = ab
 
 
 def _note_effects(mediation: Mediation, ab: Behavior, data: Data, ending: bool) -> None:
-    """X1: what a Command has done to the robot's state, on which its stream relies."""
+    """X1: note how a Command has changed the robot's state; its stream relies on it."""
     if ab.type is None or ab.command is None:
         return
     mediation.robot.moved(ab.type, ab.command, data)
@@ -78,7 +78,7 @@ def _note_effects(mediation: Mediation, ab: Behavior, data: Data, ending: bool) 
 
 
 def _finish(mediation: Mediation, ab: Behavior, data: Data, cause: int | None = None) -> None:
-    """Take an AB out that has ended, and tell its application, which may react to ``cause``."""
+    """Remove an AB that has ended and notify its application, which may react to ``cause``."""
     run = ab.run
     remove(mediation, ab)
     if ab.silent or ab.app.gone or run is None:
@@ -95,10 +95,10 @@ def _finish(mediation: Mediation, ab: Behavior, data: Data, cause: int | None = 
 
 
 def answered(mediation: Mediation, ab: Behavior, data: Data, rule: str, serial: int) -> None:
-    """X8, X10: the user has answered a question that is still to be asked.
+    """X8, X10: the user has answered a question before it was asked.
 
-    Where it is a reaction, what follows it is one to what the user has said, whose event has the
-    number ``serial``.
+    If the question is a reaction, what follows it becomes a reaction to what the user said: the
+    event with the number ``serial``.
     """
     mediation.recorder.behavior("cancel", ab, rule=rule, outcome="answered", data=dict(data))
     ab.stream.answered = mediation.now
@@ -113,7 +113,7 @@ def answered(mediation: Mediation, ab: Behavior, data: Data, rule: str, serial: 
 
 
 def settle(mediation: Mediation, unit: Behavior) -> None:
-    """U4, U5: end a unit when its Commands have ended, or what was left to run in it has."""
+    """U4, U5: end a unit when its Commands, or those that were left to run in it, have ended."""
     inside = unit.inside
     if inside is None or unit.state is not RUNNING or inside.members or inside.open:
         return
@@ -139,7 +139,7 @@ def cancel(mediation: Mediation, behaviors: list[Behavior], devices: frozenset[s
 
 
 def tell_cancelled(mediation: Mediation, ab: Behavior) -> None:
-    """Tell an application that an AB of its was deleted."""
+    """Notify an application that one of its ABs was deleted."""
     if ab.run is not None and not ab.app.gone:
         name = ab.command.type if ab.command else "iu"
         notice = Notice("cancelled", ab.run.number, ab.command, event=f"cancel.{name}")
@@ -147,7 +147,7 @@ def tell_cancelled(mediation: Mediation, ab: Behavior) -> None:
 
 
 def withdraw(mediation: Mediation, behaviors: list[Behavior], rule: str) -> None:
-    """O3, E2: what has not started goes; what runs finishes, heard by nobody."""
+    """O3, E2: delete ABs that have not started; running ones finish, and nobody is notified."""
     for ab in reversed(behaviors):
         if ab.state is GONE or ab.in_group:
             continue
@@ -161,14 +161,14 @@ def withdraw(mediation: Mediation, behaviors: list[Behavior], rule: str) -> None
 
 
 def silence(ab: Behavior) -> None:
-    """Let a running AB finish, heard by nobody; a unit has no time to keep any more (U5)."""
+    """Let a running AB finish without notifying anybody; a unit's time limit is lifted (U5)."""
     ab.silent = ab.last_loop = True
     if ab.inside is not None:
         ab.late = None
 
 
 def delete(mediation: Mediation, ab: Behavior, rule: str) -> None:
-    """Take an AB out before its end; a running one is aborted."""
+    """Remove an AB before its end; a running one is aborted."""
     if ab.inside is not None:
         ab.inside.open = True  # a unit that is deleted does not settle as done
         for inner in list(ab.inside.members.values()):
@@ -192,7 +192,7 @@ def delete_rest(
 
 
 def remove(mediation: Mediation, ab: Behavior) -> None:
-    """Take an AB out of working memory; what was linked behind it may compete (O1, U3)."""
+    """Remove an AB from working memory; ABs linked behind it may now compete (O1, U3)."""
     unit, memory = ab.unit, mediation.memory
     memory.remove(ab)
     mediation.touch(ab.stream)
@@ -208,7 +208,7 @@ def remove(mediation: Mediation, ab: Behavior) -> None:
 
 
 def close_unit(mediation: Mediation, app: Application, number: int) -> None:
-    """U5: a unit is left; what runs in it finishes, the rest is deleted."""
+    """U5: a unit is left: its running ABs finish, the others are deleted."""
     unit = app.units.pop(number, None)
     if unit is None or unit.inside is None or unit.state is GONE:
         return

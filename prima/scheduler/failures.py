@@ -1,4 +1,4 @@
-"""When things go wrong: devices that fail or hang, units that take too long (E1, U5, K1)."""
+"""Failures: devices that fail or hang, units that take too long, absent users (E1, U5, K1)."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from prima.scheduler.memory import WorkingMemory
 from prima.scheduler.streams import let_go
 
 HANG_MS: Final = 120_000
-"""How long a Command may run beyond its own stated times before it has failed (E1)."""
+"""A Command fails if it runs this much longer than its own stated times (E1)."""
 MS_A_LETTER: Final = 500
-"""How long a letter of what is said may take at the most."""
+"""How long saying a letter may take at most."""
 
 
 def e1(mediation: Mediation, ab: Behavior, event: str, reason: str, inbound: bool = False) -> None:
-    """E1: a running AB fails; the rest of its tree goes, unless that was given up before (O2, O3)."""
+    """E1: a running AB fails; the rest of its tree is deleted unless given up before (O2, O3)."""
     mediation.recorder.behavior(
         "fail",
         ab,
@@ -32,7 +32,7 @@ def e1(mediation: Mediation, ab: Behavior, event: str, reason: str, inbound: boo
     ab = _unit_that_fails(mediation, ab, event, reason)
     remove(mediation, ab)
     if ab.inserted or ab.silent:
-        return  # what it was put in for, or what has come in its place, goes on without it
+        return  # the AB that it was inserted for, or its replacement, goes on without it
     tree = ab.stream.members if ab.unit is None else ab.unit.inner
     delete_rest(mediation, tree, ab.run, "E1")
     if ab.run is not None and not ab.app.gone:
@@ -42,7 +42,7 @@ def e1(mediation: Mediation, ab: Behavior, event: str, reason: str, inbound: boo
 
 
 def _unit_that_fails(mediation: Mediation, ab: Behavior, event: str, reason: str) -> Behavior:
-    """U4: inside a group the unit is the AB that fails; a spanning unit stays its author's."""
+    """U4: in a group the unit is the AB that fails; a spanning unit is left to its author."""
     while ab.unit is not None and ab.unit.inside is not None and not ab.unit.spans:
         unit, inside = ab.unit, ab.unit.inside
         for inner in list(inside.members.values()):
@@ -56,7 +56,7 @@ def _unit_that_fails(mediation: Mediation, ab: Behavior, event: str, reason: str
 
 
 def deadline(mediation: Mediation) -> int | None:
-    """The next instant at which a unit, a device or an event waited for is too late (ms)."""
+    """When the next unit, device or awaited event is overdue (ms)."""
     late = [ab.late for ab in mediation.memory.running.values() if ab.late is not None]
     lapse = _lapse(mediation.memory, mediation.absence)
     if lapse is not None:
@@ -69,7 +69,7 @@ def deadline(mediation: Mediation) -> int | None:
 
 
 def _lapse(memory: WorkingMemory, absence: int) -> int | None:
-    """K1: when the user will count as absent, if anything waits for that."""
+    """K1: when the user will count as absent, if anything depends on it."""
     if memory.in_view or memory.absent or not memory.engaged:
         return None
     if not any(ab.leaves for ab in memory.waiting.values()):
@@ -78,13 +78,13 @@ def _lapse(memory: WorkingMemory, absence: int) -> int | None:
 
 
 def look_for_user(mediation: Mediation) -> None:
-    """K1: nobody engages a user who has not been seen, heard or felt for a while."""
+    """K1: a user who has not been seen, heard or felt for a while is no longer engaged."""
     memory = mediation.memory
     memory.absent = not memory.in_view and mediation.now - memory.sensed >= mediation.absence
 
 
 def expire(mediation: Mediation) -> None:
-    """U5, E1, X3: end what has run, or is held, for longer than it may."""
+    """U5, E1, X3: end what has run, or has been held, for too long."""
     now, running = mediation.now, mediation.memory.running
     for name in [name for name, due in mediation.holds.items() if due <= now]:
         let_go(mediation, mediation.memory.streams[name], "over")
@@ -101,7 +101,7 @@ def expire(mediation: Mediation) -> None:
 
 
 def unit_timeout(mediation: Mediation, unit: Behavior) -> None:
-    """U5: a unit has taken longer than it may."""
+    """U5: a unit has taken too long."""
     mediation.recorder.behavior("fail", unit, rule="U5", event="error.unit.timeout")
     number = next((key for key, ab in unit.app.units.items() if ab is unit), None)
     run, message = unit.run, "The unit took too long."
@@ -121,7 +121,7 @@ def unit_timeout(mediation: Mediation, unit: Behavior) -> None:
 
 
 def set_deadlines(mediation: Mediation) -> None:
-    """E1, U5, E6: note when what has just started will have run for too long."""
+    """E1, U5, E6: note when the ABs that have just started will have run for too long."""
     for ab in mediation.started:
         if ab.command is not None:
             ab.late = mediation.now + allowance(ab)
@@ -142,7 +142,7 @@ def allowance(ab: Behavior) -> int:
 
 
 def _saying_ms(command: Command) -> int:
-    """How long a text may take to say (ms): by its letters at its slowest rate, and its cues."""
+    """How long a text may take to say (ms): its letters at its slowest rate, and its cues."""
     times = [cue.value for cue in command.cues if cue.kind != "rate"]
     rates = [float(cue.value or 1) for cue in command.cues if cue.kind == "rate"]
     letters = MS_A_LETTER * len(command.text or "") / min([1.0, *rates])

@@ -1,6 +1,6 @@
-"""X8: reactions that come too late are given up, and what a question refuses may answer one.
+"""X8: late reactions are given up, and an answer that one question refuses may fit another.
 
-A reaction is a root that has not started, with all of its tree that waits for it alone (as in E1).
+A reaction is a root that has not started, with the ABs that wait for it alone (as in E1).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from prima.scheduler.selection import able
 
 
 def x8(mediation: Mediation) -> bool:
-    """X8: give up reactions that were not started in time; true if there was one."""
+    """X8: give up reactions that were not started in time; whether there were any."""
     if not mediation.has("x8") or mediation.halted:
         return False
     stale = [ab for ab in mediation.memory.waiting.values() if _is_stale(ab, mediation.now)]
@@ -37,7 +37,7 @@ def _is_stale(ab: Behavior, now: int) -> bool:
 
 
 def _give_up(mediation: Mediation, root: Behavior) -> None:
-    """Delete a reaction, but for what needs only devices that are free."""
+    """Delete a reaction, except ABs that need only free devices."""
     kept = mediation.policy.refusal(root, mediation.memory) is None
     lost = [root]
     for ab in followers(root)[1:]:
@@ -55,9 +55,9 @@ def _give_up(mediation: Mediation, root: Behavior) -> None:
 
 
 def followers(root: Behavior) -> list[Behavior]:
-    """A root and what waits for it alone, each behind all that it waits for."""
+    """A root and the ABs that wait for it alone, each after all that it waits for."""
     found, names = [root], {root.name}
-    for ab in found:  # it grows
+    for ab in found:  # the list grows
         for child in ab.children:
             if child.state is LINKED and child.waits_for <= names and child not in found:
                 found.append(child)
@@ -66,9 +66,9 @@ def followers(root: Behavior) -> list[Behavior]:
 
 
 def _tell(mediation: Mediation, lost: list[Behavior]) -> None:
-    """Tell the application what it is not to wait for any more.
+    """Notify the application of what it should no longer wait for.
 
-    What it asked for with that goes on, if any of it has started or is still to start.
+    The rest of the same request goes on, if any of it has started or is yet to start.
     """
     told = [ab for ab in lost if ab.run is not None and not (ab.silent or ab.app.gone)]
     for ab in told:
@@ -80,7 +80,7 @@ def _tell(mediation: Mediation, lost: list[Behavior]) -> None:
 
 
 def _notices(ab: Behavior, run: AwaitedRun, last: bool) -> list[Notice]:
-    """That an AB has expired; after the last one also that what it was asked for with is done."""
+    """The notices that an AB has expired and, after the last one, that its request is done."""
     command = ab.command or Command("iu", hook=[])
     fate: Literal["cancelled", "expired"] = "expired" if run.left or run.begun else "cancelled"
     notices = [Notice(fate, run.number, command, event=f"expired.{command.type}")]
@@ -90,7 +90,7 @@ def _notices(ab: Behavior, run: AwaitedRun, last: bool) -> list[Notice]:
 
 
 def offered(mediation: Mediation) -> Behavior | None:
-    """X8: the first question of a reaction that waits, to which is offered what another refuses."""
+    """X8: the first question of a waiting reaction; it is offered answers that another refuses."""
     reactions = [ab for ab in mediation.memory.waiting.values() if ab.reaction is not None]
     for _, root in mediation.policy.ranked(reactions, mediation.memory, mediation.now):
         for ab in followers(root):

@@ -1,4 +1,4 @@
-"""X2: what is restartable gives way to a reaction, and starts again afterwards."""
+"""X2: restartable ABs yield to a reaction and start again afterwards."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from prima.scheduler.behavior import RUNNING, Behavior
 from prima.scheduler.mediation import HaltedUnit, Mediation
 
 Held = dict[str, Behavior]
-"""Devices that waiting ABs hold back from those that they outrank, and which does (S3)."""
+"""Devices that waiting ABs hold back from lower-ranked ones, with the AB that does so (S3)."""
 
 
 def x2(mediation: Mediation, reaction: Behavior, ways: list[Behavior], held: Held) -> bool:
-    """X2: interrupt what is restartable and in the way of a reaction.
+    """X2: interrupt restartable ABs that are in the way of a reaction.
 
     Args:
         mediation: what is shared.
         reaction: a waiting AB.
-        ways: the running ABs on its devices, one at least.
+        ways: the running ABs on its devices, at least one.
         held: devices that others hold back from it (S3).
 
     Returns:
@@ -32,13 +32,13 @@ def x2(mediation: Mediation, reaction: Behavior, ways: list[Behavior], held: Hel
 
 
 def yields(ab: Behavior, reaction: Behavior) -> bool:
-    """X2: whether a running AB gives way: to a reaction to a later event that it does not outrank."""
+    """X2: whether a running AB yields: to a reaction to a later event that it does not outrank."""
     later = reaction.reaction is not None and ab.reacted < reaction.reaction
     return ab.restartable and later and ab.priority <= reaction.priority
 
 
 def interrupt(mediation: Mediation, ab: Behavior, reaction: Behavior) -> None:
-    """X2: stop a running AB, which waits from here on to start again."""
+    """X2: stop a running AB; it then waits to start again."""
     mediation.recorder.behavior("interrupt", ab, rule="X2", by=reaction.id)
     _remember_parts(mediation, ab)
     _empty(mediation, ab)
@@ -50,7 +50,7 @@ def interrupt(mediation: Mediation, ab: Behavior, reaction: Behavior) -> None:
 
 
 def _empty(mediation: Mediation, unit: Behavior) -> None:
-    """Take out what is in a unit that starts again from its beginning."""
+    """Remove the contents of a unit that starts again from its beginning."""
     for inner in list(unit.inner.values()):
         _empty(mediation, inner)
         if inner.state is RUNNING and inner.command is not None:
@@ -60,7 +60,7 @@ def _empty(mediation: Mediation, unit: Behavior) -> None:
 
 
 def _remember_parts(mediation: Mediation, unit: Behavior) -> None:
-    """What of a unit has been done, for the application when the device has told the rest."""
+    """Note what has been done of a unit, to notify its application once the device has reported."""
     if unit.group is None:
         return
     left = _parts(unit)
@@ -74,7 +74,7 @@ def _remember_parts(mediation: Mediation, unit: Behavior) -> None:
 
 
 def _pending(part: Behavior) -> list[Command]:
-    """The Commands of a part of a unit that are not done; of one that has begun, its parts say."""
+    """A part's pending Commands; a unit that has begun is counted by its own parts."""
     if part.command is not None:
         return [part.command]
     return commands_of(part.group) if part.group is not None and not part.inner else []
@@ -85,7 +85,7 @@ def _speaks_first(part: Behavior) -> tuple[bool, int]:
 
 
 def _parts(unit: Behavior) -> list[Behavior]:
-    """All that is in a unit, at any depth."""
+    """All ABs in a unit, at any depth."""
     parts, found = list(unit.inner.values()), []
     while parts:
         part = parts.pop()
@@ -95,7 +95,7 @@ def _parts(unit: Behavior) -> list[Behavior]:
 
 
 def commands_of(group: Group) -> list[Command]:
-    """The Commands of a unit, those of units inside it included, in their order."""
+    """The Commands of a unit, including those of nested units, in their order."""
     found: list[Command] = []
     for step in group.steps:
         found += commands_of(step.what) if isinstance(step.what, Group) else [step.what]
@@ -103,7 +103,7 @@ def commands_of(group: Group) -> list[Command]:
 
 
 def interrupted(mediation: Mediation, behavior: str, data: Data) -> None:
-    """X2: the device tells how much it had done of an AB that was interrupted."""
+    """X2: the device reports how much it had done of an interrupted AB."""
     name = behavior.partition(".")[0]
     ab = mediation.memory.behaviors.get(name)
     halted = mediation.halted_units.pop(name, None)
@@ -132,7 +132,7 @@ def _tell(mediation: Mediation, ab: Behavior, data: Data) -> None:
 
 
 def whole(data: Data, halted: HaltedUnit) -> Data:
-    """How much of a unit was done, of which a device tells one part."""
+    """How much of a unit was done, when a device reports on one part."""
     part = float(data.get("done", 0.0))
     said = [command.text for command in halted.finished if command.text]
     heard = " ".join([*said, str(data.get("heard", ""))]).strip()

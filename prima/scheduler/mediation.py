@@ -1,6 +1,6 @@
-"""What the rules of mediation share: working memory, the policy, and what is still to be told.
+"""State shared by the mediation rules: working memory, the policy, and pending orders and notices.
 
-Each rule is a function of its own in one of the modules beside, and is given this.
+Each rule is a separate function in a neighbouring module and takes this state as an argument.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ class Told:
 
 @dataclass(slots=True)
 class HaltedUnit:
-    """A unit that was interrupted and whose device has still to tell how much was done (X2)."""
+    """An interrupted unit whose device has yet to report how much was done (X2)."""
 
     unit: Behavior
     finished: list[Command]
-    """What of it had been done to its end."""
+    """Its Commands that had been completed."""
     count: int
-    """Of how many Commands it is."""
+    """The number of its Commands."""
 
 
 @dataclass(slots=True)
@@ -44,12 +44,12 @@ class Mediation:
     """One mediation. Times are ms from the run's start.
 
     Args:
-        policy: what decides.
+        policy: the policy that decides.
         table: the robot's Commands.
-        recorder: takes the records; its ``now`` is the instant.
-        bound: after how many loops of another a waiting AB counts as a reaction (E4).
-        absence: after how long (ms) without being sensed the user is absent (K1).
-        patience: how long (ms) others may keep an AB from the speaker (E6); 0 for ever.
+        recorder: collects the records; its ``now`` is the current instant.
+        bound: the number of another's loops after which a waiting AB counts as a reaction (E4).
+        absence: how long (ms) the user has to go unsensed to count as absent (K1).
+        patience: how long (ms) others may keep an AB from the speaker (E6); 0 for no limit.
     """
 
     policy: Policy
@@ -60,7 +60,7 @@ class Mediation:
     patience: int = PATIENCE_MS
     memory: WorkingMemory = field(default_factory=WorkingMemory)
     changed: bool = False
-    """Whether anything has happened since the latest selection that it may depend on."""
+    """Whether anything that may affect selection has happened since the latest one."""
     halted: bool = False
     """Whether the emergency stop is pressed (E5)."""
     orders: list[Order] = field(default_factory=list)
@@ -68,29 +68,29 @@ class Mediation:
     told: deque[Told] = field(default_factory=deque)
     """For the applications."""
     turns: list[tuple[str, Stream]] = field(default_factory=list)
-    """Streams that wait ``suspended`` or have ``resumed``, for their applications to hear (C2)."""
+    """Streams that wait ``suspended`` or have ``resumed``, to notify their applications (C2)."""
     touched: dict[str, Stream] = field(default_factory=dict)
     """Streams that may have ended (C1)."""
     continuing: list[Application] = field(default_factory=list)
-    """Applications one of whose streams stays open for this instant (O3)."""
+    """Applications with a stream that stays open for this instant (O3)."""
     holds: dict[str, int] = field(default_factory=dict)
     """Until when streams are held (X3)."""
     rolling: Behavior | None = None
-    """A Command that leaves the body moving when it gets no next loop (F5)."""
+    """A Command that leaves the body moving unless another loop follows (F5)."""
     started: list[Behavior] = field(default_factory=list)
-    """What the latest selection started."""
+    """The ABs that the latest selection started."""
     resumed: list[Stream] = field(default_factory=list)
-    """Streams that it let go on (C2)."""
+    """The streams that it resumed (C2)."""
     suspensions: int = 0
     """How often streams were suspended, as a counter (S2d)."""
     starved: int = 0
     """How many ABs count as reactions because they waited too long (E4)."""
     starving: int | None = None
-    """When the next AB will have waited for too long (ms, E6)."""
+    """When the next AB will starve (ms, E6)."""
     robot: RobotState = field(default_factory=RobotState)
-    """The robot's state as its devices have told it last (X1)."""
+    """The robot's state as its devices last reported it (X1)."""
     halted_units: dict[str, HaltedUnit] = field(default_factory=dict)
-    """By the part of them whose device has still to tell how much was done (X2)."""
+    """By the part whose device has yet to report how much was done (X2)."""
     maker: Maker = field(init=False)
 
     def __post_init__(self) -> None:
@@ -103,7 +103,7 @@ class Mediation:
 
     @property
     def shared(self) -> bool:
-        """Whether an application must leave the speaker to others after a time (E6)."""
+        """Whether applications must leave the speaker to others after a time (E6)."""
         others = sum(not app.gone for app in self.memory.apps.values()) > 1
         return others and self.patience > 0 and self.policy.floor
 
@@ -117,7 +117,7 @@ class Mediation:
         return self.policy.has(extension)
 
     def tell(self, app: Application, stream: Stream | None, *notices: Notice) -> None:
-        """Tell an application what became of its Commands."""
+        """Notify an application of what became of its Commands."""
         self.told.append(Told(app.name, stream, list(notices)))
 
     def order(self, verb: Verb, ab: Behavior) -> None:
@@ -125,5 +125,5 @@ class Mediation:
         self.orders.append(Order(verb, ab.id, ab.command, app=ab.app.name))
 
     def touch(self, stream: Stream) -> None:
-        """Something has left or entered a stream: it may be over (C1)."""
+        """Note that something has left or entered a stream, which may be over (C1)."""
         self.touched[stream.name] = stream

@@ -1,10 +1,10 @@
 """The mediator: takes requests and ends in, gives orders and notices out.
 
-It has no clock, devices or documents. Whoever drives it calls, at one instant,
-first what has ended, then what has happened, then :meth:`Mediator.select` once
-(rule V3), and drains its orders (for the devices), ``told`` (for the
-applications) and the recorder's records. The rules are functions in the modules
-beside; this calls them.
+It has no clock, devices or documents. At each instant the caller reports first
+what has ended, then what has happened, calls :meth:`Mediator.select` once
+(rule V3), and drains the orders (for the devices), ``told`` (for the
+applications) and the recorder's records. The rules are functions in the
+neighbouring modules, which this module calls.
 """
 
 from __future__ import annotations
@@ -53,10 +53,10 @@ class Mediator:
     # Applications ---------------------------------------------------------------------
 
     def load(self, name: str, kind: str, lang: str = "", order: int | None = None) -> None:
-        """An application starts, which speaks a language if that is known.
+        """An application starts; ``lang`` is its language, if known.
 
-        ``order`` is its place among the declared ones (S2f); by default, behind all that came
-        before.
+        ``order`` is its place among the declared ones (S2f); by default, after all earlier
+        ones.
         """
         before = self.memory.apps.get(name)
         if order is None:
@@ -73,7 +73,7 @@ class Mediator:
             requests.e2(self._all, app, reason)
 
     def request(self, name: str, asked: Request) -> None:
-        """U3, E3: an application asks for Commands."""
+        """U3, E3: an application requests Commands."""
         self._all.changed = True
         requests.u3(self._all, self.memory.apps[name], asked)
 
@@ -93,17 +93,17 @@ class Mediator:
         requests.o3(self._all, self.memory.apps[name], asked)
 
     def open_window(self, told: Told) -> None:
-        """C3: an application begins to handle what it is told."""
+        """C3: an application begins to handle a notice."""
         streams.open_window(self._all, told)
 
     def close_window(self, told: Told) -> None:
-        """C3: it has handled that."""
+        """C3: it has handled the notice."""
         streams.close_window(self._all, told)
 
     # Devices and the user ---------------------------------------------------------------
 
     def ended(self, behavior: str, goal: bool, data: Data, inbound: bool = True) -> bool:
-        """U2: an AB, or one loop of it, has ended by itself; false if it does not run."""
+        """U2: an AB, or one loop of it, has ended by itself; False if it is not running."""
         ab = self.running(behavior)
         if ab is not None:
             self._all.changed = True
@@ -111,7 +111,7 @@ class Mediator:
         return ab is not None
 
     def listening(self, behavior: str) -> None:
-        """A question has been said. One whose state was left ends at once (O3)."""
+        """A question has been asked. If its state was left, it ends at once (O3)."""
         ab = self.running(behavior)
         if ab is not None:
             self._all.changed = ab.listening = True
@@ -119,7 +119,7 @@ class Mediator:
                 endings.delete(self._all, ab, "O3")
 
     def interrupted(self, behavior: str, data: Data) -> None:
-        """X2: a device tells how much it had done of an AB that was interrupted."""
+        """X2: a device reports how much it had done of an interrupted AB."""
         self._all.changed = True
         interruption.interrupted(self._all, behavior, data)
 
@@ -129,11 +129,11 @@ class Mediator:
         endings.answered(self._all, ab, data, rule, serial)
 
     def offered(self) -> Behavior | None:
-        """X8: the question to which is offered what the one that listens refuses, if any."""
+        """X8: the question that is offered what the listening one refuses, if any."""
         return freshness.offered(self._all) if self._all.has("x8") else None
 
     def coming_question(self, name: str) -> Behavior | None:
-        """X10: the question of an application that is asked next, or is being asked."""
+        """X10: the question that an application is asking, or asks next."""
         members = self.memory.apps[name].members.values()
         asking = (one for one in members if one.command and one.command.type == "q-and-a")
         return next((one for one in asking if one.run is not None and not one.silent), None)
@@ -155,7 +155,7 @@ class Mediator:
         emergency.e5(self._all, pressed, resume, serial)
 
     def sees_user(self, yes: bool) -> None:
-        """V4: the camera has come to see the user, or has lost them (for X4 and K1)."""
+        """V4: the camera has found or lost the user (for X4 and K1)."""
         if yes or self.memory.in_view:
             self.senses_user()
         self.memory.in_view = yes
@@ -168,11 +168,11 @@ class Mediator:
     # Time -------------------------------------------------------------------------------
 
     def deadline(self) -> int | None:
-        """The next instant at which :meth:`expire` has something to do (ms), if ever."""
+        """When :meth:`expire` next has something to do (ms), if ever."""
         return failures.deadline(self._all)
 
     def expire(self) -> bool:
-        """U5, E1, X8: end what takes longer than it may; tells whether there was any such."""
+        """U5, E1, X8: end what has taken too long; whether anything had."""
         due = self.deadline()
         if due is None or due > self._all.now:
             return False
@@ -182,7 +182,7 @@ class Mediator:
         return True
 
     def select(self) -> None:
-        """Start everything that may start, then stop what rolls on for nobody (F5)."""
+        """Start everything that may start, then stop the body if it rolls on needlessly (F5)."""
         if not self._all.changed:
             return
         self._all.changed = False
@@ -198,7 +198,7 @@ class Mediator:
 
     @property
     def changed(self) -> bool:
-        """Whether there is something to select from."""
+        """Whether there is anything to select from."""
         return self._all.changed
 
     @property
@@ -213,7 +213,7 @@ class Mediator:
 
     @property
     def told(self) -> deque[Told]:
-        """What applications have still to be told."""
+        """The notices not yet passed to applications."""
         return self._all.told
 
     @property
@@ -222,19 +222,19 @@ class Mediator:
         return self._all.orders
 
     def drain_orders(self) -> list[Order]:
-        """Give the orders made since the last time."""
+        """Return the orders made since the last call."""
         orders, self._all.orders = self._all.orders, []
         return orders
 
     def drain_turns(self) -> list[tuple[str, Stream]]:
-        """Give the streams that wait suspended or have resumed since the last time, with which."""
+        """Return the streams that wait ``suspended`` or have ``resumed`` since the last call."""
         turns, self._all.turns = self._all.turns, []
         return turns
 
     def running(self, behavior: str) -> Behavior | None:
-        """The running AB of that name, if it runs still."""
+        """The AB with that name, if it is still running."""
         return endings.running_as(self.memory, behavior)
 
     def question(self) -> Behavior | None:
-        """The question that runs, if any (V1)."""
+        """The running question, if any (V1)."""
         return endings.question(self.memory)

@@ -1,4 +1,4 @@
-"""Working memory (thesis Figure 4.3): every AB that has been requested and not ended."""
+"""Working memory (thesis Figure 4.3): every AB that has been requested and has not ended."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ class WorkingMemory:
         self.apps: dict[str, Application] = {}
         self.behaviors: dict[str, Behavior] = {}
         self.waiting: dict[str, Behavior] = {}
-        """Those outside of units."""
+        """Those outside units."""
         self.running: dict[str, Behavior] = {}
         self.occupied: dict[str, Behavior] = {}
         self.streams: dict[str, Stream] = {}
@@ -22,14 +22,14 @@ class WorkingMemory:
         self.answered: Stream | None = None
         """A stream with a question that the user has answered since the latest selection (X7)."""
         self.owed: Behavior | None = None
-        """What the asker says to an answer, while it has not started (X7)."""
+        """The asker's response to an answer, until it starts (X7)."""
         self._turns = 0
         self.in_view = False
-        """Whether the camera sees the user, as far as it has told (V4)."""
+        """Whether the camera sees the user, by its latest report (V4)."""
         self.sensed = 0
         """When the user was seen, heard or felt last (ms, K1)."""
         self.absent = False
-        """Whether the user has not been sensed for so long that nobody engages them (K1)."""
+        """Whether the user has gone unsensed for so long that nobody engages them (K1)."""
 
     @property
     def holder(self) -> Stream | None:
@@ -40,8 +40,7 @@ class WorkingMemory:
     def active(self) -> Application | None:
         """The application whose stream is active (S2b, V3).
 
-        That is the floor's; with no floor, of the streams that have not ended the one of which
-        an AB started last.
+        That is the floor's stream or, without a floor, the open stream whose AB started last.
         """
         for stream in reversed(self.floor):
             if stream.open:
@@ -50,7 +49,7 @@ class WorkingMemory:
         return latest.app if latest is not None and turn_of(latest) else None
 
     def add(self, ab: Behavior) -> None:
-        """Take a requested AB in: waiting where nothing is before it, else linked."""
+        """Add a requested AB: waiting if nothing comes before it, else linked."""
         self.behaviors[ab.name] = ab
         ab.app.members[ab.name] = ab
         ab.stream.members[ab.name] = ab
@@ -60,14 +59,14 @@ class WorkingMemory:
             self.wait(ab)
 
     def wait(self, ab: Behavior) -> None:
-        """Let the AB compete. Commands inside a unit compete within it only."""
+        """Let the AB compete. Commands inside a unit compete only within it."""
         ab.state, ab.listening = WAITING, False
         ab.wait.blocked = ("", "")
         if ab.unit is None:
             self.waiting[ab.name] = ab
 
     def start(self, ab: Behavior, now: int) -> None:
-        """Move a waiting AB to the running ones; its devices are occupied from here on."""
+        """Move a waiting AB to the running ones; it now occupies its devices."""
         self.waiting.pop(ab.name, None)
         ab.state = RUNNING
         ab.started = now
@@ -82,7 +81,7 @@ class WorkingMemory:
                 self.occupied[device] = ab
 
     def release(self, ab: Behavior) -> None:
-        """Give back what a running AB occupies."""
+        """Free the devices that a running AB occupies."""
         del self.running[ab.name]
         occupied, unit = self.occupied, ab.unit
         for device in ab.in_order:
@@ -101,7 +100,7 @@ class WorkingMemory:
                     self.occupied.setdefault(device, other)
 
     def remove(self, ab: Behavior) -> None:
-        """Take an AB out of working memory, whatever its state."""
+        """Remove an AB from working memory, whatever its state."""
         name = ab.name
         if ab.state is RUNNING:
             self.release(ab)
@@ -119,7 +118,7 @@ class WorkingMemory:
         return list(app.members.values())
 
     def open(self, stream: Stream) -> None:
-        """A stream begins, or goes on after all."""
+        """Begin a stream, or continue one that was about to end."""
         self.streams[stream.name] = stream
         if stream.engaged:
             self.engaged[stream.name] = stream
@@ -144,9 +143,9 @@ class WorkingMemory:
         return sorted(found, key=lambda other: other.serial)
 
     def unwait(self, ab: Behavior) -> None:
-        """Let a waiting AB be linked again: something has been put before it (X1, X4).
+        """Link a waiting AB again: something has been inserted before it (X1, X4).
 
-        What it waits for from here on is its own application's.
+        From now on it waits for something of its own application.
         """
         del self.waiting[ab.name]
         ab.state = LINKED
@@ -166,5 +165,5 @@ class WorkingMemory:
 
 
 def turn_of(stream: Stream) -> int:
-    """When an AB of the stream started last; 0 of one that has not begun, or has ended."""
+    """When an AB of the stream started last; 0 if the stream has not begun or has ended."""
     return stream.turn if stream.open else 0

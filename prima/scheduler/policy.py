@@ -2,7 +2,7 @@
 
 A policy answers three questions about a waiting AB: where it ranks, whether
 something other than a device keeps it from starting, and whether it holds its
-devices back from lower-ranked ones while it waits. ``prima`` is the thesis;
+devices back from lower-ranked ones while it waits. ``prima`` is the thesis's policy;
 ``fifo``, ``fair``, ``fixed`` and ``none`` are the baselines it is compared with.
 """
 
@@ -18,7 +18,7 @@ from prima.scheduler.memory import WorkingMemory
 from prima.scheduler.rules import Rank, Refusal
 
 Ranked = tuple[Rank, Behavior]
-"""A waiting AB behind its rank."""
+"""A rank with its waiting AB."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,11 +29,11 @@ class Policy:
     floor: bool = True
     """Whether reactions take the floor (F1) and the channel is kept (K1)."""
     exclusive: bool = True
-    """Whether an AB waits for its devices (S1); only ``none`` does without."""
+    """Whether an AB waits for its devices (S1); False only for ``none``."""
     rules: tuple[str, ...] = ("S2a", "X7", "S2b", "E6", "S2c", "S2d", "S2e", "S2f")
     """The name of the rule behind each place of a rank."""
     turning: bool = False
-    """Whether a start changes how other ABs rank."""
+    """Whether starting an AB changes how others rank."""
     extensions: frozenset[str] = frozenset()
     """Which of :data:`EXTENSIONS` are on."""
 
@@ -55,17 +55,17 @@ class Policy:
         )
 
     def ranked(self, found: Iterable[Behavior], memory: WorkingMemory, now: int) -> list[Ranked]:
-        """Waiting ABs behind their ranks, the first one first; no two ranks are equal (S2f)."""
+        """Waiting ABs with their ranks, sorted; no two ranks are equal (S2f)."""
         return sorted(((self.rank(ab, memory, now), ab) for ab in found), key=lambda one: one[0])
 
     def decided(self, winner: Rank, loser: Rank) -> str:
-        """The rule by which one rank goes before another: the last one where nothing differs."""
+        """The rule by which one rank precedes another; the last rule if they are equal."""
         differ = (ours != its for ours, its in zip(winner, loser, strict=True))
         found = (rule for rule, differs in zip(self.rules, differ, strict=True) if differs)
         return next(found, self.rules[-1])
 
     def refusal(self, ab: Behavior, memory: WorkingMemory) -> Refusal | None:
-        """What else than a device keeps the AB from starting (F2, F6, K1, X7)."""
+        """What, other than a device, keeps the AB from starting (F2, F6, K1, X7)."""
         if memory.owed is not None:
             if rules.third_turn(ab, memory):
                 return None
@@ -76,7 +76,7 @@ class Policy:
         return rules.refusal(ab, memory)
 
     def holds_back(self, ab: Behavior, memory: WorkingMemory) -> bool:
-        """S3, E6, X7: whether a waiting AB keeps its devices from those it outranks."""
+        """S3, E6, X7: whether a waiting AB holds its devices back from lower-ranked ones."""
         return ab.reaction is not None or ab.wait.overdue or rules.third_turn(ab, memory)
 
 
@@ -103,14 +103,14 @@ class Fifo(Policy):
 
 @dataclass(frozen=True, slots=True)
 class Fair(Fifo):
-    """Like ``fifo``, but the application goes first that has not had its turn."""
+    """Like ``fifo``, but the application whose last turn is longest ago goes first."""
 
     name: str = "fair"
     turning: bool = True
     rules: tuple[str, ...] = ("fair", "fifo", "S2f")
 
     def rank(self, ab: Behavior, memory: WorkingMemory, now: int) -> Rank:
-        """The application whose turn is longest ago, then the earlier request."""
+        """The application whose last turn is longest ago, then the earlier request."""
         return (ab.app.last_turn, rules.s2e(ab), rules.s2f(ab))
 
 
@@ -155,15 +155,15 @@ _WORDS = [
     for word in ((name, f"{name}:APP") if policy is Fixed else (name,))
 ]
 USAGE = f"{', '.join(_WORDS[:-1])} or {_WORDS[-1]}"
-"""How policies are written, for the help of the command line."""
+"""The syntax of policies, for the command line's help."""
 BASELINES = tuple(name for name in POLICIES if name != "prima")
-"""The policies that ``prima`` is compared with; each is the name of a rule of its records, too."""
+"""The policies that ``prima`` is compared with; each name is also used as a rule in its records."""
 EXTENSIONS = ("x1", "x2", "x3", "x4", "x5", "x6", "x7", "x8", "x9", "x10")
-"""The extensions of ``prima`` (rules X1-X10), each written behind a plus: ``prima+x1+x3``."""
+"""The extensions of ``prima`` (rules X1-X10), each written after a plus: ``prima+x1+x3``."""
 
 
 class UnknownPolicy(UsageError):
-    """No policy or extension has a name; ``meant`` is the one most likely meant for ``word``."""
+    """An unknown policy or extension; ``meant`` is the name most likely meant by ``word``."""
 
     def __init__(self, wrong: str, meant: str, otherwise: str, word: str = "") -> None:
         self.wrong = wrong

@@ -1,4 +1,4 @@
-"""What the mediator itself puts in before an AB: a way back (X1), facing the user (X4), words (X9)."""
+"""What the mediator inserts before an AB: a way back (X1), facing the user (X4), words (X9)."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from prima.scheduler.rules import third_turn
 
 
 def prepare(mediation: Mediation, ab: Behavior) -> bool:
-    """X1, X4, X9: put in what has to come first; true if something was put in."""
+    """X1, X4, X9: insert what has to come first; whether anything was inserted."""
     if ab.inserted or third_turn(ab, mediation.memory):
         return False
     return x1(mediation, ab) or x9(mediation, ab) or x4(mediation, ab)
 
 
 def x1(mediation: Mediation, ab: Behavior) -> bool:
-    """X1: bring the robot's state back on which a suspended stream relies."""
+    """X1: restore the robot's state on which a suspended stream relies."""
     if not (ab.stream.suspended and mediation.has("x1")) or first_of(ab.stream) is not None:
         return False
     own = ab.type.effects if ab.type is not None else frozenset()
@@ -37,7 +37,7 @@ def x4(mediation: Mediation, ab: Behavior) -> bool:
 def x9(mediation: Mediation, ab: Behavior) -> bool:
     """X9: a topic that resumes after others have spoken says so first.
 
-    A reaction and what is wanted ``now`` do not resume it: they begin something else.
+    Reactions and Commands with ``now`` do not resume the topic: they begin something else.
     """
     stream, words = ab.stream, ab.stream.words
     if not stream.words_due or words is None or ab.reaction is not None or wanted_now(ab):
@@ -47,7 +47,7 @@ def x9(mediation: Mediation, ab: Behavior) -> bool:
 
 
 def note_words(mediation: Mediation, ab: Behavior) -> None:
-    """X9: what has started speaks into the pause of every suspended topic, or goes on with one."""
+    """X9: a starting AB speaks into the pause of every suspended topic, or resumes one."""
     if "speaker" in ab.devices:
         for stream in mediation.memory.streams.values():
             if stream.app is not ab.app and stream.suspended and stream.spoken:
@@ -57,7 +57,7 @@ def note_words(mediation: Mediation, ab: Behavior) -> None:
 
 
 def insert(mediation: Mediation, ab: Behavior, commands: list[Command], rule: str) -> bool:
-    """Put Commands between an AB and what it follows, in its stream and in its place."""
+    """Insert Commands between an AB and what it follows, in its stream and with its rank."""
     table, maker = mediation.table, mediation.maker
     before: Behavior | None = None
     for command in commands:
@@ -83,15 +83,15 @@ def insert(mediation: Mediation, ab: Behavior, commands: list[Command], rule: st
 
 
 def put_behind(mediation: Mediation, before: Behavior, ab: Behavior) -> None:
-    """Let a waiting AB wait for another that has been put in."""
+    """Let a waiting AB wait for another that has been inserted."""
     link(before, ab)
     mediation.memory.unwait(ab)
 
 
 def join_first(mediation: Mediation) -> None:
-    """X1, X9: whatever waits in a stream waits for the way back or the words put in, if any are.
+    """X1, X9: ABs that wait in a stream wait for its inserted way back or words, if any.
 
-    What is wanted ``now`` does not: it waits for nothing of its own application (O2).
+    Commands with ``now`` do not: they wait for nothing of their own application (O2).
     """
     if not (mediation.has("x1") or mediation.has("x9")):
         return
@@ -102,11 +102,11 @@ def join_first(mediation: Mediation) -> None:
 
 
 def wanted_now(ab: Behavior) -> bool:
-    """O2: whether it waits for nothing of its own application."""
+    """O2: whether an AB waits for nothing of its own application."""
     return ab.command is not None and ab.command.now
 
 
 def first_of(stream: Stream) -> Behavior | None:
-    """X1, X9: the last of what was put in for a stream to resume with, while it is there."""
+    """X1, X9: the last AB inserted for a stream to resume with, while it is in memory."""
     members = reversed(stream.members.values())
     return next((one for one in members if one.inserted in ("X1", "X9")), None)

@@ -1,4 +1,4 @@
-"""What the mediator records: values in the order in which things were decided."""
+"""What the mediator records, in the order of its decisions."""
 
 from __future__ import annotations
 
@@ -8,24 +8,24 @@ from prima.messages import Cue, Data, Json, Record, line_of
 from prima.scheduler.behavior import Behavior, Stream
 
 LOSERS_NAMED: Final = 8
-"""How many losers of a decision are named; all are counted."""
+"""The maximum number of losers that a decision names; all are counted."""
 
 
 class Recorder:
-    """Collects the records of a run; ``now`` is the instant, in milliseconds."""
+    """Collects the records of a run; ``now`` is the current instant in milliseconds."""
 
     def __init__(self) -> None:
         self.now = 0
         self.extensions: frozenset[str] = frozenset()
-        """Which extensions are on: what they rest on is recorded with a request."""
+        """The extensions that are on: requests record the values they depend on."""
         self.records: list[Record] = []
 
     def add(self, phase: str, actor: str, **fields: Json) -> None:
-        """Record something. Fields that are None are left out when it is written."""
+        """Add a record. Fields that are None are omitted when it is written."""
         self.records.append({"time": self.now, "phase": phase, "actor": actor, **fields})
 
     def event(self, name: str, actor: str, app: str | None, data: Data, serial: int) -> None:
-        """Record an event that has come in."""
+        """Record an inbound event."""
         self.records.append(
             {
                 "time": self.now,
@@ -40,7 +40,7 @@ class Recorder:
         )
 
     def drain(self) -> list[Record]:
-        """Give what was recorded since the last time."""
+        """Return the records made since the last call."""
         records, self.records = self.records, []
         return records
 
@@ -75,11 +75,11 @@ class Recorder:
         self.behavior("start", ab, **fields)
 
     def hold(self, ab: Behavior, rule: str, by: str) -> None:
-        """Record that a waiting AB may not start, and because of what."""
+        """Record that a waiting AB may not start, and why."""
         self.add("hold", "mediator", app=ab.app.name, behavior=ab.id, rule=rule, by=by)
 
     def request(self, ab: Behavior, before: str | None = None) -> None:
-        """Record a request with all that the rules ask of an AB; ``before`` what it was put in."""
+        """Record a request with all that the rules use of an AB; ``before`` is what it precedes."""
         self.behavior(
             "request",
             ab,
@@ -100,7 +100,7 @@ class Recorder:
         )
 
     def _asked_by_extensions(self, ab: Behavior) -> Record:
-        """What the extensions that are on ask of an AB (X2 to X5, X7 to X9)."""
+        """The values of an AB that the enabled extensions use (X2 to X5, X7 to X9)."""
         marks: dict[str, tuple[str, Json]] = {
             "x2": ("restartable", ab.restartable or None),
             "x3": ("hold", ab.stream.hold / 1000 if ab.stream.hold else None),
@@ -122,7 +122,7 @@ class Recorder:
         self.add(phase, "mediator", app=stream.app.name, tree=stream.name, rule=rule, **fields)
 
     def decision(self, winner: Behavior, rule: str, losers: list[str]) -> None:
-        """Record a selection: the rule, who won, who lost, and how many did."""
+        """Record a selection: the rule, the winner, the losers and their number."""
         self.add(
             "decision",
             "mediator",
@@ -135,7 +135,7 @@ class Recorder:
 
 
 def describe(ab: Behavior) -> Record:
-    """Note what the records of an AB have in common, with places for what most of them have."""
+    """Set the fields that an AB's records share, with placeholders for those that most have."""
     ab.told = {
         "time": 0,
         "phase": "",
@@ -155,12 +155,12 @@ def describe(ab: Behavior) -> Record:
 
 
 def shown_cues(cues: tuple[Cue, ...]) -> list[dict[str, Json]]:
-    """Cues as a record has them: the place in the text, and the value under the kind's name."""
+    """Cues as in a record: the place in the text, and the value under the kind's name."""
     return [{"at": cue.at, cue.kind: True if cue.value is None else cue.value} for cue in cues]
 
 
 def _asked_by_author(ab: Behavior) -> Record:
-    """What an AB's element asks: the arguments of its Command, and its line."""
+    """What an AB's element requests: the arguments of its Command, and its line."""
     of = ab.command or ab.group
     fields: Record = {}
     if (command := ab.command) is not None:

@@ -1,4 +1,4 @@
-"""What applications ask for, taken into working memory (O1, O2, O3, U3, U5, E2, E3, X6)."""
+"""Takes applications' requests into working memory (O1, O2, O3, U3, U5, E2, E3, X6)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from prima.scheduler.streams import continue_with, drop_hints, going_on, held_of
 
 
 def u3(mediation: Mediation, app: Application, asked: Request) -> None:
-    """U3: take Commands in as one tree, or refuse them all (E3)."""
+    """U3: accept Commands as one tree, or refuse them all (E3)."""
     x6(mediation, app, asked)
     unit = app.units.get(asked.unit) if asked.unit is not None else None
     try:
@@ -35,7 +35,7 @@ def u3(mediation: Mediation, app: Application, asked: Request) -> None:
 
 
 def _take_in(mediation: Mediation, app: Application, asked: Request, unit: Behavior | None) -> None:
-    """U3: make ABs of Commands that are right, in the stream that they belong to."""
+    """U3: make ABs of valid Commands in the stream to which they belong."""
     first = asked.steps[0].what
     reaction = asked.cause if unit is None else None
     if isinstance(first, Command) and first.now:
@@ -59,7 +59,7 @@ def _take_in(mediation: Mediation, app: Application, asked: Request, unit: Behav
 
 
 def x8(mediation: Mediation, ab: Behavior, asked: Request) -> None:
-    """X8: until when a reaction is worth starting."""
+    """X8: the latest time at which a reaction is still worth starting."""
     if asked.fresh is not None and ab.reaction is not None and mediation.has("x8"):
         ab.stale = mediation.now + asked.fresh
 
@@ -83,7 +83,7 @@ def e3(mediation: Mediation, app: Application, asked: Request, refused: CommandR
 
 
 def x6(mediation: Mediation, app: Application, asked: Request) -> None:
-    """X6: put other Commands in the place of those that the robot lacks."""
+    """X6: substitute other Commands for those that the robot lacks."""
     if not mediation.has("x6"):
         return
     for command, lacking in substitute(asked.steps, mediation.table):
@@ -99,7 +99,7 @@ def x6(mediation: Mediation, app: Application, asked: Request) -> None:
 
 
 def u5(mediation: Mediation, app: Application, asked: OpenUnit) -> None:
-    """U5: a unit that spans questions is requested like an AB of its own."""
+    """U5: a unit that spans questions is requested like a separate AB."""
     stream, parent = place(mediation, app, asked.cause, None)
     if stream.held_until is not None:
         let_go(mediation, stream, "joined")
@@ -125,7 +125,7 @@ def _devices_of(mediation: Mediation, types: tuple[str, ...]) -> frozenset[str]:
 
 
 def e2(mediation: Mediation, app: Application, reason: str) -> None:
-    """E2: an application has ended; what runs finishes, the rest is given back."""
+    """E2: an application has ended: its running ABs finish, the others are removed."""
     app.gone = True
     withdraw(mediation, mediation.memory.of_app(app), "E2")
     drop_hints(mediation, app, None)
@@ -135,7 +135,7 @@ def e2(mediation: Mediation, app: Application, reason: str) -> None:
 
 
 def o3(mediation: Mediation, app: Application, asked: LeaveState) -> None:
-    """O3: the state's Commands that have not started are deleted, its loops end."""
+    """O3: delete the state's Commands that have not started; its loops end."""
     mediation.recorder.add("leave", "mediator", app=app.name, rule="O3", state=asked.state)
     drop_hints(mediation, app, asked.state)
     state = [ab for ab in mediation.memory.of_app(app) if ab.document_state == asked.state]
@@ -160,7 +160,7 @@ def place(
 
 
 def o1(app: Application) -> Behavior | None:
-    """O1: what a Command follows; in a window that is an AB of the window's stream."""
+    """O1: the AB that a Command follows; in a window, an AB of the window's stream."""
     if app.window is not None:
         return app.window.latest()
     latest = app.latest
@@ -168,7 +168,7 @@ def o1(app: Application) -> Behavior | None:
 
 
 def stream_of(mediation: Mediation, app: Application, reaction: int | None) -> Stream:
-    """The stream that a tree without a parent goes on with, or a new one."""
+    """The stream that a tree without a parent continues, or a new one."""
     if reaction is None and app.window is not None:
         return app.window
     return held_of(mediation, app) or app.continuing or mediation.maker.stream(app)
@@ -193,11 +193,11 @@ def o2(
     reaction: int | None,
     unit: Behavior | None,
 ) -> Stream:
-    """O2: cancel this application's trees that want a device of the new Command.
+    """O2: cancel this application's trees that need a device of the new Command.
 
     Returns:
-        The stream that goes on: one of those cancelled, or one that is held (X3). In a
-        window no event has come that such a stream waits for.
+        The stream that goes on: one of those cancelled, or one that is held (X3), though not
+        in a window: no event that such a stream waits for has come.
     """
     devices = mediation.table[command.type].occupied(command.text)
     if unit is not None:

@@ -1,4 +1,4 @@
-"""What a stream's next behaviours rely on, read off what its Commands have done (rule X1)."""
+"""The state that a stream's next behaviours rely on, derived from its Commands (rule X1)."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from prima.language.commands import CommandType
 from prima.messages import Command, Data
 
 FAR = 0.5
-"""How far (m) the robot may stand from where it stood before it goes back."""
+"""The robot goes back if it is farther (m) than this from where it was."""
 TURNED = 15.0
-"""How many degrees it may be turned away before it turns back; its head, too."""
+"""The robot, or its head, turns back if it is turned away by more degrees than this."""
 
 Pose = tuple[float, float, float]
 """Metres east and north on the map, degrees counter-clockwise from east."""
@@ -22,13 +22,13 @@ Head = tuple[float, float]
 
 @dataclass(slots=True)
 class RobotState:
-    """The robot's state as its devices have told it last."""
+    """The robot's state as its devices last reported it."""
 
     pose: Pose | None = None
     head: Head = (0.0, 0.0)
 
     def moved(self, row: CommandType, command: Command, data: Data) -> None:
-        """Take in what a Command's end tells."""
+        """Update the state from what a Command reports at its end."""
         pose = pose_of(data)
         if pose is not None:
             self.pose = pose
@@ -38,18 +38,18 @@ class RobotState:
 
 @dataclass(slots=True)
 class Effects:
-    """What the Commands of a stream have brought about: where it stands, looks, and its head."""
+    """What a stream's Commands have brought about: the robot's place, direction and head angles."""
 
     position: tuple[float, float] | None = None
     heading: float | None = None
     human: bool = False
-    """Whether it was turned to the human."""
+    """Whether the robot was turned to the human."""
     head: Head | None = None
     body: RobotState = field(default_factory=RobotState)
-    """The robot's state when it had been turned to them."""
+    """The robot's state once it had turned to them."""
 
     def add(self, row: CommandType, command: Command, data: Data, body: RobotState) -> None:
-        """A Command of the stream has ended, or one loop of it."""
+        """Take in that a Command of the stream, or one loop of it, has ended."""
         pose, effects = pose_of(data), row.effects
         if "position" in effects and pose is not None:
             self.position, self.heading, self.human = pose[:2], None, False
@@ -63,7 +63,7 @@ class Effects:
             self.head = head_of(command)
 
     def missing(self, own: frozenset[str], body: RobotState) -> list[Command]:
-        """The Commands that bring back what a Command of ``own`` effects relies on."""
+        """The Commands that restore the state that a Command with the effects ``own`` needs."""
         if "position" in own or "follow" in own:
             return []
         turns = not {"direction", "human"} & own
@@ -76,7 +76,7 @@ class Effects:
         return made
 
     def _missing_place(self, turns: bool, pose: Pose | None) -> list[Command]:
-        """The way back where the robot is elsewhere, else the turn if it looks elsewhere."""
+        """The way back if the robot is elsewhere, else the turn if it looks elsewhere."""
         where = self.position
         if where is not None and pose is not None and math.dist(where, pose[:2]) > FAR:
             return [_go(where, self.heading if turns else None)]
@@ -114,12 +114,12 @@ def _apart(head: Head, other: Head) -> bool:
 
 
 def difference(angle: float, other: float) -> float:
-    """The way from ``other`` to ``angle``, between -180 and 180 degrees."""
+    """The difference from ``other`` to ``angle``, between -180 and 180 degrees."""
     return (angle - other + 180.0) % 360.0 - 180.0
 
 
 def pose_of(data: Data) -> Pose | None:
-    """The pose that a device tells at a Command's end, if it does."""
+    """The pose that a device reports at a Command's end, if any."""
     if "x" not in data:
         return None
     values = [data.get(name) for name in ("x", "y", "heading")]

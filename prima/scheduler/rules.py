@@ -1,7 +1,7 @@
 """The rules of selection (S2, E6, F2, F3, F6, K1), each in one function named after it.
 
-``s2*`` and ``e6`` rank an AB: the smaller goes first. The others say what keeps a waiting AB from
-starting, as a :data:`Refusal`, or None.
+``s2*`` and ``e6`` rank an AB: the smallest goes first. The others return what keeps a waiting AB
+from starting as a :data:`Refusal`, or None.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from prima.scheduler.behavior import GONE, LINKED, RUNNING, WAITING, Behavior, S
 from prima.scheduler.memory import WorkingMemory
 
 Refusal = tuple[str, str]
-"""The rule that keeps an AB from starting, and the AB or stream for whose sake."""
+"""The rule that keeps an AB from starting, and the AB or stream that it protects."""
 Rank = tuple[Any, ...]
-"""Where a waiting AB ranks, a place for each rule of a policy: the smallest goes first."""
+"""A waiting AB's rank, with a place for each rule of a policy: the smallest goes first."""
 NO_REACTION = (1, 0, 0)
 
 
@@ -31,26 +31,26 @@ def s2b(ab: Behavior, memory: WorkingMemory) -> tuple[int, int, int]:
 
 
 def e6(ab: Behavior, memory: WorkingMemory, now: int) -> int:
-    """Then what others have kept from the speaker for too long, after what follows an answer."""
+    """Then ABs kept from the speaker for too long, after those that follow an answer."""
     if not ab.wait.overdue:
         return 1
     return 1 if any(acknowledges(other, now) for other in memory.waiting.values()) else 0
 
 
 def acknowledges(ab: Behavior, now: int) -> bool:
-    """E6: whether it is what a user hears who has just answered, and no further question."""
+    """E6: whether an AB says something, other than a question, to a user who has just answered."""
     asks = ab.type is not None and ab.asks
     return ab.stream.answered == now and ab.freed == now and "speaker" in ab.devices and not asks
 
 
 def third_turn(ab: Behavior, memory: WorkingMemory) -> bool:
-    """X7: whether it is what the asker owes to an answer, or comes before that."""
+    """X7: whether an AB is the asker's response to an answer, or comes before it."""
     owed = memory.owed
     return owed is not None and (ab is owed or ab in before(owed, memory))
 
 
 def before(ab: Behavior, memory: WorkingMemory) -> list[Behavior]:
-    """All that has to end before an AB may start."""
+    """All ABs that have to end before this one may start."""
     found: list[Behavior] = []
     names = [*ab.waits_for]
     while names:
@@ -62,10 +62,10 @@ def before(ab: Behavior, memory: WorkingMemory) -> list[Behavior]:
 
 
 def x7(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
-    """X7: nobody speaks between a user's answer and what the asker says to it.
+    """X7: nobody speaks between a user's answer and the asker's response.
 
-    Once that waits, it holds the speaker back itself (S3). Where something runs on the devices of
-    what comes before it, nobody waits for that.
+    Once the response waits, it holds back the speaker itself (S3). If the devices of an AB that
+    comes before it are occupied, nobody waits for it.
     """
     owed = memory.owed
     if owed is None or owed.state is not LINKED or "speaker" not in ab.devices:
@@ -76,14 +76,14 @@ def x7(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
 
 
 def aside(ab: Behavior, memory: WorkingMemory) -> bool:
-    """X7: whether it starts though another application holds the floor, and does not take it."""
+    """X7: whether an AB starts though another application holds the floor, without taking it."""
     return third_turn(ab, memory) and f2(ab, memory) is not None
 
 
 def keeps_speaker(ab: Behavior, memory: WorkingMemory) -> bool:
-    """E6: whether another application keeps a waiting AB from the speaker, and no rule does.
+    """E6: whether another application, and not a rule, keeps a waiting AB from the speaker.
 
-    A floor (F2) and a channel (K1) are rules; a topic between two utterances (F6) is not.
+    A floor (F2) and a channel (K1) count as rules; a topic between two utterances (F6) does not.
     """
     if "speaker" not in ab.devices or ab.reaction is not None:
         return False
@@ -94,12 +94,12 @@ def keeps_speaker(ab: Behavior, memory: WorkingMemory) -> bool:
 
 
 def s2c(ab: Behavior, now: int) -> int:
-    """Then what follows an AB that has ended in this instant."""
+    """Then ABs that follow one that ended in this instant."""
     return 0 if ab.freed == now else 1
 
 
 def s2d(ab: Behavior) -> int:
-    """Then the stream suspended last; those that are not come after them."""
+    """Then the stream suspended last; streams that are not suspended come after."""
     return -ab.stream.place
 
 
@@ -114,15 +114,15 @@ def s2f(ab: Behavior) -> tuple[int, int]:
 
 
 def refusal(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
-    """The first rule that keeps a waiting AB from starting, beside its devices."""
+    """The first rule, other than those on devices, that keeps a waiting AB from starting."""
     return f2(ab, memory) or f6(ab, memory) or k1(ab, memory)
 
 
 def outranks(priority: int, stream: Stream, memory: WorkingMemory) -> bool:
-    """F2: whether a priority is higher than that of all that the floor's stream has.
+    """F2: whether a priority is higher than that of all ABs in the floor's stream.
 
-    A way back that X1 has put in and K1 keeps counts as itself: else the floor's stream
-    would wait for the one that engages the user, and that one for the floor.
+    A way back that X1 inserted and K1 keeps waiting counts as itself: otherwise the floor's
+    stream would wait for the one that engages the user, and that one for the floor.
     """
     contending = stream.contending()
     ways = [ab for ab in stream.members.values() if ab.inserted and not ab.dormant]
@@ -132,7 +132,7 @@ def outranks(priority: int, stream: Stream, memory: WorkingMemory) -> bool:
 
 
 def f2(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
-    """Another application's floor lets start a reaction to another event, or a higher priority."""
+    """Another application's floor admits only a reaction to another event or a higher priority."""
     holder = memory.holder
     if holder is None or holder.app is ab.app:
         return None
@@ -143,10 +143,10 @@ def f2(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
 
 
 def f3(ab: Behavior, memory: WorkingMemory) -> bool:
-    """Whether what starts by its priority while another application holds the floor takes it.
+    """Whether an AB that starts by its priority takes the floor from another application.
 
-    It does if it needs a device of what runs or waits of the floor's stream, or of what
-    something was put in for (X1, X4); else it runs beside it.
+    It does if it needs a device of a running or waiting AB of the floor's stream, or of an AB
+    for which something was inserted (X1, X4); else it runs beside it.
     """
     holder = memory.holder
     if holder is None or holder.app is ab.app:
@@ -156,7 +156,7 @@ def f3(ab: Behavior, memory: WorkingMemory) -> bool:
 
 
 def f6(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
-    """A topic is not spoken into: its speaker is kept between two of its utterances."""
+    """A topic is not interrupted: its speaker is reserved between two of its utterances."""
     if "speaker" not in ab.devices or ab.reaction is not None or ab.stream is memory.holder:
         return None
     for other in memory.running.values():
@@ -167,7 +167,7 @@ def f6(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
 
 
 def speaks_next(ab: Behavior) -> bool:
-    """F6: whether a speaking AB is linked behind this one, through none that works in loops."""
+    """F6: whether a speaking AB is linked behind this one, with no looping AB in between."""
     return any(
         child.state is not GONE
         and ("speaker" in child.devices or (not child.feedback and speaks_next(child)))
@@ -176,7 +176,7 @@ def speaks_next(ab: Behavior) -> bool:
 
 
 def k1(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
-    """What leaves the user waits while another application engages them."""
+    """ABs that leave the user wait while another application engages them."""
     if not ab.leaves:
         return None
     for stream in memory.engaged.values():
@@ -186,10 +186,10 @@ def k1(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
 
 
 def engages(stream: Stream, memory: WorkingMemory) -> bool:
-    """K1: whether a stream in which an AB has engaged the user does so still.
+    """K1: whether a stream in which an AB has engaged the user still engages them.
 
-    It does not while all that it does leaves the user, nor, unless it searches or tracks,
-    while the user is absent.
+    It does not while all its ABs leave the user nor, unless it searches or tracks, while the
+    user is absent.
     """
     contending = stream.contending()
     if memory.absent and not any(ab.feedback and ab.engages for ab in contending):
@@ -198,7 +198,7 @@ def engages(stream: Stream, memory: WorkingMemory) -> bool:
 
 
 def x5(ab: Behavior, memory: WorkingMemory) -> bool:
-    """Whether the floor's stream does nothing but a motion that this one can carry."""
+    """Whether the floor's stream does nothing but a motion with which this AB can be composed."""
     holder = memory.holder
     if holder is None or ab.motion != "free":
         return False

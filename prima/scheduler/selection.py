@@ -19,7 +19,7 @@ COMPOSED = {"free", "faithful"}
 
 
 def select(mediation: Mediation) -> None:
-    """Start what may start, in the order of S2, until nothing more may."""
+    """Start the ABs that may start, in the order of S2, until none is left."""
     mediation.started, mediation.resumed = [], []
     memory = mediation.memory
     count_waits(mediation)
@@ -33,9 +33,9 @@ def select(mediation: Mediation) -> None:
 
 
 def s4(mediation: Mediation) -> bool:
-    """S2, S4: go through the waiting ABs once; true if another pass may find one that may start.
+    """S2, S4: go through the waiting ABs once; whether another pass may find more to start.
 
-    All rank as they did in the beginning (S2), until a start changes that: it ends the pass.
+    The ranks are those at the beginning (S2); a start that changes them ends the pass.
     """
     policy, memory = mediation.policy, mediation.memory
     join_first(mediation)
@@ -62,7 +62,7 @@ def s4(mediation: Mediation) -> bool:
 
 
 def _wait_for_devices(mediation: Mediation, ab: Behavior, held: Held) -> Refusal | None:
-    """S1, S3: what keeps a device from the AB, which holds its own back while it waits."""
+    """S1, S3: what keeps a device from the AB, which holds its devices back while it waits."""
     refusal = s1(mediation, ab) or s3(mediation, ab, held)
     if refusal is None:
         return None
@@ -74,7 +74,7 @@ def _wait_for_devices(mediation: Mediation, ab: Behavior, held: Held) -> Refusal
 
 
 def s1(mediation: Mediation, ab: Behavior) -> Refusal | None:
-    """S1: a running AB occupies one of the devices, but for a motion to be composed with (X5)."""
+    """S1: a running AB, except a motion to be composed with (X5), occupies one of the devices."""
     if not mediation.policy.exclusive:
         return None
     other = mediation.memory.conflict(ab)
@@ -106,7 +106,7 @@ def in_the_way(mediation: Mediation, ab: Behavior) -> list[Behavior]:
 
 
 def able(mediation: Mediation, ranked: list[Ranked], held: Held) -> list[Ranked]:
-    """Those of waiting ABs that nothing keeps from starting (S1, S3, F2, F6, K1)."""
+    """The waiting ABs that nothing keeps from starting (S1, S3, F2, F6, K1)."""
     found, held = [], dict(held)
     for one in ranked:
         ab = one[1]
@@ -119,13 +119,13 @@ def able(mediation: Mediation, ranked: list[Ranked], held: Held) -> list[Ranked]
 
 
 def _hold(mediation: Mediation, ab: Behavior, refusal: Refusal) -> None:
-    """Record why a waiting AB may not start, where that has changed."""
+    """Record why a waiting AB may not start, if the reason has changed."""
     rule, by = refusal
     before, ab.wait.blocked = ab.wait.blocked, refusal
     if before == refusal:
         return
     if before[0] == rule and before[1].partition(".")[0] == by.partition(".")[0]:
-        return  # the next loop of the same feedback Command is no news
+        return  # only the next loop of the same feedback Command
     mediation.recorder.hold(ab, rule, by)
 
 
@@ -133,17 +133,17 @@ def _hold(mediation: Mediation, ab: Behavior, refusal: Refusal) -> None:
 
 
 def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], held: Held) -> bool:
-    """Start an AB and record why; true when others rank otherwise now.
+    """Start an AB and record why; whether the ranks of others have changed.
 
     Args:
         mediation: what is shared.
         rank: the AB's.
         ab: the AB.
-        lower: those that rank below it.
-        held: devices that those above it hold back.
+        lower: the ABs that rank below it.
+        held: the devices that ABs above it hold back.
     """
     policy, memory = mediation.policy, mediation.memory
-    # What takes no device and no floor keeps nobody from starting.
+    # An AB that takes no device and no floor keeps no other from starting.
     taking = bool(ab.devices) or ab.reaction is not None
     rivals = able(mediation, lower, held) if taking else []
     composed = mediation.has("x5") and rules.x5(ab, memory)
@@ -166,7 +166,7 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
 def _outdone(
     mediation: Mediation, rivals: list[Ranked], ab: Behavior, lower: list[Ranked], held: Held
 ) -> list[Ranked]:
-    """Of those that could have started in an AB's place, those that cannot beside it."""
+    """The ABs that could have started instead of an AB and cannot start beside it."""
     if not mediation.has("x5") and all(other.devices & ab.devices for _, other in rivals):
         return rivals
     still = {other.name for _, other in able(mediation, lower, held)}
@@ -174,7 +174,7 @@ def _outdone(
 
 
 def _admitted_by(mediation: Mediation, ab: Behavior, composed: bool) -> str:
-    """The rule by which an AB may start with which nothing competes."""
+    """The rule by which an AB without competitors may start."""
     policy, holder = mediation.policy, mediation.memory.holder
     if not policy.exclusive:
         return "none"
@@ -188,7 +188,7 @@ def _admitted_by(mediation: Mediation, ab: Behavior, composed: bool) -> str:
 
 
 def run(mediation: Mediation, ab: Behavior, aside: bool = False) -> None:
-    """Let an AB run; one that runs ``aside`` (X7) does not resume its stream."""
+    """Run an AB; one that runs ``aside`` (X7) does not resume its stream."""
     memory, now = mediation.memory, mediation.now
     if not mediation.policy.exclusive:
         _collide(mediation, ab)
@@ -215,9 +215,9 @@ def run(mediation: Mediation, ab: Behavior, aside: bool = False) -> None:
 
 
 def _note_start(mediation: Mediation, ab: Behavior, aside: bool) -> None:
-    """F6, K1, C2, X4: what the start of an AB changes for itself and its stream."""
+    """F6, K1, C2, X4: what an AB's start changes for itself and its stream."""
     stream = ab.stream
-    ab.connect = False  # its first word is said, though X7 may have let it go before the turn
+    ab.connect = False  # its first word is said, though X7 may have let it start before the turn
     if ab.command is not None and "speaker" in ab.devices:
         stream.spoken = True
     if ab.engages:
@@ -237,7 +237,7 @@ def _collide(mediation: Mediation, ab: Behavior) -> None:
 
 
 def f5(mediation: Mediation) -> None:
-    """F5: stop a body that gets no next loop, unless something else takes the wheels."""
+    """F5: stop the body if no further loop follows, unless something else takes the wheels."""
     ab, mediation.rolling = mediation.rolling, None
     if ab is not None and "locomotion" not in mediation.memory.occupied:
         mediation.order("stop", ab)
@@ -266,7 +266,7 @@ def u4(mediation: Mediation, unit: Behavior) -> None:
 
 
 def advance(mediation: Mediation, unit: Behavior) -> None:
-    """U4, U5: start the unit's own ABs in their order, where their devices are free."""
+    """U4, U5: start the unit's own ABs in their order as far as their devices are free."""
     for ab in list(unit.inner.values()):
         occupied = mediation.policy.exclusive and mediation.memory.conflict(ab) is not None
         if ab.state is WAITING and not occupied:

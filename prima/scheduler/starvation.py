@@ -1,7 +1,7 @@
-"""How long others keep an AB waiting: what starves is reported, and what cannot speak has its turn.
+"""Waits of ABs: starving ones are reported, and those that want to speak get a turn.
 
-The mediator counts between selections, in which nothing changes. What follows from E6 says
-:func:`prima.scheduler.rules.e6`.
+The mediator counts the time between selections, in which nothing changes. The ranking that
+follows from E6 is in :func:`prima.scheduler.rules.e6`.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from prima.scheduler.behavior import Behavior, application
 from prima.scheduler.mediation import Mediation
 
 STARVING_LOOPS: Final = 20
-"""After how many loops of another's feedback Command a waiting AB is reported (E4)."""
+"""A waiting AB is reported after this many loops of another's feedback Command (E4)."""
 
 
 def e4(mediation: Mediation, ab: Behavior) -> bool:
-    """E4: count the loops that other applications' equal ABs have waited.
+    """E4: count the loops that other applications' ABs of equal priority have waited.
 
     Returns:
-        Whether one has waited so long that it counts as a reaction from now on.
+        Whether an AB has waited so long that it counts as a reaction from now on.
     """
     if not ab.feedback or ab.loop <= 1:
         return False
@@ -31,7 +31,7 @@ def e4(mediation: Mediation, ab: Behavior) -> bool:
         wait = other.wait
         wait.loops += 1
         if wait.loops == STARVING_LOOPS:
-            wait.starves = True  # it need not be told again
+            wait.starves = True  # E6 need not report it again
             _report(mediation, other, "E4", ab.id, loop=STARVING_LOOPS)
         if bound is not None and wait.loops >= bound:
             bounded.append(other)
@@ -48,7 +48,7 @@ def _report(mediation: Mediation, ab: Behavior, rule: str, by: str, **fields: ob
 
 
 def count_waits(mediation: Mediation) -> None:
-    """E6: count what has passed since the selection before, and report who starves."""
+    """E6: add the time since the previous selection, and report starving ABs."""
     most, now = mediation.patience, mediation.now
     if not (most and mediation.policy.floor):
         return
@@ -66,7 +66,7 @@ def count_waits(mediation: Mediation) -> None:
 
 
 def note_waits(mediation: Mediation) -> None:
-    """E6: note who is kept waiting by whom from here on, and when the next one will starve."""
+    """E6: note which AB now waits because of which other, and when the next one will starve."""
     if not (mediation.patience and mediation.policy.floor):
         return
     due = [_due(mediation, ab) for ab in mediation.memory.waiting.values()]
@@ -74,7 +74,7 @@ def note_waits(mediation: Mediation) -> None:
 
 
 def _due(mediation: Mediation, ab: Behavior) -> int | None:
-    """When a waiting AB will have waited for too long (ms), if another application keeps it."""
+    """When a waiting AB will starve (ms), if another application keeps it waiting."""
     wait, now = ab.wait, mediation.now
     wait.kept_since = -1
     if application(wait.blocked[1]) in ("", ab.app.name):
@@ -88,7 +88,7 @@ def _due(mediation: Mediation, ab: Behavior) -> int | None:
 
 
 def forget_waits(mediation: Mediation) -> None:
-    """E5: in an emergency nobody keeps anybody waiting."""
+    """E5: in an emergency no application keeps another waiting."""
     count_waits(mediation)
     for ab in mediation.memory.waiting.values():
         ab.wait.since = ab.wait.kept_since = -1

@@ -8,7 +8,7 @@ from prima.scheduler.mediation import Mediation, Told
 
 
 def opened(mediation: Mediation, stream: Stream) -> Stream:
-    """Let a stream begin, or go on after all."""
+    """Begin a stream, or continue one that was about to end."""
     if stream.name not in mediation.memory.streams:
         mediation.memory.open(stream)
     mediation.touch(stream)
@@ -16,15 +16,15 @@ def opened(mediation: Mediation, stream: Stream) -> Stream:
 
 
 def going_on(streams: list[Stream]) -> Stream:
-    """O2, O3: of streams that are cancelled, the one that goes on.
+    """O2, O3: the one of several cancelled streams that goes on.
 
-    That is the one that runs, or of which an AB started last; else the latest.
+    That is the running one or, failing that, the one whose AB started last; else the latest.
     """
     return max(reversed(streams), key=lambda one: (one.runs, one.turn))
 
 
 def continue_with(mediation: Mediation, app: Application, stream: Stream) -> None:
-    """O3: what the application asks for in this instant outside of windows goes on with it."""
+    """O3: what the application requests in this instant outside windows continues the stream."""
     app.continuing = stream
     mediation.continuing.append(app)
 
@@ -48,7 +48,7 @@ def open_window(mediation: Mediation, told: Told) -> None:
 
 
 def close_window(mediation: Mediation, told: Told) -> None:
-    """C3: the application has gone to wait for something else."""
+    """C3: the application now waits for something else."""
     mediation.changed = True
     mediation.memory.apps[told.app].window = None
     if told.stream is not None:
@@ -60,7 +60,7 @@ def close_window(mediation: Mediation, told: Told) -> None:
 
 
 def f1(mediation: Mediation, ab: Behavior, reaction: int | None, beside: bool) -> bool:
-    """F1, F3: a reaction, or what starts by F2, takes the floor; true if it has done so."""
+    """F1, F3: a reaction, or an AB that starts by F2, takes the floor; whether it did."""
     stream, memory = ab.stream, mediation.memory
     if reaction is not None:
         stream.causes.add(reaction)
@@ -97,7 +97,7 @@ def suspend_others(mediation: Mediation, stream: Stream) -> None:
 
 
 def resume(mediation: Mediation, stream: Stream, ab: Behavior) -> None:
-    """C2: a suspended stream goes on with an AB."""
+    """C2: a suspended stream resumes with an AB."""
     stream.suspended = False
     mediation.resumed.append(stream)
     if stream.waits:
@@ -107,7 +107,7 @@ def resume(mediation: Mediation, stream: Stream, ab: Behavior) -> None:
 
 
 def note_turns(mediation: Mediation) -> None:
-    """C2: a suspended stream waits from when another application keeps an AB of it waiting."""
+    """C2: a suspended stream waits once another application keeps one of its ABs waiting."""
     for stream in mediation.resumed:
         if not stream.suspended:
             stream.place = 0
@@ -121,14 +121,14 @@ def note_turns(mediation: Mediation) -> None:
 
 
 def c1(mediation: Mediation) -> None:
-    """C1, F3: streams that nothing keeps open end, and hold no floor then."""
+    """C1, F3: end the streams that nothing keeps open; they give up the floor."""
     touched, mediation.touched = mediation.touched, {}
     kept: list[Stream] = []
     for stream in touched.values():
         if stream.open or stream.name not in mediation.memory.streams:
             continue
         if stream.hold and not stream.app.gone:
-            kept.append(stream)  # after those that end have given the floor back
+            kept.append(stream)  # after ending streams have given the floor back
         else:
             _end(mediation, stream)
     for stream in kept:
@@ -149,7 +149,7 @@ def _end(mediation: Mediation, stream: Stream) -> None:
 
 
 def x3(mediation: Mediation, stream: Stream, asked: Request) -> None:
-    """X3: the latest request of a stream says whether it is held afterwards."""
+    """X3: a stream's latest request determines whether it is held afterwards."""
     if stream.held_until is not None:
         let_go(mediation, stream, "joined")
     if mediation.has("x3"):
@@ -168,7 +168,7 @@ def keep_open(mediation: Mediation, stream: Stream) -> None:
 
 
 def let_go(mediation: Mediation, stream: Stream, outcome: str) -> None:
-    """X3: the stream is held no longer."""
+    """X3: the stream is no longer held."""
     stream.hold = stream.held_until = None
     del mediation.holds[stream.name]
     mediation.touch(stream)
@@ -176,7 +176,7 @@ def let_go(mediation: Mediation, stream: Stream, outcome: str) -> None:
 
 
 def drop_hints(mediation: Mediation, app: Application, state: int | None) -> None:
-    """X3: a state that is left, or an application that ends, holds nothing any more."""
+    """X3: release what a state that is left, or an application that ends, has held."""
     if not mediation.has("x3"):
         return
     for stream in mediation.memory.streams.values():
@@ -188,6 +188,6 @@ def drop_hints(mediation: Mediation, app: Application, state: int | None) -> Non
 
 
 def held_of(mediation: Mediation, app: Application) -> Stream | None:
-    """X3: the application's stream that is held, the latest of several."""
+    """X3: the application's held stream; of several, the latest."""
     held = (mediation.memory.streams[name] for name in reversed(mediation.holds))
     return next((stream for stream in held if stream.app is app), None)

@@ -1,4 +1,4 @@
-"""X7: nobody speaks between a user's answer and what the asker says to it."""
+"""X7: nobody speaks between a user's answer and the asker's response."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from prima.scheduler.rules import before, third_turn
 
 
 def owe(mediation: Mediation) -> None:
-    """X7: when a question was answered, note what its asker says to that."""
+    """X7: when a question has been answered, note its asker's response."""
     memory = mediation.memory
     stream, memory.answered = memory.answered, None
     if stream is not None and mediation.has("x7"):
@@ -17,9 +17,9 @@ def owe(mediation: Mediation) -> None:
 
 
 def acknowledgement(stream: Stream, memory: WorkingMemory) -> Behavior | None:
-    """The stream's next utterance, if that is soon over and comes after what is soon over.
+    """The stream's next utterance, if it and everything before it are short.
 
-    Another question is none: it lasts as long as the user takes.
+    A further question does not count: it lasts as long as the user takes.
     """
     coming = (ab for ab in stream.members.values() if ab.state not in (GONE, RUNNING))
     first = next((ab for ab in coming if ab.unit is None and "speaker" in ab.devices), None)
@@ -29,9 +29,9 @@ def acknowledgement(stream: Stream, memory: WorkingMemory) -> Behavior | None:
 
 
 def goes_before(ab: Behavior, reaction: int | None, memory: WorkingMemory) -> int:
-    """X2: the event to which an AB that starts reacts; only a reaction to a later one interrupts it.
+    """X2: the event to which a starting AB reacts; only a reaction to a later one interrupts it.
 
-    What is said to an answer goes before all reactions that wait (X7).
+    The response to an answer goes before all waiting reactions (X7).
     """
     reactions = [-1 if reaction is None else reaction]
     if third_turn(ab, memory):

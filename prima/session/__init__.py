@@ -1,7 +1,7 @@
-"""Applications and one mediator, wired: inbound values in, orders out.
+"""Applications connected to one mediator: inbound values in, orders out.
 
-A :class:`Session` owns no clock, thread or file. What it does is a function of its documents and of
-what happens, so recording the inbound values is a journal, and feeding them again a replay.
+A :class:`Session` owns no clock, thread or file. Its output is a function of its documents and of
+its inbound values, so recording these yields a journal, and feeding them in again a replay.
 """
 
 from __future__ import annotations

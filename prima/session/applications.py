@@ -1,4 +1,4 @@
-"""The applications of a run: their interpreters, which of them live, what fails in one alone."""
+"""The applications of a run: their interpreters, which are live, and how errors stay in one."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ class Applications:
     """The applications of a run, in declared order.
 
     Args:
-        documents: what they run.
+        documents: the documents that they run.
         commands: the robot's Commands, by their names.
-        date: when the run begins by its own calendar.
-        isolate: whose code gets a process of its own.
+        date: when the run begins, by its own calendar.
+        isolate: whose code runs in a process of its own.
     """
 
     def __init__(
@@ -48,12 +48,12 @@ class Applications:
         self.order = {name: index for index, name in enumerate(self.named)}
         self.loaded: set[str] = set()
         self.alive: list[AnyApp] | None = []
-        """Those that are loaded and not over, in declared order; None if to be looked up."""
+        """Those that are loaded and not over, in declared order; None if to be determined anew."""
         self.defects: list[Exception] = []
-        """What has gone wrong in interpreters themselves: each has ended its application."""
+        """Errors in the interpreters themselves: each has ended its application."""
 
     def _made(self, document: AnyDocument) -> AnyApp:
-        """The interpreter of a document; one for which no engine can be had ends at its start."""
+        """The interpreter of a document; if its engine is unavailable, it ends at its start."""
 
         def make() -> AnyApp:
             return interpreter_of(document, self._arguments, self._began, self._engines)
@@ -64,11 +64,11 @@ class Applications:
             return self._engines.without(error, make)
 
     def close(self) -> None:
-        """Give back the processes in which code was evaluated."""
+        """End the processes in which code was evaluated."""
         self._engines.close()
 
     def drain_visits(self) -> list[ElementVisit]:
-        """What each application came to since the last time, one application after the other."""
+        """What each application entered since the last call, one application after the other."""
         found: list[ElementVisit] = []
         for app in self.named.values():
             found += app.visits
@@ -78,7 +78,7 @@ class Applications:
     # Driving ------------------------------------------------------------------
 
     def load(self, name: str) -> AnyApp | None:
-        """Put an application in, anew if it is over; None if it is there already."""
+        """Load an application, anew if it is over; None if it is already loaded."""
         app = self.named[name]
         if name in self.loaded:
             if not app.over:
@@ -91,7 +91,7 @@ class Applications:
         return app
 
     def there(self, name: str) -> AnyApp | None:
-        """The application of a name, if it has been put in; it may be over."""
+        """The application of that name, if it has been loaded; it may be over."""
         return self.named.get(name) if name in self.loaded else None
 
     def living(self) -> list[AnyApp]:
@@ -103,20 +103,20 @@ class Applications:
         return self.alive
 
     def alone(self, name: str) -> list[AnyApp]:
-        """The application of a name, if it lives."""
+        """The application of that name, if it is live."""
         app = self.there(name)
         return [app] if app is not None and not app.over else []
 
     @contextmanager
     def contained(self, app: AnyApp) -> Iterator[None]:
-        """E2: what goes wrong in an application's interpreter ends that application alone."""
+        """E2: an error in an application's interpreter ends that application alone."""
         try:
             yield
         except Exception as error:
             self.fail(app, error)
 
     def fail(self, app: AnyApp, error: Exception) -> None:
-        """End an application by an error."""
+        """End an application with an error."""
         if not isinstance(error, EngineLost | GoOut):
             self.defects.append(error)
         app.fail(error)
@@ -125,7 +125,7 @@ class Applications:
 def interpreter_of(
     document: AnyDocument, arguments: Mapping[str, frozenset[str]], began: int, engines: Engines
 ) -> AnyApp:
-    """The interpreter of a document, of whichever language it is, in a run that began then."""
+    """The interpreter of a document in either language, for a run that began at ``date``."""
     app: AnyApp
     if isinstance(document, Document):
         app = Interpreter(document, arguments, engines)

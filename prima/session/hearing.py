@@ -1,4 +1,4 @@
-"""What the user says: whom it answers (V1), also too late (X10) or too early (X8)."""
+"""What the user says, and whose question it answers (V1), even too late (X10) or too early (X8)."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from prima.session.wiring import Wiring
 
 
 class Hearing:
-    """Gives what the user says to whom it answers.
+    """Passes what the user says to the application that it answers.
 
     Args:
-        wiring: what carries the session.
-        late_answers: whether the extension X10 holds.
+        wiring: connects the session's applications and mediator.
+        late_answers: whether the extension X10 is on.
     """
 
     def __init__(self, wiring: Wiring, late_answers: bool) -> None:
         self.wiring = wiring
         self.unheard = ""
-        """What the user said last that nobody took."""
+        """The user's latest words that nobody took."""
         self._late_answers = late_answers
         self._lapsed: tuple[str, int] | None = None
-        """Whose question nobody answered in time last, and when that was (X10)."""
+        """The application whose question was the latest to time out, and when it did (X10)."""
 
     def listening(self) -> list[Answers]:
-        """What is listened for: by the question that listens or may be interrupted, and by links (V1)."""
+        """What the user may say: answers to a listening or interruptible question, links (V1)."""
         asked: list[Answers | None] = []
         question = self.wiring.mediator.question()
         if question is not None and question.run is not None and self._hears(question):
@@ -41,7 +41,7 @@ class Hearing:
         return found
 
     def hear(self, value: Heard) -> None:
-        """V1: the question that listens, then links that listen all the time, then nomatch."""
+        """V1: the listening question, then links that listen all the time, then nomatch."""
         self.wiring.mediator.senses_user()
         self.wiring.serial += 1
         question = self.wiring.mediator.question()
@@ -76,7 +76,7 @@ class Hearing:
         )
 
     def _answer(self, question: Behavior, value: Heard) -> bool:
-        """Whether what the user says ends the question: by an answer, its length, or a link."""
+        """Whether the user's words end the question: as an answer, a link, or by their length."""
         asked, said = question.command, value.hypotheses
         if value.data.get("toolong") and asked is not None and asked.cued("longest"):
             self._conclude(question.id, {"outcome": "maxspeechtimeout", "utterance": value.text})
@@ -98,7 +98,7 @@ class Hearing:
         return True
 
     def _refuse(self, question: Behavior, value: Heard) -> None:
-        """What nobody has taken is the question's nomatch; a hotword is listened for further."""
+        """Words that nobody has taken are the question's nomatch; with a hotword it listens on."""
         cues = question.command.cues if question.command is not None else ()
         hotword = next((cue for cue in cues if cue.kind == "hotword"), None)
         if hotword is None or (
@@ -108,7 +108,7 @@ class Hearing:
             self._conclude(question.id, data)
 
     def lapse(self, value: Ended) -> None:
-        """X10: note the question that nobody has answered in time."""
+        """X10: note the question that was not answered in time."""
         if not self._late_answers or value.data.get("outcome") != "noinput":
             return
         question = self.wiring.mediator.running(value.behavior)
@@ -116,7 +116,7 @@ class Hearing:
             self._lapsed = question.app.name, self.wiring.recorder.now
 
     def _late_for(self, value: Heard, question: Behavior | None) -> AnyApp | None:
-        """X10: whose question the user answers too late, unless it asks again and listens."""
+        """X10: the application whose question is answered too late, unless it listens again."""
         if self._lapsed is None:
             return None
         name, when = self._lapsed
@@ -129,7 +129,7 @@ class Hearing:
     def _answer_late(self, app: AnyApp, value: Heard, said: list[Hypothesis]) -> None:
         """X10: to its next question, else to its links, else as its event ``late``.
 
-        Where it has ended meanwhile, nobody hears them.
+        If the application has ended meanwhile, the words are dropped.
         """
         if app.over:
             self.unheard = value.text
@@ -155,7 +155,7 @@ class Hearing:
         self.wiring.act(app)
 
     def _offer(self, value: Heard, said: list[Hypothesis]) -> bool:
-        """X8: what a question refuses may answer the first one of a reaction that waits."""
+        """X8: an answer that a question refuses may answer the first one of a waiting reaction."""
         question, answer = self.wiring.mediator.offered(), None
         if question is None or question.run is None:
             return False
@@ -168,7 +168,7 @@ class Hearing:
         return answer is not None
 
     def _answer_early(self, question: Behavior, data: dict[str, Json], rule: str) -> None:
-        """X8, X10: a question is answered that is still to be asked, or is being asked."""
+        """X8, X10: a question is answered before or while it is asked."""
         if self.wiring.mediator.running(question.id) is not None:
             self._conclude(question.id, data)
             return
@@ -177,7 +177,7 @@ class Hearing:
 
     @staticmethod
     def _hears(question: Behavior) -> bool:
-        """Whether a question takes an answer now: it listens, or may be interrupted."""
+        """Whether a question takes an answer now: it listens or may be interrupted."""
         command = question.command
         return question.listening or (command is not None and bool(command.args.get("bargein")))
 
@@ -192,7 +192,7 @@ class Hearing:
             during: Command | None = ab.command
             taken = False
             with self.wiring.apps.contained(app):
-                if ab.state is WAITING:  # between two prompts, the first of which has just ended
+                if ab.state is WAITING:  # between two prompts: the first has just ended
                     during = app.before(ab.command) if ab.freed == now else None
                 taken = during is not None and app.breaks_in(now, during, value, value.hypotheses)
             if taken or app.over:
@@ -202,7 +202,7 @@ class Hearing:
         return False
 
     def _follow_links(self, text: str, said: list[Hypothesis], question: Behavior | None) -> bool:
-        """V1: links take it; what was said to a question, no link of another application's EA."""
+        """V1: try the links; not those of another application's EA if it was said to a question."""
         taken = False
         event = Event("speech", self.wiring.serial, {"text": text})
         for app in self.wiring.in_order():

@@ -1,6 +1,6 @@
 """A session: inbound values in, orders out.
 
-:meth:`Session.step` takes what happens at one instant and carries it through by rule V3: ends of
+:meth:`Session.step` takes what happens at one instant and processes it by rule V3: ends of
 ABs, then events, then timeouts, until nothing more happens; then selection, once.
 """
 
@@ -44,14 +44,14 @@ from prima.session.hearing import Hearing
 from prima.session.wiring import Wiring
 
 SEEING = frozenset(["human.found", "human.lost"])
-"""Events by which the camera tells whether it sees the user (V4)."""
+"""Events by which the camera reports whether it sees the user (V4)."""
 
 
 class Session:
     """One robot's applications under one policy.
 
-    ``isolate`` says whose code gets a process of its own
-    (:data:`~prima.script.isolated.ISOLATIONS`); :meth:`close` gives these back.
+    ``isolate`` says whose code runs in a process of its own
+    (:data:`~prima.script.isolated.ISOLATIONS`); :meth:`close` ends these processes.
     """
 
     def __init__(
@@ -79,32 +79,32 @@ class Session:
 
     @property
     def documents(self) -> Mapping[str, AnyDocument]:
-        """What the applications run, by their names."""
+        """The documents that the applications run, by the applications' names."""
         return self._apps.documents
 
     @property
     def failures(self) -> list[str]:
-        """Applications that ended by an error, as ``NAME: what``."""
+        """Applications that ended with an error, as ``NAME: what``."""
         return self._wiring.failures
 
     @property
     def defects(self) -> list[Exception]:
-        """What has gone wrong in interpreters themselves: each has ended its application."""
+        """Errors in the interpreters themselves: each has ended its application."""
         return self._apps.defects
 
     def take_unheard(self) -> str:
-        """What the user said last that nobody took; given once."""
+        """The user's latest words that nobody took; returned once."""
         text, self._hearing.unheard = self._hearing.unheard, ""
         return text
 
     def drain_visits(self) -> list[ElementVisit]:
-        """What each application came to since the last time, one application after the other."""
+        """What each application entered since the last call, one application after the other."""
         return self._apps.drain_visits()
 
     # Driving ------------------------------------------------------------------
 
     def step(self, now: int, inbound: Collection[Inbound]) -> list[Order]:
-        """Take in what happens at ``now`` (ms, never less than before); gives the orders.
+        """Process what happens at ``now`` (ms, never less than before) and return the orders.
 
         Orders are for the devices, in the order in which they were made; ``send``
         orders are for services.
@@ -113,7 +113,7 @@ class Session:
         if self._wiring.turns:
             self._wiring.tell_turns()
         for value in sorted(inbound, key=self._class) if len(inbound) > 1 else inbound:
-            if type(value) is Occurred:  # by far the most
+            if type(value) is Occurred:  # by far the most common
                 self._occurred(value)
             else:
                 self._take(value)
@@ -123,7 +123,7 @@ class Session:
         if mediator.told:
             self._wiring.settle()
         orders: list[Order] = []
-        if mediator.changed:  # else it has given no orders either
+        if mediator.changed:  # otherwise it has not given any orders either
             mediator.select()
             self._wiring.note_turns()
             orders = mediator.drain_orders()
@@ -133,7 +133,7 @@ class Session:
         return orders
 
     def deadline(self) -> int | None:
-        """The next instant at which :meth:`step` has to be called, if anything is due."""
+        """When :meth:`step` next has to be called, if anything is due."""
         if self._wiring.turns:
             return self.recorder.now + 1
         due = min(self._wiring.due.values(), default=None)
@@ -141,21 +141,21 @@ class Session:
         return late if due is None else due if late is None else min(due, late)
 
     def close(self) -> None:
-        """Give back the processes in which code was evaluated: the session is over."""
+        """End the processes in which code was evaluated: the session is over."""
         self._apps.close()
 
     @property
     def written(self) -> int:
-        """Characters that the applications have said, logged and sent."""
+        """The number of characters that the applications have said, logged and sent."""
         return sum(app.written for app in self._apps.named.values())
 
     def drain(self) -> list[Record]:
-        """Give the records made since the last time."""
+        """Return the records made since the last call."""
         return self.recorder.drain()
 
     @property
     def over(self) -> bool:
-        """Whether every application that was loaded has ended, and what it still did (E2)."""
+        """Whether every loaded application, and what it left running (E2), has ended."""
         return bool(self._apps.loaded) and not self._apps.living() and self.idle
 
     @property
@@ -164,7 +164,7 @@ class Session:
         return not self.mediator.memory.behaviors
 
     def _class(self, value: Inbound) -> tuple[int, int]:
-        """V3: class, and for ends the application, the one whose stream is active first."""
+        """V3: sort by class, and ends by application, the one whose stream is active first."""
         if isinstance(value, Ended | Listening | Halted | Failed):
             return 0, self._rank(value.behavior.partition("#")[0])
         return 1, 0
@@ -204,7 +204,7 @@ class Session:
                 self._note(value)
 
     def _note(self, value: Delayed | Presence | Narrated) -> None:
-        """Record what no application has to do with."""
+        """Record something that concerns no application."""
         match value:
             case Delayed():
                 waited: dict[str, Json] = {"waited": value.waited / 1000}
@@ -218,7 +218,7 @@ class Session:
                 self._record("note", value.actor, text=value.text)
 
     def _emergency(self, value: Emergency) -> None:
-        """E5: applications are told by an event, whose serial number the record has."""
+        """E5: applications are notified by an event; the record has its serial number."""
         self._wiring.serial += 1
         self.mediator.emergency(value.pressed, value.resume, self._wiring.serial)
         name = "emergency.stop" if value.pressed else "emergency.release"
@@ -244,7 +244,7 @@ class Session:
         with self._apps.contained(app):
             app.start(self.recorder.now)
         self._wiring.act(app)
-        if self._sensors:  # what it watches for may be so already
+        if self._sensors:  # a condition that it watches may already be true
             self._look(app, {})
         self._wiring.settle()
 
@@ -271,17 +271,17 @@ class Session:
         for one in apps:
             try:
                 one.event(self.recorder.now, event)
-            except Exception as error:  # as _contained does, which takes longer
+            except Exception as error:  # as _contained does, but faster
                 self._apps.fail(one, error)
             if one.actions or self._wiring.due or one.deadline is not None:
                 self._wiring.act(one)
 
     def listening(self) -> list[Answers]:
-        """What is listened for: by the question that listens or may be interrupted, and by links (V1)."""
+        """What the user may say: answers to a listening or interruptible question, links (V1)."""
         return self._hearing.listening()
 
     def _answered(self, value: Fetched | Transferred) -> None:
-        """An answer goes to the application that has asked."""
+        """Pass an answer to the application that asked."""
         if isinstance(value, Fetched):
             answer = {key: one for key, one in asdict(value).items() if one and key != "app"}
             self._record("fetched", "environment", app=value.app, data=answer)
@@ -336,7 +336,7 @@ class Session:
 
 
 def place_data(value: ApplicationLoaded | ApplicationUnloaded) -> dict[str, Json] | None:
-    """What a record tells of an application that comes or goes with a place, or has a caller."""
+    """A record's data on an application that a place loads or unloads, or that has a caller."""
     told: dict[str, Json] = {"place": value.place} if value.place else {}
     if isinstance(value, ApplicationLoaded) and value.connection:
         told["connection"] = dict(value.connection)

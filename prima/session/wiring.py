@@ -1,4 +1,4 @@
-"""What carries a session: the applications, the mediator, and what goes to and fro between them."""
+"""Connects the applications and the mediator of a session."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from prima.session.applications import AnyApp, Applications
 
 
 class Wiring:
-    """Carries what applications want to the mediator, and what becomes of it back to them."""
+    """Passes applications' requests to the mediator, and their outcomes back."""
 
     def __init__(self, apps: Applications, mediator: Mediator, recorder: Recorder) -> None:
         self.apps = apps
@@ -41,19 +41,19 @@ class Wiring:
         self.serial = 0
         """The serial number of the latest event."""
         self.failures: list[str] = []
-        """Applications that ended by an error, as ``NAME: what``."""
+        """Applications that ended with an error, as ``NAME: what``."""
         self.due: dict[str, int] = {}
         """When applications want to be called, by name."""
         self.sends: list[Order] = []
-        """What goes to services, until it is taken."""
+        """Messages to services, until they are collected."""
         self.turns: list[tuple[str, Stream]] = []
-        """Streams that wait ``suspended`` or have ``resumed`` by the latest selection, with which:
-        their applications want to hear of it."""
+        """Streams that wait ``suspended`` or have ``resumed`` since the latest selection, and whose
+        applications handle that event."""
         self._promoted = 0
-        """The serial number of the event that was promoted last."""
+        """The serial number of the latest promoted event."""
 
     def in_order(self) -> list[AnyApp]:
-        """V3: the applications in declared order, the one whose stream is active first."""
+        """V3: the applications in declared order, after the one whose stream is active."""
         living = self.apps.living()
         if len(living) == 1:
             return living
@@ -65,10 +65,10 @@ class Wiring:
             return living
         return [first, *(app for app in living if app is not first)]
 
-    # Told to applications -------------------------------------------------------
+    # To applications ------------------------------------------------------------
 
     def settle(self) -> None:
-        """Tell applications what became of their Commands, until nobody has more to say."""
+        """Notify applications of what became of their Commands, until no notices are left."""
         told_queue = self.mediator.told
         while told_queue:
             told = told_queue.popleft()
@@ -86,7 +86,7 @@ class Wiring:
         self.mediator.close_window(told)
 
     def note_turns(self) -> None:
-        """Keep the streams that wait suspended or have resumed of which an application will hear."""
+        """Keep the streams that wait suspended or have resumed and whose application handles it."""
         for name, stream in self.mediator.drain_turns():
             app = self.apps.named[stream.app.name]
             with self.apps.contained(app):
@@ -96,9 +96,9 @@ class Wiring:
                 self.act(app)
 
     def tell_turns(self) -> None:
-        """Tell applications that their streams wait suspended or have resumed (C2).
+        """Notify applications that their streams wait suspended or have resumed (C2).
 
-        What they ask for then belongs to the stream and is no reaction.
+        What they request then belongs to the stream and does not count as a reaction.
         """
         turns, self.turns = self.turns, []
         for name, stream in turns:
@@ -111,28 +111,28 @@ class Wiring:
             self.mediator.close_window(told)
 
     def own_event(self, app: AnyApp, name: str, data: dict[str, Json], reactive: bool) -> None:
-        """An event that one application alone has defined."""
+        """Handle an event that one application alone has defined, and the actions it causes."""
         self.handle_own(app, name, data, reactive)
         self.act(app)
 
     def handle_own(self, app: AnyApp, name: str, data: dict[str, Json], reactive: bool) -> None:
-        """Let the application handle its own event; what it wants then is still to be done."""
+        """Let the application handle its own event; its actions are left to the caller."""
         serial = self.record_own(app, name, data, "environment")
         with self.apps.contained(app):
             app.event(self.recorder.now, Event(name, serial, data, reactive))
 
     def record_own(self, app: AnyApp, name: str, data: Data, actor: str) -> int:
-        """Record an event that one application alone has defined; gives its serial number."""
+        """Record an event defined by one application alone; returns its serial number."""
         self.serial += 1
         self.recorder.add(
             "event", actor, app=app.name, event=name, data=dict(data) or None, serial=self.serial
         )
         return self.serial
 
-    # Wanted by applications ----------------------------------------------------
+    # From applications ---------------------------------------------------------
 
     def act(self, app: AnyApp) -> None:
-        """Carry out what an application wants, and note when it wants to be called."""
+        """Carry out an application's actions, and note when it wants to be called."""
         if app.actions:
             self._carry_out(app)
         due = app.deadline
@@ -142,7 +142,7 @@ class Wiring:
             self.due.pop(app.name, None)
 
     def _carry_out(self, app: AnyApp) -> None:
-        """Do what an application wants, in order; what comes of its own events first."""
+        """Carry out an application's actions in order, first those caused by its own events."""
         left: deque[Action] = deque()
         while app.actions or left:
             left.extendleft(reversed(app.actions))
@@ -154,7 +154,7 @@ class Wiring:
             self._do(app, left.popleft())
 
     def _do(self, app: AnyApp, action: Action) -> None:
-        """Do one thing that an application wants."""
+        """Carry out one action of an application."""
         match action:
             case Request() | OpenUnit() | CloseUnit() | LeaveState():
                 self._ask(app, action)
@@ -173,7 +173,7 @@ class Wiring:
                 self._quit(app, action)
 
     def _ask(self, app: AnyApp, action: Request | OpenUnit | CloseUnit | LeaveState) -> None:
-        """Ask the mediator for Commands, a unit or an end."""
+        """Request Commands, a unit or an end from the mediator."""
         if isinstance(action, (Request, OpenUnit)) and action.cause == PROMOTED:
             action.cause = self._promoted
         match action:
