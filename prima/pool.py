@@ -140,7 +140,7 @@ class _Crew(Generic[Item, Made]):
                 else:
                     held[taken[0]] = taken[1]
                     self._give(*taken)
-            while due in done:  # nobody is idle while the caller looks at results
+            while due in done:  # keeps all busy while the caller looks at results
                 yield held.pop(due), done.pop(due)
                 due += 1
             for pipe in wait(list(self.busy)) if self.busy else ():

@@ -1,10 +1,10 @@
-"""The conductor: turns the mediator's orders into goals of drivers, and their reports into what comes in.
+"""The conductor: turns orders into drivers' goals, and drivers' reports into inbound values.
 
-It is sans-IO, and the same for the simulated robot and for a real one. Whoever drives it gives
-it orders, reports and the time; it gives calls for the drivers and values for the session.
+It is sans-IO, and the same for simulated and real robots. Its caller passes in orders, reports
+and the time; it returns calls for the drivers and values for the session.
 
-A device is free when its driver has confirmed so: what an order begins on a device that is
-still stopping is held back, and nothing is ever told to do two things at once.
+A device is free once its driver has confirmed it: an order for a device that is still stopping
+is held back, and no device is ever told to do two things at once.
 """
 
 from __future__ import annotations
@@ -36,21 +36,21 @@ from prima.devices.tasks import Goal, OpenGoals, Task
 from prima.messages import Command, Data, Ended, Failed, Inbound, Json, Listening, Order
 
 NO_RESOURCE = "error.noresource"
-"""The end of a question whose answer cannot be recorded (VoiceXML 2.0, 5.2.6)."""
+"""The outcome of a question whose answer cannot be recorded (VoiceXML 2.0, 5.2.6)."""
 SEARCH = "active-sensing-human"
-"""The Command that reports by itself whom it finds."""
+"""The Command that itself reports whom it finds."""
 
 
 class Conductor:
-    """Goals for drivers out of orders; ends, failures and answers out of reports.
+    """Turns orders into goals for drivers, and reports into ends, failures and answers.
 
     Args:
         profile: the robot.
-        pose: the robot's pose as it is known now, for what Commands that move it tell.
+        pose: returns the robot's current pose, which Commands that move it report.
         limits: how long drivers may take over a goal.
         exclusive: whether a device does one thing at a time. Without a mediator it does not:
-            whoever begins takes it.
-        start: when the run begins, or goes on (ms).
+            a goal that begins takes it over.
+        start: when the run begins or resumes (ms).
     """
 
     def __init__(
@@ -71,16 +71,16 @@ class Conductor:
         self._exclusive = exclusive
         self._marks = SpeechMarks()
         self._inbound: list[Inbound] = []
-        """What has still to be told."""
+        """Values not yet returned."""
         self._goals = OpenGoals(self._inbound)
         self._looped: dict[str, Task] = {}
         """Feedback Commands whose loop has ended at this instant: another may follow (U2)."""
         self._now = start
 
     def drain(self) -> list[Call]:
-        """Give the calls for drivers made since the last time, in order.
+        """Return the calls for drivers made since the last time, in order.
 
-        What was held back begins here, if its devices are free by now.
+        Goals that were held back begin here if their devices are free by now.
         """
         return self._goals.drain(self._now)
 
@@ -129,7 +129,7 @@ class Conductor:
         return self.profile.durations.get(command.type, self.profile.loop)
 
     def _begin(self, task: Task) -> None:
-        """Make the goals of an AB: its motion, what it says, and what it listens for."""
+        """Make the goals of an AB: its motion, its text, and the answer it listens for."""
         kind, lost = task.command.type, sorted(task.order.devices & self._goals.missing.keys())
         if lost:
             task.failed = lost[0], self._goals.missing[lost[0]]
@@ -145,18 +145,18 @@ class Conductor:
             self._goals.add(self._now, task, part, on, self._loop(task.command))
 
     def _drop(self, task: Task) -> None:
-        """An AB is no longer carried out; its goals may still have to stop."""
+        """Note that an AB is no longer carried out; its goals may still have to stop."""
         del self.tasks[task.id]
         self.ear.drop(task.id)
 
     def _end_loops_on(self, devices: frozenset[str]) -> None:
-        """Something else begins on devices of a feedback Command, which so makes no other loop."""
+        """End a feedback Command on whose devices something else begins: it loops no more."""
         for other in list(self._looped.values()):
             if other.order.devices & devices:
                 self._goals.cancel(self._now, self._looped.pop(other.name))
 
     def end_loops(self) -> None:
-        """F5: feedback Commands that were not ordered to go on are over."""
+        """F5: end the feedback Commands that were not ordered to go on."""
         looped, self._looped = self._looped, {}
         for task in looped.values():
             self._goals.cancel(self._now, task)
@@ -164,7 +164,7 @@ class Conductor:
     # Reports ------------------------------------------------------------------------
 
     def report(self, now: int, report: Report) -> None:
-        """Take what a driver reports; one of a goal that is over counts for nothing."""
+        """Take a driver's report; reports on a goal that is over are ignored."""
         self._now = now
         match report:
             case Lost():
@@ -200,7 +200,7 @@ class Conductor:
             self._goals.cancel(self._now, task)
 
     def _lose(self, lost: Lost) -> None:
-        """Devices are gone: what ran on them fails, what was stopping has stopped."""
+        """Devices are lost: what ran on them fails, what was stopping has stopped."""
         self._goals.lose(lost.devices, lost.reason)
         for goal in list(self._goals.open.values()):
             gone = sorted(goal.begin.devices & lost.devices)
@@ -216,7 +216,7 @@ class Conductor:
     # Time ---------------------------------------------------------------------------
 
     def due(self, visible: bool) -> int | None:
-        """The next instant at which something is to be reported, if one is known (ms)."""
+        """When the next report is due (ms), if known."""
         now = self._now
         due = [task.ends for task in self.tasks.values() if task.ends and task.ends > now]
         late = (goal.late(self._limits(goal.begin)) for goal in self._goals.open.values())
@@ -227,7 +227,7 @@ class Conductor:
         return min(due, default=None)
 
     def collect(self, now: int, visible: bool, where: Data) -> list[Inbound]:
-        """What has to be told the session at ``now``.
+        """What has to be reported to the session at ``now``.
 
         Args:
             now: the time.
@@ -245,16 +245,16 @@ class Conductor:
         return reports + self.sight.look(now, visible, where, searching)
 
     def failures(self) -> list[Inbound]:
-        """What has failed since :meth:`collect`."""
+        """The failures since :meth:`collect`."""
         return [one for task in self._in_order() if task.failed for one in self._report(task, {})]
 
     def _in_order(self) -> list[Task]:
-        """The tasks as they are told: a motion that another composes with before that one (X5)."""
+        """The tasks in reporting order: a motion before one that is composed with it (X5)."""
         tasks, motions = list(self.tasks.values()), self.profile.motions
         return sorted(tasks, key=lambda one: one.command.type in motions) if motions else tasks
 
     def _report(self, task: Task, where: Data) -> list[Inbound]:
-        """What has become of an AB."""
+        """Report what has become of an AB."""
         over = task.ends is None or task.ends <= self._now
         if task.failed is not None:
             self._leave(task)
@@ -274,7 +274,7 @@ class Conductor:
         return [Ended(task.id, True, task.data)]
 
     def _ask(self, task: Task, over: bool) -> list[Inbound]:
-        """A question listens when it has been asked, and ends when nobody answers it."""
+        """A question listens once it has been asked, and ends if nobody answers it."""
         if task.asks and over and not task.has(SAY):
             task.asks, task.ends = False, None
             return [Listening(task.id)] if self.ear.listen(self._now, task.id) else []
@@ -303,7 +303,7 @@ class Conductor:
         self._marks.end(self._now, task.order.app, task.said)
 
     def _give_up_late(self) -> None:
-        """Give up goals whose drivers take too long; one that does not stop is not safe."""
+        """Give up goals whose drivers take too long; a goal that does not stop is unsafe."""
         for goal in list(self._goals.open.values()):
             late = goal.late(self._limits(goal.begin))
             if late is None or late > self._now or goal.begin.key not in self._goals.open:
@@ -320,7 +320,7 @@ class Conductor:
     # What the user says ---------------------------------------------------------------
 
     def speech_begins(self, now: int) -> None:
-        """The user begins to speak: a question that may be interrupted listens."""
+        """The user begins to speak: an interruptible question listens."""
         self._now = now
         task = self.tasks.get(self.ear.speech_begins())
         if task is None or not task.asks:
@@ -332,7 +332,7 @@ class Conductor:
             self._goals.cancel_goal(self._now, goal)
 
     def longest_answer(self) -> int:
-        """How long the user may speak (ms); 0 without end (VoiceXML 2.0, 6.3.2)."""
+        """How long the user may speak (ms); 0 for no limit (VoiceXML 2.0, 6.3.2)."""
         cues = (cue for task in self.tasks.values() for cue in task.command.cues)
         return next((int(cue.value or 0) for cue in cues if cue.kind == "longest"), 0)
 

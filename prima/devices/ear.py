@@ -1,7 +1,7 @@
 """The ear: which question listens, how long it waits, and when the user may interrupt it.
 
-It needs to know when the robot begins and ends to ask, and when the user begins and ends to
-speak. What was said is none of its business.
+It needs to know when the robot begins and finishes asking, and when the user begins and finishes
+speaking, but not what was said.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ class Question:
     id: str
     command: Command
     listens: bool = False
-    """Whether it has been asked: the user may answer."""
+    """Whether it has been asked, so that the user may answer."""
     until: int | None = None
-    """When its time for an answer is over (ms); None while somebody speaks."""
+    """When its time for an answer ends (ms); None while somebody speaks."""
     deaf: bool = False
     """Whether its recogniser hangs."""
     lost: bool = False
-    """Whether another Command has taken its recogniser (only without a mediator)."""
+    """Whether another Command has taken over its recogniser (only without a mediator)."""
 
 
 def bounds_of(command: Command) -> RecordingBounds | None:
-    """The bounds of the answer to a question, if that is recorded."""
+    """The limits of the answer's recording, if it is recorded."""
     if not command.cued("record"):
         return None
     kinds = ("record", "finalsilence")
@@ -38,12 +38,12 @@ def bounds_of(command: Command) -> RecordingBounds | None:
 
 
 class Ear:
-    """The questions that are being asked, and what the user is saying meanwhile."""
+    """The questions being asked, and the user's utterances meanwhile."""
 
     def __init__(self) -> None:
         self.questions: dict[str, Question] = {}
         self._voices = 0
-        """How many things the user is saying."""
+        """How many utterances of the user are under way."""
 
     def ask(self, behavior: str, command: Command) -> None:
         """The robot begins to ask a question; it takes the recogniser from any other."""
@@ -64,11 +64,11 @@ class Ear:
         return question.listens
 
     def drop(self, behavior: str) -> None:
-        """A question is over, or was broken off."""
+        """A question is over or was aborted."""
         self.questions.pop(behavior, None)
 
     def deafen(self, behavior: str) -> None:
-        """The recogniser hangs: nothing more comes of a question."""
+        """The recogniser hangs: a question gets no result any more."""
         if question := self.questions.get(behavior):
             question.deaf, question.listens, question.until = True, False, None
 
@@ -87,8 +87,8 @@ class Ear:
         """The user begins to speak: a question that listens waits for them to end.
 
         Returns:
-            The question whose prompt has to be broken off, or nothing. With hotword bargein
-            the robot speaks on until it has understood (VoiceXML 2.0, 4.1.5.1).
+            The question whose prompt has to be stopped, or nothing. With hotword bargein the robot
+            keeps speaking until it recognises the input (VoiceXML 2.0, 4.1.5.1).
         """
         self._voices += 1
         question = self.question
@@ -103,11 +103,11 @@ class Ear:
         )
 
     def speech_ends(self) -> None:
-        """The user has said something to its end, or has broken off."""
+        """The user has finished or broken off an utterance."""
         self._voices -= 1
 
     def listen_on(self, now: int) -> None:
-        """What the user said was nobody's answer: their time for one begins again."""
+        """The user's words answered no question: their time to answer begins again."""
         if self._voices:
             return
         for question in self.questions.values():
@@ -115,19 +115,19 @@ class Ear:
                 self._wait(now, question)
 
     def recording(self) -> RecordingBounds | None:
-        """The bounds of an answer that is recorded; None if it is not recorded."""
+        """The limits of an answer's recording; None if it is not recorded."""
         question = self.question
         return bounds_of(question.command) if question is not None else None
 
     # Time ---------------------------------------------------------------------------
 
     def due(self) -> int | None:
-        """When the next question's time is over, if ever."""
+        """When the next question times out, if ever."""
         ends = [one.until for one in self.questions.values() if one.until is not None]
         return min(ends, default=None)
 
     def unanswered(self, now: int, behavior: str) -> list[Inbound]:
-        """The end of a question, if its time for an answer is over (V3, noinput)."""
+        """The end of a question whose time for an answer is over, if any (V3, noinput)."""
         question = self.questions.get(behavior)
         if question is None or question.until is None or question.until > now:
             return []

@@ -1,4 +1,4 @@
-"""What a document of services says, as values: whom a live run may ask, and for what."""
+"""A services document as values: the services that a live run may use, and their data."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from prima.grammar import Grammar
 
 NAMED = re.compile(r"\{([A-Za-z_][\w-]*)\}")
-"""Where a value that is sent is put into a prompt."""
+"""A placeholder for a sent value in a prompt."""
 VARIABLE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 HEADER = re.compile(r"[!#$%&'*+.^_`|~0-9A-Za-z-]+")
 SAFE = frozenset(["get", "put"])
@@ -29,7 +29,7 @@ Grammars = Callable[[str], "Grammar"]
 
 
 class Unfit(Exception):
-    """An answer is not what the document says; the message says why."""
+    """An answer does not match the document; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,10 +53,10 @@ class Slot:
         return made
 
     def checked(self, value: Json) -> Json:
-        """A value that fits.
+        """A valid value.
 
         Raises:
-            Unfit: it does not.
+            Unfit: it is invalid.
         """
         number = isinstance(value, int | float) and not isinstance(value, bool)
         fits = {"text": isinstance(value, str), "boolean": isinstance(value, bool)}
@@ -69,7 +69,7 @@ class Slot:
 
 @dataclass(slots=True)
 class Fallback:
-    """A grammar that fills the slots of a language model which does not."""
+    """A grammar that fills the slots if the language model does not."""
 
     grammar: Grammar
     of: str
@@ -77,23 +77,23 @@ class Fallback:
 
 @dataclass(slots=True)
 class Endpoint:
-    """A service that a live run may ask. Times are ms of real time."""
+    """A service that a live run may use. Times are ms of real time."""
 
     name: str
     application: str
-    """The application that alone may ask it; empty where all may."""
+    """The only application that may use it; empty if all may."""
     uri: str
     method: str
     deadline: int
     retries: int
     most: int
-    """Bytes of an answer."""
+    """Maximum size of an answer (bytes)."""
     repeats: bool
-    """Whether it may be asked again."""
+    """Whether a request may be repeated."""
     place: Place
     headers: dict[str, str] = field(default_factory=dict)
     variables: dict[str, tuple[str, str]] = field(default_factory=dict)
-    """Headers from environment variables: what stands before the value, and the variable."""
+    """Headers from environment variables: a prefix of the value, and the variable."""
     slots: tuple[Slot, ...] = ()
     model: str = ""
     prompts: tuple[tuple[str, str], ...] = ()
@@ -101,10 +101,10 @@ class Endpoint:
     fallback: Fallback | None = None
 
     def reply(self, answer: Json) -> dict[str, Json]:
-        """The data of a reply: the slots, or without slots the whole flat object.
+        """The data of a reply: the slots or, without slots, the whole flat object.
 
         Raises:
-            Unfit: the answer is not what the document says.
+            Unfit: the answer does not match the document.
         """
         if self.slots:
             return self._filled(answer)
@@ -154,7 +154,7 @@ class Endpoint:
 
 
 def _part(answer: Json, path: str) -> Json:
-    """The part of an answer to which dots lead; None where it has none."""
+    """The part of an answer at a dotted path; None if there is none."""
     for name in path.split("."):
         if isinstance(answer, list) and name.isdecimal() and int(name) < len(answer):
             answer = answer[int(name)]
@@ -220,7 +220,7 @@ def _endpoint(reader: Reader, node: Node, grammars: Grammars) -> Endpoint:
 
 def _check_retries(reader: Reader, node: Node, made: Endpoint) -> None:
     if made.retries and not made.repeats:
-        message = "A post is not asked again: it might be carried out twice."
+        message = "A post is not repeated: it might be carried out twice."
         remedy = 'Remove retries, or add idempotent="true" if that does no harm.'
         reader.problem(node, "exclusive", message, "retries", remedy)
 
@@ -233,7 +233,10 @@ def _check_url(reader: Reader, node: Node) -> None:
     except ValueError:
         wrong = True
     if wrong or not url.isascii() or any(one.isspace() for one in url):
-        message, remedy = f'"{url}" is no address.', 'Write as in "http://127.0.0.1:8080/books".'
+        message, remedy = (
+            f'"{url}" is not an address.',
+            'Write as in "http://127.0.0.1:8080/books".',
+        )
         reader.problem(node, "bad-value", message, "url", remedy)
     elif "@" in parts.netloc:
         remedy = 'Put it into an environment variable, and name that as key="...".'
@@ -244,7 +247,7 @@ def _slot(reader: Reader, node: Node) -> Slot:
     name, kind = node.get("name"), node.get("kind", "text")
     choices = tuple(one.strip() for one in node.get("choices").split("|") if one.strip())
     if choices and kind != "text":
-        message = "Only a text has choices."
+        message = "Only texts have choices."
         reader.problem(node, "exclusive", message, "choices", "Remove choices, or the kind.")
     needed = reader.get(node, "required")
     return Slot(
@@ -259,7 +262,7 @@ def _read_headers(reader: Reader, node: Node, made: Endpoint) -> None:
     for child in node.all("header"):
         name = child.get("name")
         if not HEADER.fullmatch(name):
-            message = f'"{name}" is no name of a header.'
+            message = f'"{name}" is not the name of a header.'
             reader.problem(child, "bad-value", message, "name", 'Write as in "X-Api-Key".')
         if ("value" in child.attributes) == ("variable" in child.attributes):
             message = "<header> needs exactly one of value, variable."
@@ -272,13 +275,13 @@ def _read_headers(reader: Reader, node: Node, made: Endpoint) -> None:
         elif child.get("value").isprintable() and child.get("value").isascii():
             made.headers[name] = child.get("value")
         else:
-            message = "A header's value has ASCII characters alone."
+            message = "A header's value may contain only ASCII characters."
             reader.problem(child, "bad-value", message, "value", "Write others.")
 
 
 def _check_variable(reader: Reader, node: Node, name: str) -> None:
     if not VARIABLE.fullmatch(node.get(name)):
-        message = f"{name} is no name of an environment variable."
+        message = f"{name} is not the name of an environment variable."
         remedy = 'Write its name, as "LIBRARY_KEY", and keep the secret out of the document.'
         reader.problem(node, "bad-value", message, name, remedy)
 
@@ -304,7 +307,7 @@ def _read_fallback(reader: Reader, node: Node, made: Endpoint, grammars: Grammar
 
 
 def filled_by_grammar(endpoint: Endpoint, params: Mapping[str, Json]) -> dict[str, Json] | None:
-    """What the fallback's grammar makes of what is sent; None where it does not take it."""
+    """The fallback grammar's result for the value sent; None if the grammar does not match."""
     fallback = endpoint.fallback
     if fallback is None or not isinstance(params.get(fallback.of), str):
         return None

@@ -1,4 +1,4 @@
-"""What the conductor tells drivers to do, and what they report."""
+"""The calls from the conductor to drivers, and the drivers' reports."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ SAY: Final = "say"
 LISTEN: Final = "listen"
 """The goal of hearing the answer to a question."""
 RECORD: Final = "record"
-"""The goal of recording the answer to a question: told by ``Heard`` as it is described there."""
+"""The goal of recording the answer to a question; ``Heard`` reports it, as described there."""
 
 
 @dataclass(frozen=True, slots=True)
 class RecordingBounds:
-    """When a recording is over. Times are ms; 0 leaves them to the device."""
+    """When a recording ends. Times are ms; 0 leaves them to the device."""
 
     longest: int = 0
     silence: int = 0
-    """How long the user has to be silent."""
+    """How long the user has to be silent for it to end."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,11 +32,11 @@ class Begin:
     """
 
     key: str
-    """Its name, which is never used again."""
+    """Its name, which is never reused."""
     kind: str
     """:data:`SAY`, :data:`LISTEN`, :data:`RECORD`, or the Command's type."""
     command: Command
-    """The Command; of a text that was interrupted at a mark, what is left of it (X2)."""
+    """The Command; for a text that was interrupted at a mark, with the rest of the text (X2)."""
     devices: frozenset[str]
     spoken: int = 0
     """Until when the robot is expected to speak in the same Command; 0 if it does not."""
@@ -47,12 +47,12 @@ class Begin:
     beside: bool = False
     """Whether a motion is composed with another one that goes on (X5)."""
     bounds: RecordingBounds = RecordingBounds()
-    """When what is to be recorded is over."""
+    """When the recording ends."""
 
 
 @dataclass(frozen=True, slots=True)
 class Again:
-    """A feedback Command makes another loop: its goal goes on. Most drivers need not heed it."""
+    """A feedback Command makes another loop: its goal goes on. Most drivers can ignore this."""
 
     key: str
 
@@ -66,12 +66,12 @@ class Cancel:
 
 @dataclass(frozen=True, slots=True)
 class Stand:
-    """The body has to stop where it rolls on (F5)."""
+    """The body has to stop if it is still rolling (F5)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Safe:
-    """Everything has to stop at once, whatever runs; devices are given up for lost."""
+    """Everything has to stop at once; the devices are considered lost."""
 
     reason: str
 
@@ -88,14 +88,14 @@ class Accepted:
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """A driver is on with a goal."""
+    """A driver is still working at a goal."""
 
     key: str
 
 
 @dataclass(frozen=True, slots=True)
 class Done:
-    """A goal is reached."""
+    """A goal has been reached."""
 
     key: str
     data: Data = field(default_factory=dict)
@@ -103,24 +103,24 @@ class Done:
 
 @dataclass(frozen=True, slots=True)
 class Stopped:
-    """A goal has ended because it was cancelled, or was over when that came."""
+    """A goal has ended because it was cancelled, or was already over by then."""
 
     key: str
     share: float | None = None
-    """How much of it had been done, 0 to 1, if that is known."""
+    """How much of it had been done, 0 to 1, if known."""
     said: int | None = None
-    """Of a text: how many of its characters had been said, if that is known."""
+    """For a text: how many of its characters had been said, if known."""
 
 
 @dataclass(frozen=True, slots=True)
 class Broke:
-    """A goal is not reached: the device failed or refused it."""
+    """A goal was not reached: the device failed or refused it."""
 
     key: str
     device: str
     reason: str
     lacks: bool = False
-    """Of a recording: whether the robot cannot record it, though its devices work."""
+    """For a recording: whether the robot is unable to record though its devices work."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +141,7 @@ class Back:
 Report = Accepted | Progress | Done | Stopped | Broke | Lost | Back
 
 
-# What drivers tell besides ----------------------------------------------------------------
+# Other reports of drivers -----------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +155,7 @@ class At:
 
 @dataclass(frozen=True, slots=True)
 class Sees:
-    """Whether the camera sees the user; of a user who is seen, m away and degrees to the left."""
+    """Whether the camera sees the user and, if so, their distance (m) and degrees to the left."""
 
     visible: bool
     distance: float | None = None
@@ -166,12 +166,12 @@ class Sees:
 class Speaks:
     """The user begins to speak, or has fallen silent.
 
-    A recogniser that tells of the beginning tells of the end as well: by :class:`Heard`, which
-    is one, or by this.
+    A recogniser that reports the beginning also reports the end: by :class:`Heard`, which
+    implies one, or by this.
     """
 
     begins: bool
 
 
 News = At | Sees | Speaks | Heard | Occurred | Sensed | Emergency | Narrated
-"""What a driver may tell at any time."""
+"""What a driver may report at any time."""

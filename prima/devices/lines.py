@@ -1,4 +1,4 @@
-"""Lines that people type: bounded, without characters that no document may hold."""
+"""Lines that people type: of limited length, without characters that XML does not allow."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ UNFIT = re.compile("[^\t -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def line_text(line: bytes, errors: str = "strict") -> str:
-    """The text of a line, without a return at its end or a mark of UTF-8 at its beginning.
+    """The text of a line, without a trailing carriage return or a leading byte order mark.
 
     Raises:
-        UnicodeDecodeError: it is not UTF-8, if ``errors`` are ``strict``.
+        UnicodeDecodeError: it is not UTF-8 and ``errors`` is ``strict``.
     """
     return line.rstrip(b"\r").decode("utf-8-sig", errors)
 
 
 def check_line(text: str) -> None:
-    """Refuse a line that is too long, or holds what no document may hold.
+    """Reject a line that is too long or contains characters that XML does not allow.
 
     Raises:
-        UsageError: it is such a line; the message says why.
+        UsageError: it is rejected; the message says why.
     """
     if len(text) > LONGEST_LINE:
         raise UsageError(f"The line is longer than {LONGEST_LINE} characters.")
@@ -35,7 +35,7 @@ def check_line(text: str) -> None:
 
 
 def split_words(text: str) -> list[str]:
-    """Words, where quotation marks keep several together.
+    """Split a line into words; quotation marks keep several together.
 
     Raises:
         UsageError: a quotation mark is not closed.

@@ -1,6 +1,6 @@
 """The loop between a session and its devices: for virtual time, real time and ``prima talk``.
 
-It has no clock. Whoever drives it jumps to what is due next, or waits until then.
+It has no clock. Its caller jumps to the next due time, or waits until then.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from prima.messages import Record
 from prima.session import Session
 
 MAX_RECORDS = 500_000
-"""Records that a run may make."""
+"""Maximum number of records of a run."""
 MAX_WRITTEN = 50_000_000
-"""Characters that the applications of a run may say, log and send."""
+"""Maximum number of characters that the applications of a run say, log and send."""
 
 
 class Loop:
@@ -29,29 +29,29 @@ class Loop:
         self.until = until
         """When the run ends at the latest."""
         self.bounded = bounded
-        """Whether it may make a number of records alone; nobody has to keep those of a live run."""
+        """Whether the number of records is limited; those of a live run need not be kept."""
         self.journal: Callable[[list[Record]], object] = lambda _: None
-        """Is given the records of an instant before its orders are carried out."""
+        """Called with the records of an instant before its orders are carried out."""
         self.now = 0
-        """The instant that was carried out last."""
+        """The latest instant carried out."""
         self.outcome = ""
         """Why the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
         self.visits: list[ElementVisit] = []
-        """What applications came to in the latest instant."""
+        """What applications entered in the latest instant."""
         self._made = 0
         self._deadline = session.deadline()
-        """When the session has to be stepped even if nothing happens: only a step changes it."""
+        """When the session has to be stepped even if nothing happens; only a step changes this."""
         self._ended = session.over
-        """Whether the session is over, likewise."""
+        """Whether the session is over; only a step changes this, too."""
         self._full = False
-        """Whether the run has made as much as it may."""
+        """Whether the run has reached a limit."""
 
     def go_on(self, now: int) -> None:
-        """Go on with a session that has been brought to this time already."""
+        """Continue with a session that has already been brought to this time."""
         self.now, self._deadline, self._ended = now, self.session.deadline(), self.session.over
 
     def run(self) -> Iterator[list[Record]]:
-        """Run to the end, giving the records of each instant as they are made."""
+        """Run to the end, yielding the records of each instant as they are made."""
         while (records := self.advance(self.until)) is not None:
             yield records
         yield self.finish(self.until)
@@ -74,7 +74,7 @@ class Loop:
         return self.step(max(due, self.now))
 
     def finish(self, until: int) -> list[Record]:
-        """End the run at a time by which nothing is due any more; gives its last records."""
+        """End the run at a time by which nothing else is due; returns its last records."""
         due = None if self.outcome else self.due()
         if not self.outcome:
             self.outcome = "quiet" if due is None else "until"
@@ -90,15 +90,15 @@ class Loop:
 
     @property
     def over(self) -> bool:
-        """Whether the session is over, and no application is still to come."""
+        """Whether the session is over and no application is yet to be loaded."""
         return self._ended and not self.devices.awaits
 
     def due(self) -> int | None:
-        """When the next instant is, if ever."""
+        """When the next instant is due, if ever."""
         return earliest(self.devices.due(), self._deadline)
 
     def step(self, now: int) -> list[Record]:
-        """One instant. Where a body only moved on, nobody is told and nothing is decided."""
+        """Carry out one instant. If a body only moved, nothing is reported or decided."""
         self.now, self.visits = now, []
         inbound = self.devices.collect(now)
         if not inbound and (self._deadline is None or now < self._deadline):

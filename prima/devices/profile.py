@@ -17,7 +17,7 @@ from prima.markup.tree import Node
 POINTING_MS = 1000
 """How long the robot holds its arm out."""
 BRAKING_MS = 200
-"""How long it takes to come to a stand."""
+"""How long the robot takes to stop."""
 
 
 @dataclass(slots=True)
@@ -31,7 +31,7 @@ class Profile:
     head_speed: float = 120.0
     loop: int = 500
     absence: int = ABSENCE_MS
-    """After how long without being sensed the user is absent (rule K1)."""
+    """How long the user has to go unsensed to count as absent (rule K1)."""
     devices: frozenset[str] = frozenset()
     camera_angle: float = 60.0
     camera_range: float = 4.0
@@ -43,9 +43,9 @@ class Profile:
     motions: dict[str, Motion] = field(default_factory=dict)
     drivers: list[DriverSettings] = field(default_factory=list)
     warnings: list[Problem] = field(default_factory=list)
-    """What is odd in its document, and no error."""
+    """The warnings about its document."""
     place: Place = field(default_factory=lambda: Place("robot.xml"))
-    """Where its document begins."""
+    """The position at which its document begins."""
 
 
 @dataclass(slots=True)
@@ -61,7 +61,7 @@ class Motion:
         return sum(step[0] for step in self.steps)
 
     def at(self, time: int) -> tuple[float, float]:
-        """Speed and turn speed at a time (ms); it is repeated as long as it lasts."""
+        """Speed and turn speed at a time (ms); the motion repeats as long as it lasts."""
         time %= self.duration
         for lasts, speed, turning in self.steps:
             if time < lasts:
@@ -88,7 +88,7 @@ def _lasts(reader: Reader, node: Node) -> int:
 
 
 def read_robot(file: str, data: bytes) -> Profile:
-    """Read a robot profile; its ``commands`` are those it can do.
+    """Read a robot profile; its ``commands`` are those that the robot can do.
 
     Raises:
         DocumentError: with all its problems.
@@ -172,7 +172,7 @@ def _add(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Prof
 
 
 def _allow(reader: Reader, rows: dict[str, CommandType]) -> None:
-    """Let Commands take further arguments."""
+    """Add further arguments to Commands."""
     for node in reader.root.all("allows"):
         name = node.get("command")
         reader.known(node, "command", rows, "Command")
@@ -181,7 +181,7 @@ def _allow(reader: Reader, rows: dict[str, CommandType]) -> None:
 
 
 def _check_devices(reader: Reader, profile: Profile) -> None:
-    """A device of the robot's own that none of its Commands needs, most likely a slip."""
+    """Warn about a device of the robot's own that none of its Commands needs: likely a typo."""
     own = {name for node in reader.root.all("adds") for name in node.get("devices").split()}
     free = (set(DEVICES) | own) - profile.devices
     for node in reader.root.all("device"):
@@ -195,7 +195,7 @@ def _check_devices(reader: Reader, profile: Profile) -> None:
 
 
 def _substitute(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Profile) -> None:
-    """Another Command in the place of one that the robot lacks (X6)."""
+    """Read a substitute for a Command that the robot lacks (X6)."""
     reader.known(node, "command", rows, "Command")
     reader.known(node, "by", profile.commands, "Command")
     lacking, other = rows.get(node.get("command")), profile.commands.get(node.get("by"))

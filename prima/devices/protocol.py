@@ -1,4 +1,4 @@
-"""The one interface between a session and whatever carries its orders out."""
+"""The interface between a session and whatever carries out its orders."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from prima.messages import Inbound, Order, Record
 
 
 def earliest(*times: int | None) -> int | None:
-    """The first of some times (ms), None left out; None if there is no other."""
+    """The earliest of some times (ms), ignoring None; None if there is no other."""
     first: int | None = None
     for time in times:
         if time is not None and (first is None or time < first):
@@ -19,14 +19,14 @@ def earliest(*times: int | None) -> int | None:
 class Devices(Protocol):
     """A robot with its surroundings, simulated or real. Times are ms from the run's start.
 
-    :class:`prima.devices.loop.Loop` drives it: when an instant is due, it collects what has
-    come in, hands it to the session, and gives the session's orders back, one at a time.
+    :class:`prima.devices.loop.Loop` drives it: when an instant is due, it collects the inbound
+    values, passes them to the session, and passes back the session's orders, one at a time.
     """
 
     def due(self) -> int | None:
-        """The next instant at which something is to be collected; None if none is known.
+        """When there is next something to collect; None if unknown.
 
-        It is asked before each :meth:`collect`.
+        It is called before each :meth:`collect`.
         """
 
     def collect(self, now: int) -> list[Inbound]:
@@ -36,8 +36,8 @@ class Devices(Protocol):
         """Carry out an order of the mediator, or send what an application sends."""
 
     def observe(self, now: int, records: list[Record]) -> None:
-        """See what the session made of an instant, after its last order."""
+        """Observe the records of an instant, after its last order."""
 
     @property
     def awaits(self) -> bool:
-        """Whether an application is still to be loaded: the run is not over without it."""
+        """Whether an application is yet to be loaded: until then the run is not over."""

@@ -27,17 +27,17 @@ class Reader:
         self.root, self.problems = read_tree(file, data, vocabulary)
 
     def get(self, node: Node, name: str) -> Any:
-        """An attribute's value, its default, or None; of a distribution, its quantiles."""
+        """An attribute's value, its default, or None; for a distribution, its quantiles."""
         item, _ = self.vocabulary.attributes.get(node.key, {}).get(name, (None, False))
         if item is None:
-            return None  # an element that the language lacks; told already
+            return None  # an unknown element; already reported
         text = node.attributes.get(name, item.default)
         if not text and name not in node.attributes:
             return None
         try:
             value = read_value(item.kind, text)
         except ValueError:
-            return None  # told already, as a problem of the schema
+            return None  # already reported as a schema problem
         if item.kind in DRAWABLE and isinstance(value, str):
             return self._quantile(node, item, value)
         number = isinstance(value, int | float) and not isinstance(value, bool)
@@ -49,8 +49,8 @@ class Reader:
         return value
 
     def _quantile(self, node: Node, item: Attribute, text: str) -> Quantile | None:
-        """The quantiles of a distribution, or None where it is wrong."""
-        from prima.language.distributions import Distributions  # few documents draw anything
+        """The quantiles of a distribution, or None if it is invalid."""
+        from prima.language.distributions import Distributions  # few documents need it
 
         values = Distributions(DRAWABLE[item.kind], item.low, item.high, folder=None)
         try:
@@ -61,7 +61,7 @@ class Reader:
             return None
 
     def given(self, node: Node | None, name: str) -> Any:
-        """An attribute's value where it is written, else None."""
+        """An attribute's value if it is written, else None."""
         return self.get(node, name) if node is not None and name in node.attributes else None
 
     def problem(
@@ -78,7 +78,7 @@ class Reader:
         self.problems.append(Problem(place, severity, code, message, remedy))
 
     def known(self, node: Node, name: str, words: Collection[str], what: str) -> None:
-        """Note a problem where an attribute names something that is not there."""
+        """Note a problem if an attribute names something that does not exist."""
         word = node.get(name)
         if word and word not in words:
             message = f'There is no {what} "{word}".'
@@ -86,7 +86,7 @@ class Reader:
             self.problem(node, "no-such-name", message, name, hint)
 
     def finish(self) -> None:
-        """Raise what was found.
+        """Raise the problems found.
 
         Raises:
             DocumentError: if there is any error.

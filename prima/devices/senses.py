@@ -7,11 +7,11 @@ import math
 from prima.messages import Data, Inbound, Json, Occurred, Sensed
 
 LOST_AFTER_MS = 1000
-"""How long a user must be out of sight before the camera has lost them."""
+"""How long the user must be out of sight for the camera to have lost them."""
 
 
 class Sight:
-    """Finds and loses the user, whatever comes between for a moment (V4)."""
+    """Finds and loses the user, ignoring brief interruptions (V4)."""
 
     def __init__(self, lost_after: int = LOST_AFTER_MS) -> None:
         self._lost_after = lost_after
@@ -19,25 +19,25 @@ class Sight:
         self._unseen_since: int | None = None
 
     def due(self, now: int, visible: bool) -> int | None:
-        """When to look again though nothing moves (ms), if ever."""
+        """When to look again even if nothing moves (ms), if ever."""
         if self._unseen_since is not None:
             return self._unseen_since + self._lost_after
         return now + 1 if self._found and not visible else None
 
     def heeds(self, visible: bool) -> bool:
-        """Whether to look is worth while: the user has come into view, or has just left it."""
+        """Whether looking is worthwhile: the user has come into view, or has just left it."""
         if visible:
             return not self._found or self._unseen_since is not None
         return self._found and self._unseen_since is None
 
     def look(self, now: int, visible: bool, where: Data, searching: bool = False) -> list[Inbound]:
-        """Take in whether the user is visible; gives ``human.found`` or ``human.lost``.
+        """Take in whether the user is visible; returns ``human.found`` or ``human.lost``.
 
         Args:
             now: the time.
             visible: whether the camera sees the user.
             where: their ``distance`` (m) and ``angle`` (degrees).
-            searching: whether a Command is looking for them, which reports by itself.
+            searching: whether a Command that itself reports them is looking for them.
         """
         if visible:
             self._unseen_since = None
@@ -55,23 +55,23 @@ class Sight:
         return []
 
     def restore(self, found: bool) -> None:
-        """Go on after a run that was cut off, in which the user was seen or not."""
+        """Continue after an interrupted run in which the user was last seen or not."""
         self._found, self._unseen_since = found, None
 
     def find(self, where: Data) -> Inbound:
-        """A Command that looks for the user has found them."""
+        """Note that a Command that looks for the user has found them."""
         self._found, self._unseen_since = True, None
         return Occurred("human.found", "robot", {**where, "sensed": True})
 
 
 class Sensors:
-    """What the sensors have said last, so that only changes are told (C6)."""
+    """The latest values of the sensors, so that only changes are reported (C6)."""
 
     def __init__(self) -> None:
         self.values: dict[str, Json] = {}
 
     def take(self, values: Data) -> list[Inbound]:
-        """Take in what sensors say now; gives what has changed."""
+        """Take in current sensor values; returns those that have changed."""
         changed = {key: one for key, one in values.items() if self.values.get(key, ...) != one}
         self.values.update(changed)
         return [Sensed(changed)] if changed else []

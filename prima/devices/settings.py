@@ -1,4 +1,4 @@
-"""What a robot's document says of its drivers, as values."""
+"""The drivers of a robot's document, as values."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from prima.markup.tree import Node
 from prima.messages import Json
 
 SLOT = re.compile(r"\{([a-z][a-z-]*)\}")
-"""Where a value of a Command is put in."""
+"""A placeholder for a Command's value."""
 SENSES = ("event", "sensor", "as")
 DOES = ("command", "gesture")
 
 
 @dataclass(frozen=True, slots=True)
 class DriverLimits:
-    """How long (ms) a driver may take before it is given up; None for as long as it likes."""
+    """How long (ms) a driver may take before it is given up; None for no limit."""
 
     accept: int | None = None
     """To begin a goal."""
     progress: int | None = None
-    """To report of a goal again."""
+    """To report on a goal again."""
     cancel: int | None = None
     """To confirm that a goal has stopped."""
 
     def over(self, others: DriverLimits) -> DriverLimits:
-        """These where they are given, else the others."""
+        """These limits where they are given, else the others."""
         return DriverLimits(
             others.accept if self.accept is None else self.accept,
             others.progress if self.progress is None else self.progress,
@@ -41,7 +41,7 @@ class DriverLimits:
 
 FOREVER = DriverLimits()
 USUAL = DriverLimits(accept=5_000, cancel=5_000)
-"""What a driver has by default. Whether it has to report while a goal goes on is its own."""
+"""The defaults. Whether a driver has to report while a goal goes on depends on the driver."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,19 +53,19 @@ class Does:
     by: str
     type: str
     kind: str
-    """``action``, ``service`` or ``topic``, where that has to be said."""
+    """``action``, ``service`` or ``topic``, if it has to be specified."""
     limits: DriverLimits
     values: tuple[tuple[str, str], ...]
-    """Names and values of the interface's arguments, as written."""
+    """Names and values of the interface's arguments as written."""
     place: Place
     stop: str = ""
-    """What is called to stop it, where cancelling does not."""
+    """The service or method that stops it, if cancelling does not."""
 
     def filled(self, given: Mapping[str, Json]) -> dict[str, Json]:
-        """The arguments as values within values, with what a Command gives put in.
+        """The arguments as nested values, with the Command's values filled in.
 
-        A value that is one slot keeps its type; one without a slot is read as JSON, if it is.
-        A slot for which nothing is given leaves its argument out. Slots may be in a JSON list.
+        A value that is a single slot keeps its type; one without slots is read as JSON if valid.
+        An argument whose slot has no value is omitted. Slots may be in a JSON list.
         """
         filled: dict[str, Json] = {}
         for name, written in self.values:
@@ -99,10 +99,10 @@ def _put(values: dict[str, Json], path: list[str], value: Json) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Senses:
-    """Something that a driver tells of by itself."""
+    """Something that a driver reports of its own accord."""
 
     what: str
-    """``event``, ``sensor``, or what ``as`` says: ``heard``, ``pose``, ``human``, ``emergency``."""
+    """``event``, ``sensor``, or the value of ``as``: ``heard``, ``pose``, ``human``, ``emergency``."""
     name: str
     """The event's or sensor's."""
     by: str
@@ -113,9 +113,9 @@ class Senses:
     place: Place
 
     def value(self, message: Json) -> Json:
-        """The part of a message that counts; None where the message lacks it.
+        """The relevant part of a message; None if the message lacks it.
 
-        A number in its field counts the parts of a list, from 0.
+        A number in its field is an index into a list, from 0.
         """
         for name in self.field.split(".") if self.field else ():
             if isinstance(message, list) and name.isdecimal():
@@ -147,7 +147,7 @@ class DriverSettings:
     kind: str
     address: str
     devices: frozenset[str]
-    """The devices that it carries; empty until :func:`share_devices` has given it the rest."""
+    """Its devices; empty until :func:`share_devices` has given it the remaining ones."""
     open: int
     heartbeat: int
     limits: DriverLimits
@@ -158,7 +158,7 @@ class DriverSettings:
     options: dict[str, str] = field(default_factory=dict)
 
     def how(self, command: str, gesture: str = "") -> Does | None:
-        """How a Command is carried out, if the document says so: a gesture's own first."""
+        """How a Command is carried out, if specified; an entry for its gesture comes first."""
         said = [one for one in self.does if one.command == command]
         own = (one for one in said if gesture and one.gesture == gesture)
         return next(own, None) or next((one for one in said if not one.gesture), None)
@@ -234,7 +234,7 @@ def _senses(reader: Reader, node: Node) -> Senses:
 
 
 def share_devices(drivers: list[DriverSettings], devices: frozenset[str]) -> None:
-    """Give the drivers that name no devices all those that no other driver names."""
+    """Give the drivers that name no devices all devices that no other driver names."""
     left = devices - {name for one in drivers for name in one.devices}
     for driver in drivers:
         driver.devices = driver.devices or left

@@ -1,4 +1,4 @@
-"""What the robot is saying: how far it has got, and which marks it has passed."""
+"""What the robot is saying: its progress, and the marks it has passed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from prima.devices import voice
 from prima.messages import Command, Cue, Json, Order
 
 ABOUT_ALL = ("earlier", "hotword", "record", "finalsilence", "longest")
-"""Cues that are of a question, not of a place in its text."""
+"""Cues that belong to a question as a whole, not to a place in its text."""
 
 
 @dataclass(slots=True)
@@ -20,19 +20,19 @@ class Utterance:
     began: int
     ends: int
     timeline: voice.SpeechTimeline | None = None
-    """When its letters and marks come, where it has cues."""
+    """When its letters and marks are said, if it has cues."""
     skipped: int = 0
     """How much (ms) had been said before an interruption (X2)."""
     marks: int = 0
-    """How many marks had been passed by then: it goes on from the last of these."""
+    """How many marks had been passed by then: it resumes from the last of these."""
 
     @classmethod
     def of(cls, now: int, order: Order, rates: dict[str, float]) -> Utterance | None:
-        """What an order lets the robot say from now on, if anything.
+        """What the robot says from now on by an order, if anything.
 
         Args:
             now: the time (ms).
-            order: a ``start``; after an interruption it may name the mark to go on from (X2).
+            order: a ``start``; after an interruption it may name the mark to resume from (X2).
             rates: letters a second, by language.
         """
         command = order.command
@@ -51,11 +51,11 @@ class Utterance:
 
     @property
     def since(self) -> int:
-        """Behind how many characters of the text it goes on."""
+        """The number of characters of the text after which it resumes."""
         return marks_of(self.command)[self.marks - 1].at if self.marks else 0
 
     def left(self) -> Command:
-        """The Command with what is left to be said of its text."""
+        """The Command with the rest of its text."""
         command, since = self.command, self.since
         if not self.marks:
             return command
@@ -68,7 +68,7 @@ class Utterance:
         return replace(command, text=(command.text or "")[since:], cues=tuple(cues))
 
     def passed(self, now: int) -> tuple[int, str, int] | None:
-        """How many marks have been passed, the last one's name, and the ms since then."""
+        """The number of marks passed, the last one's name, and the ms since then."""
         played = self.skipped + now - self.began
         count = self.timeline.passed(played) if self.timeline is not None else 0
         if self.timeline is None or not count:
@@ -77,15 +77,15 @@ class Utterance:
         return count, name, round(played - time)
 
     def share(self, said: int) -> float:
-        """How much of the text has been said (0 to 1) behind characters of what was left of it."""
+        """How much of the text has been said (0 to 1) after so many characters of its rest."""
         return min((self.since + said) / max(len(self.command.text or ""), 1), 1.0)
 
     def heard(self, now: int, said: int | None = None) -> dict[str, Json]:
-        """How much of it has been heard, as :class:`prima.messages.Halted` has it.
+        """How much of it has been heard, in the form of :class:`prima.messages.Halted`.
 
         Args:
-            now: the time, by which that is told where the device does not say.
-            said: how many characters of what was left have been said, if it does.
+            now: the time, from which this is computed if the device does not report it.
+            said: how many characters of the rest have been said, if it does.
         """
         if said is not None:
             return self._heard_to(self.since + said)
@@ -100,7 +100,7 @@ class Utterance:
         return data
 
     def _heard_to(self, count: int) -> dict[str, Json]:
-        """The same behind so many characters of the whole text."""
+        """The same after so many characters of the whole text."""
         text = self.command.text or ""
         data: dict[str, Json] = {"heard": voice.whole_words(text, count)} if text else {}
         passed = [cue for cue in marks_of(self.command) if cue.at <= count]
@@ -110,12 +110,12 @@ class Utterance:
 
 
 def marks_of(command: Command) -> list[Cue]:
-    """The marks of a text, in its order."""
+    """The marks of a text, in order."""
     return [cue for cue in command.cues if cue.kind == "mark"]
 
 
 def closed(cues: Iterable[Cue]) -> Iterator[Cue]:
-    """Cues without the ends of what has begun before them."""
+    """Cues without those that end something begun before them."""
     inside = 0
     for cue in cues:
         inside += {"lasts": 1, "end": -1}.get(cue.kind, 0)
@@ -132,7 +132,7 @@ class SpeechMarks:
         self._passed: dict[str, tuple[str, int]] = {}
 
     def end(self, now: int, app: str, said: Utterance | None) -> None:
-        """Something has been said to its end."""
+        """Note that something has been said to its end."""
         passed = said.passed(now) if said is not None else None
         if passed is not None:
             self._passed[app] = (passed[1], now - passed[2])
@@ -140,8 +140,8 @@ class SpeechMarks:
     def heard(self, began: int, app: str, said: Utterance | None) -> dict[str, Json]:
         """The last mark passed when the user began to speak (VoiceXML 2.1, 4).
 
-        As :class:`prima.messages.Heard` has it; nothing for a question without marks, or for
-        a prompt without them that is said before one.
+        It has the form of :class:`prima.messages.Heard`; it is empty for a question without marks,
+        and for a prompt without marks that precedes one.
         """
         if said is None or not said.command.cued("mark", "earlier"):
             return {}

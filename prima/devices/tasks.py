@@ -1,4 +1,4 @@
-"""ABs that devices carry out, and the goals of drivers that they come to."""
+"""ABs that devices carry out, and the drivers' goals that make them up."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from prima.messages import Command, Delayed, Halted, Inbound, Json, Order, Prese
 
 @dataclass(slots=True, eq=False)
 class Goal:
-    """Something that a driver does, or has still to begin."""
+    """Something that a driver does or has yet to begin."""
 
     begin: Begin
     task: Task
@@ -33,14 +33,14 @@ class Goal:
     """Whether the driver has been told."""
     accepted: bool = False
     cancelled: bool = False
-    """Whether it was told to stop."""
+    """Whether the driver was told to stop it."""
     since: int = 0
-    """When the driver was told something, or reported, last (ms)."""
+    """When the driver last received a call or reported (ms)."""
     held: tuple[int, str] | None = None
-    """Since when (ms) it is held back, and by which device that is still stopping."""
+    """Since when (ms) it has been held back, and by which device that is still stopping."""
 
     def late(self, limits: DriverLimits) -> int | None:
-        """When it will have taken too long (ms), if ever."""
+        """When it will be overdue (ms), if ever."""
         limit = limits.cancel if self.cancelled else limits.progress
         if not self.cancelled and not self.accepted:
             limit = limits.accept
@@ -57,25 +57,25 @@ class Task:
     goals: list[Goal] = field(default_factory=list)
     """Those that have not ended."""
     said: Utterance | None = None
-    """What it says, as far as that can be told without a report."""
+    """What it says, as far as known without a report."""
     ends: int | None = None
     """When a loop ends, a pause is over, or a question without a text has been asked."""
     asks: bool = False
-    """Whether it is a question that has still to be asked to its end."""
+    """Whether it is a question that has not been fully asked yet."""
     data: dict[str, Json] = field(default_factory=dict)
-    """What the device told at the end."""
+    """The data that the device reported at the end."""
     failed: tuple[str, str] | None = None
-    """Which device did not do it, and why."""
+    """The device that failed to do it, and why."""
     lacks: bool = False
-    """Whether its devices work, and the robot cannot do just this."""
+    """Whether the robot is unable to do this though its devices work."""
     halting: bool = False
-    """Whether it was interrupted, and its devices have still to say how much was done (X2)."""
+    """Whether it was interrupted and its devices have yet to report how much was done (X2)."""
     shares: list[float] = field(default_factory=list)
     """How much of its goals had been done then."""
     timed: float | None = None
-    """How much of it had been done then by its times, if these tell."""
+    """How much of it had been done then by its times, if they are known."""
     heard: int | None = None
-    """How many characters had been said of what was left of its text, if the device tells."""
+    """How many characters of the rest of its text had been said, if the device reports it."""
 
     @property
     def id(self) -> str:
@@ -92,7 +92,7 @@ class Task:
         return any(goal.begin.kind in kinds for goal in self.goals)
 
     def parts(self) -> Iterator[tuple[str, frozenset[str]]]:
-        """The goals that it comes to, by their kinds, and their devices."""
+        """The goals that make it up, by kind, and their devices."""
         kind, devices = self.command.type, self.order.devices
         if kind not in ("pause", "speak", "q-and-a"):
             yield kind, devices - {"speaker"} if self.said is not None else devices
@@ -102,7 +102,7 @@ class Task:
             yield RECORD if self.command.cued("record") else LISTEN, devices - {"speaker"}
 
     def note_share(self, now: int, until: int | None) -> None:
-        """X2: how much of it had been done, as far as its times tell; ``until``: those of its answer."""
+        """X2: how much of it had been done by its times; ``until``: the times of its answer."""
         said = self.said
         known = (self.ends, until, said.ends if said else None)
         ends = max((time for time in known if time is not None), default=0)
@@ -111,7 +111,7 @@ class Task:
             self.timed = (now - began) / (ends - began)
 
     def note_end(self, goal: Begin, report: Done | Stopped | Broke) -> None:
-        """X2: how much of a goal had been done that was to stop, as its driver tells."""
+        """X2: note how much of a cancelled goal had been done, as its driver reports."""
         if isinstance(report, Stopped) and report.share is not None:
             self.shares.append(report.share)
         if goal.kind == SAY and isinstance(report, Done):
@@ -120,7 +120,7 @@ class Task:
             self.heard = report.said
 
     def halted(self, now: int) -> Halted:
-        """X2: how much had been done of it when it was interrupted."""
+        """X2: how much of it had been done when it was interrupted."""
         said = self.said
         timed = self.timed if said is None or self.heard is None else said.share(self.heard)
         shares = [*self.shares, *([] if timed is None else [timed])]
@@ -133,10 +133,10 @@ class Task:
 
 
 class OpenGoals:
-    """The goals that have not ended: told to drivers once their devices are free, and cancelled.
+    """The goals that have not ended: begins them once their devices are free, and cancels them.
 
     Args:
-        inbound: takes what the session has to know about them.
+        inbound: collects what has to be reported to the session about them.
     """
 
     def __init__(self, inbound: list[Inbound]) -> None:
@@ -150,7 +150,7 @@ class OpenGoals:
         self._serial = 0
 
     def drain(self, now: int) -> list[Call]:
-        """Give the calls made since the last time; what was held back begins if it can."""
+        """Return the calls made since the last time; goals held back begin if they can."""
         for goal in list(self.open.values()):
             if not goal.begun:
                 self.attempt(now, goal)
@@ -224,7 +224,7 @@ class OpenGoals:
             self._inbound.append(Presence(device, False, reason))
 
     def bring_back(self, devices: frozenset[str]) -> None:
-        """Devices are there again."""
+        """Note that devices are available again."""
         for device in sorted(devices & self.missing.keys()):
             del self.missing[device]
             self._inbound.append(Presence(device, True))

@@ -10,10 +10,10 @@ from functools import lru_cache
 from prima.messages import Cue
 
 RATES = {"en": 14.0, "ja": 8.0, "zh": 5.0, "ko": 6.0}
-"""Letters a second where a robot profile does not say otherwise."""
+"""Letters a second, unless a robot profile says otherwise."""
 DEFAULT_RATE = 13.0
 PAUSE_MS = 300
-"""What every utterance takes beyond its letters."""
+"""The time that every utterance takes in addition to its letters."""
 SENTENCE_MS = 250
 """The pause after a sentence inside an utterance."""
 STOPS = ".!?。！？"
@@ -38,8 +38,8 @@ def weight(letter: str, lang: str) -> float:
 def duration(text: str, lang: str, rates: dict[str, float]) -> int:
     """How long it takes to say a text, in ms.
 
-    ``lang`` is a language tag; the letters are counted, never the spaces, so a
-    sentence of a language without spaces takes its due.
+    ``lang`` is a language tag; letters are counted and spaces are not, so that sentences
+    of languages without spaces are timed correctly.
     """
     primary = lang.lower().partition("-")[0]
     letters = sum(weight(letter, primary) for letter in text)
@@ -55,7 +55,7 @@ def speed(lang: str, rates: dict[str, float]) -> float:
 
 
 def beginning(text: str, lang: str, share: float) -> str:
-    """What has been heard of a text when a share of its time (0 to 1) has gone, in whole words."""
+    """What has been heard of a text after a share of its time (0 to 1), in whole words."""
     primary = lang.lower().partition("-")[0]
     weights = [weight(letter, primary) for letter in text]
     left, said = share * sum(weights), 0
@@ -68,7 +68,7 @@ def beginning(text: str, lang: str, share: float) -> str:
 
 
 def whole_words(text: str, said: int) -> str:
-    """The first ``said`` characters of a text, without a word that is not over."""
+    """The first ``said`` characters of a text, without an unfinished word."""
     for cut in range(said, 0, -1):
         after = text[cut : cut + 1]
         if not after.strip() or not (text[cut - 1].isascii() and after.isascii()):
@@ -79,7 +79,7 @@ def whole_words(text: str, said: int) -> str:
 # Speech with cues ---------------------------------------------------------------------------
 
 Beat = tuple[str, float | str]
-"""A letter or a silence with its ms, a mark, or the beginning or end of what lasts a set time."""
+"""A letter or silence with its ms, a mark, or the beginning or end of a stretch with a set time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +107,7 @@ def timeline(
 ) -> SpeechTimeline:
     """Lay a text out in time, with its pauses, rates and set times (SSML 1.0, 2.2.3 and 2.2.4).
 
-    What lasts a set time is stretched or shortened as a whole, pauses in it included.
+    A stretch with a set time is lengthened or shortened as a whole, including its pauses.
     """
     beats = list(_beats(text, lang, rates, cues))
     scales = iter(_scales(beats))
@@ -115,7 +115,7 @@ def timeline(
     marks: list[tuple[float, str]] = []
     now, free = 0.0, False
     inside = [(1.0, 0.0)]
-    """By how much what stands here is stretched, and when it ends, outermost first."""
+    """The factors and ends of the stretches around this place, outermost first."""
     for kind, value in beats:
         match kind:
             case "mark":
@@ -135,7 +135,7 @@ def timeline(
 
 
 def _beats(text: str, lang: str, rates: dict[str, float], cues: tuple[Cue, ...]) -> Iterator[Beat]:
-    """A text's letters and cues in the order in which they come to pass."""
+    """A text's letters and cues in the order in which they occur."""
     primary, rate = lang.lower().partition("-")[0], speed(lang, rates)
     factor, left = 1.0, list(reversed(cues))
     for index in range(len(text) + 1):
@@ -152,7 +152,7 @@ def _beats(text: str, lang: str, rates: dict[str, float], cues: tuple[Cue, ...])
 
 
 def _beat(cue: Cue) -> Iterator[Beat]:
-    """What a cue that is no rate comes to, if it takes place in the text."""
+    """The step for a cue other than a rate, if it has a place in the text."""
     match cue.kind:
         case "sentence":
             yield "pause", SENTENCE_MS
@@ -163,7 +163,7 @@ def _beat(cue: Cue) -> Iterator[Beat]:
 
 
 def _scales(beats: list[Beat]) -> list[float]:
-    """By how much each stretch that lasts a set time is to be stretched, in their order."""
+    """The factor by which each stretch with a set time is lengthened, in order."""
     scales: list[float] = []
     open_: list[tuple[int, float, float]] = []
     now = 0.0
@@ -181,7 +181,7 @@ def _scales(beats: list[Beat]) -> list[float]:
 
 
 def language(text: str) -> str:
-    """The language of an utterance that has no tag, as far as its letters tell; else nothing."""
+    """The language of an untagged utterance, as far as its letters show; else empty."""
     names = {unicodedata.name(letter, "").partition(" ")[0] for letter in text}
     if names & {"HIRAGANA", "KATAKANA"}:
         return "ja"

@@ -1,4 +1,4 @@
-"""The simulated body: reaches the conductor's goals in the world, and reports what comes of them."""
+"""The simulated body: carries out the conductor's goals in the world, and reports the results."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from prima.sim.routes import Routes
 from prima.sim.world import World
 
 FAILING_MS = 300
-"""How long a broken device tries before it says that it fails."""
+"""How long a broken device tries before it reports failure."""
 FAILS = "the device fails"
 
 
 @dataclass(slots=True, eq=False)
 class Effort:
-    """A goal that the body is at. Times in ms; ``ends`` None while motion decides it."""
+    """A goal in progress. Times in ms; ``ends`` is None while motion determines it."""
 
     begin: Begin
     began: int
@@ -31,25 +31,25 @@ class Effort:
     looped: int = -1
     """When its last loop ended."""
     fails: tuple[str, str] | None = None
-    """Which device does not do it, and why."""
+    """The device that fails to do it, and why."""
     lost: bool = False
-    """Whether another goal has taken the wheels (only without a mediator)."""
+    """Whether another goal has taken over the wheels (only without a mediator)."""
     plan: LocomotionMemory = field(default_factory=LocomotionMemory)
     control: Callable[[], bool] | None = None
-    """Sets the wheels; true when it has nothing left to do."""
+    """Sets the wheels; returns True when nothing is left to do."""
 
     @property
     def turns_on(self) -> bool:
-        """Whether it ends where the world lets it."""
+        """Whether the world determines when it ends."""
         return self.control is not None and self.ends is None and self.tick is None
 
     @property
     def drives(self) -> bool:
-        """Whether the wheels are its."""
+        """Whether it controls the wheels."""
         return "locomotion" in self.begin.devices and not self.lost
 
     def share(self, now: int) -> float | None:
-        """How much of it has been done, 0 to 1, if that is known."""
+        """How much of it has been done, 0 to 1, if known."""
         if not self.ends or self.begin.kind == SAY:
             return None
         return (now - self.began) / (max(self.begin.spoken, self.ends) - self.began)
@@ -66,15 +66,15 @@ class Body:
         self.efforts: dict[str, Effort] = {}
         """By the keys of their goals."""
         self.broken: dict[str, bool] = {}
-        """Devices that fail, and whether they hang instead."""
+        """Broken devices, and whether they hang instead of failing."""
         self.arrived = False
-        """Whether a motion has come to its end at this instant, though what it says may go on."""
+        """Whether a motion has ended at this instant, though its speech may go on."""
         self._now = 0
 
     # Calls ------------------------------------------------------------------------
 
     def take(self, now: int, call: Told) -> list[Report]:
-        """Do what the conductor says; gives what is to be reported at once."""
+        """Carry out a call of the conductor; returns immediate reports."""
         if isinstance(call, Begin):
             self._begin(now, call)
         elif isinstance(call, Again):
@@ -88,18 +88,18 @@ class Body:
         return []
 
     def _forget(self, effort: Effort) -> None:
-        """A goal is over; where the body stopped on its way is noted."""
+        """End a goal, and note where the body stopped on its way."""
         del self.efforts[effort.begin.key]
         if effort.begin.kind == "topological-move":
             self.locomotion.note_way(str(effort.begin.command.args["to"]), effort.plan)
 
     def _stand(self, effort: Effort) -> None:
-        """Stop the wheels, where it is this goal that turns them."""
+        """Stop the wheels if this goal controls them."""
         if effort.drives:
             self.locomotion.stand()
 
     def broke(self, device: str, hangs: bool) -> list[Report]:
-        """A device fails, and what is done on it with it (E1); or it hangs, and says nothing more."""
+        """A device fails, with the goals on it (E1); or it hangs and no longer reports."""
         self.broken[device] = hangs
         told: list[Report] = []
         for effort in [one for one in self.efforts.values() if device in one.begin.devices]:
@@ -132,14 +132,14 @@ class Body:
             self._begin_once(now, effort)
 
     def _take_wheels(self, effort: Effort) -> None:
-        """A goal takes the wheels from others, but where it is composed with them (X5)."""
+        """Take the wheels from other goals, unless this one is composed with them (X5)."""
         if "locomotion" not in effort.begin.devices or effort.begin.beside:
             return
         for other in self.efforts.values():
             other.lost = "locomotion" in other.begin.devices and other is not effort
 
     def _begin_loops(self, now: int, effort: Effort) -> None:
-        """Begin a goal that a feedback Command works at in loops."""
+        """Begin the goal of a feedback Command."""
         begin, move = effort.begin, self.locomotion
         args = begin.command.args
         plan = effort.plan = LocomotionMemory(since=now)
@@ -165,7 +165,7 @@ class Body:
         args = begin.command.args
         match begin.kind:
             case "listen" | "record":
-                pass  # whoever listens says when that is over
+                pass  # the listener determines when it ends
             case "turn" | "set-direction" | "turn-and-speak":
                 self._turn(now, effort)
             case "face-human" | "face-human-and-speak":
@@ -212,7 +212,7 @@ class Body:
         effort.fails, effort.ends, effort.tick = (device, why), now + 1, None
 
     def _dance(self, effort: Effort) -> bool:
-        """Go through an added motion, composed with the move that goes on (X5).
+        """Perform an added motion, composed with the move that goes on (X5).
 
         A move whose loop ends at this instant goes on when the next one has been ordered.
         """
@@ -225,9 +225,9 @@ class Body:
     # Reports ------------------------------------------------------------------------
 
     def due(self) -> int | None:
-        """The next instant at which something is to be reported, if one is known.
+        """When the next report is due (ms), if known.
 
-        Nobody waits for the end of what is said while the same Command still moves the body.
+        The end of speech does not count while the same Command still moves the body.
         """
         moving = {_behavior(one.begin) for one in self.efforts.values() if one.turns_on}
         times = [
@@ -240,14 +240,14 @@ class Body:
 
     @property
     def moves_on(self) -> bool:
-        """Whether a motion has been begun that ends where the world lets it."""
+        """Whether there is a motion whose end the world determines."""
         return any(one.turns_on for one in self.efforts.values())
 
     def collect(self, now: int) -> list[Report]:
-        """Let the body get on, and give what its devices report at ``now``."""
+        """Advance the body, and return its devices' reports at ``now``."""
         self._now, self.arrived = now, False
         reports: list[Report] = []
-        # What goes somewhere sets the wheels first; a dance adds to it (X5).
+        # Moves set the wheels first; a dance adds to them (X5).
         efforts = list(self.efforts.values())
         if len(efforts) > 1 and self.profile.motions:
             efforts.sort(key=lambda one: one.begin.kind in self.profile.motions)
@@ -256,7 +256,7 @@ class Body:
         return reports
 
     def _get_on(self, now: int, effort: Effort) -> list[Report]:
-        """Let a goal set the wheels; gives its end, if it has come to that."""
+        """Let a goal set the wheels; returns its end, if it has ended."""
         steers = None if effort.lost else effort.control
         if steers is not None and steers() and effort.ends is None and effort.tick is None:
             effort.ends, self.arrived = max(now, effort.begin.spoken), True
@@ -284,7 +284,7 @@ class Body:
         return Done(key, data)
 
     def _end_loop(self, now: int, effort: Effort) -> list[Report]:
-        """A loop of a feedback Command ends: the goal is reached, out of reach, or goes on."""
+        """A loop of a feedback Command ends: the goal is reached, unreachable, or goes on."""
         kind, plan = effort.begin.kind, effort.plan
         if kind == "active-sensing-human":
             reached = self._search_on(now, effort)
@@ -298,7 +298,7 @@ class Body:
         return []
 
     def _search_on(self, now: int, effort: Effort) -> bool:
-        """Turn-and-Search: found, or look on, or turn the camera's angle and try again."""
+        """Turn-and-Search: found, keep looking, or turn by the camera's angle and try again."""
         if self.world.find_somebody():
             self.locomotion.stand()
             return True
@@ -308,7 +308,7 @@ class Body:
         return False
 
     def corners(self) -> list[Occurred]:
-        """Events of the corners that the body has come near to."""
+        """The events of corners that the body has come near."""
         return [
             Occurred(corner.event, "environment", {"corner": corner.id})
             for corner in self.world.corners()

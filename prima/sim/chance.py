@@ -1,8 +1,8 @@
-"""What happens by chance in a scenario: times, and whether something happens, by the run's seed.
+"""Chance in a scenario: random times, and whether something happens, drawn by the run's seed.
 
-Each thing that is drawn has a stream of its own, named by its place in the document: what else is
-drawn does not change it. The first, second ... number of a stream is for the first, second ...
-time that it is wanted.
+Each random value has a stream of its own, named by its place in the document, so that other
+draws do not change it. The first, second ... number of a stream is for the first, second ...
+time that the value is needed.
 """
 
 from __future__ import annotations
@@ -21,34 +21,34 @@ Made = TypeVar("Made")
 
 
 def _share(seed: int, stream: str, number: int) -> float:
-    """A number from 0 to 1; a sweep's own draws have other names than these."""
-    from prima.language.distributions import share  # few scenarios draw anything
+    """A number from 0 to 1; a sweep's own draws use other names."""
+    from prima.language.distributions import share  # few scenarios need it
 
     return share(seed, f"run/{stream}/{number}")
 
 
 @dataclass(frozen=True, slots=True)
 class Amount:
-    """A time (ms) or a number as written, or drawn anew each time from a distribution."""
+    """A time (ms) or a number, fixed or drawn anew each time from a distribution."""
 
     value: float
     quantile: Quantile | None = None
     stream: str = ""
 
     def drawn(self, seed: int, number: int = 1) -> float:
-        """The value of a time that it is wanted, from 1."""
+        """The value for the use with this number, from 1."""
         if self.quantile is None:
             return self.value
         return self.quantile(_share(seed, self.stream, number))
 
     def ms(self, seed: int, number: int = 1) -> int:
-        """That of a time, in whole milliseconds."""
+        """The same in whole milliseconds."""
         return round(self.drawn(seed, number))
 
 
 @dataclass(frozen=True, slots=True)
 class Chance:
-    """How likely something is, from 0 to 1, each time that it may happen."""
+    """The probability, from 0 to 1, that something happens each time that it may."""
 
     likely: float = 1.0
     stream: str = ""
@@ -60,39 +60,39 @@ class Chance:
 
 @dataclass(frozen=True, slots=True)
 class ChoiceStream:
-    """The stream by which one of several is chosen, each as likely as the others."""
+    """The stream by which one of several is chosen, with equal probability."""
 
     stream: str
 
     def of(self, several: Sequence[Made], seed: int, number: int) -> Made:
-        """The one that is chosen this time, from 1."""
+        """The choice for the use with this number, from 1."""
         return several[min(int(_share(seed, self.stream, number) * len(several)), len(several) - 1)]
 
 
 class Draws:
-    """Reads what is drawn in a document.
+    """Reads the random values of a document.
 
     Args:
-        reader: the document's.
-        whose: what the names of its streams begin with, to tell them from another document's.
+        reader: the document's reader.
+        whose: the prefix of its streams' names, which tells them from another document's.
     """
 
     def __init__(self, reader: Reader, whose: str = "") -> None:
         self.reader = reader
         self.any = False
-        """Whether anything is drawn."""
+        """Whether anything is random."""
         self._whose = whose
         self._names: dict[int, str] = {}
 
     def amount(self, node: Node, name: str, default: float = 0) -> Amount:
-        """An attribute that may be drawn; ``default`` where nothing is written, or it is wrong."""
+        """An attribute that may be random; ``default`` if it is missing or invalid."""
         value = self.reader.get(node, name)
         if not callable(value):
             return Amount(default if value is None else value)
         return Amount(default, value, self._stream(node, name))
 
     def chance(self, node: Node) -> Chance:
-        """How likely an element is to happen."""
+        """The probability that an element happens."""
         likely = self.reader.get(node, "chance")
         if likely is None or likely >= 1:
             return Chance()
@@ -107,13 +107,13 @@ class Draws:
         return f"{self.name(node)}.{name}"
 
     def name(self, node: Node) -> str:
-        """What the names of an element's streams begin with."""
+        """The prefix of the names of an element's streams."""
         if not self._names:
             self._name_all()
         return self._names[node.index]
 
     def _name_all(self) -> None:
-        """Name elements by their ids, or as the first, second ... of their tag where they are."""
+        """Name elements by their ids, or as the first, second ... of their tag in their parent."""
         left = [(self.reader.root, self._whose)]
         while left:
             node, name = left.pop()

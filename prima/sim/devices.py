@@ -1,4 +1,4 @@
-"""All that is simulated around a session: robot, user, services, telephone, and the world's areas."""
+"""The simulation around a session: robot, user, services, telephone, and the world's areas."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ from prima.sim.world import STEP_MS, World
 
 @dataclass(slots=True)
 class Cast:
-    """All that a run needs, read and checked."""
+    """Everything that a run needs, read and checked."""
 
     scenario: Scenario
     documents: list[AnyDocument]
-    """Those of the scenario's applications, then those that areas of the world offer."""
+    """The documents of the scenario's applications, then of those that the world's areas offer."""
     world: Map
     robot: Profile
     offers: list[tuple[Area, str]] = field(default_factory=list)
-    """Areas that offer an application, with the application's id."""
+    """The areas that offer an application, with the application's id."""
 
 
 class SimulatedDevices:
@@ -47,7 +47,7 @@ class SimulatedDevices:
         self.services = Services(scenario.services, web, scenario.seed)
         self.telephone = Telephone(scenario.transfers, scenario.seed)
         self._native = {doc.id for doc in cast.documents if isinstance(doc, Document)}
-        """Applications of PRIMA's own language."""
+        """Applications in PRIMA's own language."""
         self._watched = watches(cast.documents)
         if self._watched:
             self.robot.body.sensors.told_of = sensors_watched(cast.documents)
@@ -59,21 +59,21 @@ class SimulatedDevices:
         )
         self._entrances = Entrances(cast.offers)
         self._said = False
-        """Whether something of what came in last was the user's doing."""
+        """Whether any of the latest inbound values came from the user."""
         self._stirred = True
-        """Whether anything may have changed but places since it was found what is due."""
+        """Whether anything but positions may have changed since the due time was computed."""
         self._due: int | None = None
-        """What is due then, but for the user's doings."""
+        """The due time without the user's actions."""
         self._standing: int | None = 0
-        """When something is to be collected though nothing moves, as :meth:`due` has found."""
+        """When something is due even if nothing moves, as computed by :meth:`due`."""
 
     @property
     def awaits(self) -> bool:
-        """Whether an application is still to be loaded."""
+        """Whether an application is yet to be loaded."""
         return bool(self._loads) or self.people.will_load
 
     def due(self) -> int | None:
-        """The next instant at which something is to be collected (ms), if ever."""
+        """When there is next something to collect (ms), if ever."""
         if self._stirred:
             self._stirred, self._due = False, self._due_standing()
         self._standing = earliest(self._due, self.people.due())
@@ -82,7 +82,7 @@ class SimulatedDevices:
         return self._standing
 
     def _due_standing(self) -> int | None:
-        """The same without what motion and the user bring about."""
+        """The same, ignoring motion and the user."""
         return earliest(
             0 if self._entrances.unseen else None,
             self._loads[0][0] if self._loads else None,
@@ -92,9 +92,9 @@ class SimulatedDevices:
         )
 
     def collect(self, now: int) -> list[Inbound]:
-        """All that happens by ``now``, in order, once :meth:`due` has been asked.
+        """Everything that happens by ``now``, in order; :meth:`due` must have been called.
 
-        Most instants only move the bodies on.
+        Most instants only move the bodies.
         """
         self._said = False
         self.world.advance(now)
@@ -108,7 +108,7 @@ class SimulatedDevices:
         return inbound
 
     def _happened(self, now: int, crossed: list[Crossing]) -> list[Inbound]:
-        """Everything that happens at ``now`` beside motion, in order."""
+        """Everything that happens at ``now`` other than motion, in order."""
         self._stirred = True
         inbound: list[Inbound] = []
         while self._loads and self._loads[0][0] <= now:
@@ -128,7 +128,7 @@ class SimulatedDevices:
         return inbound + self.telephone.collect(now)
 
     def order(self, now: int, order: Order) -> None:
-        """Give an order to whom it is for."""
+        """Pass an order to its recipient."""
         if order.verb != "send":
             self.robot.order(now, order)
         elif "transfer" in order.data:
@@ -137,7 +137,7 @@ class SimulatedDevices:
             self.services.order(now, order)
 
     def observe(self, now: int, records: list[Record]) -> None:
-        """Let the user see what has happened; the robot listens on."""
+        """Let the user see what has happened; the robot keeps listening."""
         self._stirred = True
         self.robot.settle(now)
         if self._said:
@@ -145,13 +145,13 @@ class SimulatedDevices:
         self.people.observe(now, records)
 
     def _loaded(self, name: str, place: str = "") -> ApplicationLoaded:
-        """An application starts; one of VoiceXML is told of the user's call."""
+        """An application starts; a VoiceXML application is given the user's call."""
         native = name in self._native
         return ApplicationLoaded(name, place, {} if native else self.cast.scenario.connection)
 
 
 def _world(cast: Cast) -> World:
-    """The world, with robot and user where the scenario lets them begin."""
+    """The world, with robot and user in their initial places."""
     scenario, plan = cast.scenario, cast.world
     first = next(iter(plan.places.values()), (0.0, 0.0))
     at = plan.places.get(scenario.robot_at, first)
@@ -171,9 +171,9 @@ def watches(documents: Iterable[AnyDocument]) -> bool:
 
 
 def sensors_watched(documents: Iterable[AnyDocument]) -> frozenset[str] | None:
-    """The sensors that applications look at, by the first part of their names.
+    """The sensors that applications read, by the first part of their names.
 
-    None where that cannot be told: then all may matter.
+    None if that cannot be determined: then all may matter.
     """
     read = [sensors_read(doc) for doc in documents if isinstance(doc, Document)]
     known = [one for one in read if one is not None]

@@ -1,4 +1,4 @@
-"""The areas of a place that offer applications: which are entered and left."""
+"""The areas that offer applications: which ones the robot enters and leaves."""
 
 from __future__ import annotations
 
@@ -8,33 +8,33 @@ from prima.messages import ApplicationLoaded, ApplicationUnloaded
 from prima.sim.map import Area, Point
 
 THRESHOLD = 0.5
-"""How far (m) outside an area the robot has left it."""
+"""The robot has left an area when it is this far (m) outside."""
 
 
 Crossing = ApplicationLoaded | ApplicationUnloaded
-"""The application of an area that the robot has come into, or has left."""
+"""The application of an area that the robot has entered or left."""
 
 
 class Entrances:
-    """Areas with the ids of the applications that they offer, and which the robot is in."""
+    """Areas with the ids of the applications that they offer, and those that the robot is in."""
 
     def __init__(self, offers: Sequence[tuple[Area, str]]) -> None:
         self.offers = offers
         self._inside: set[str] = set()
         self._crossed: Point | None = None
-        """Where the robot was when areas were compared with its place last."""
+        """The robot's place when the areas were last compared with it."""
 
     @property
     def unseen(self) -> bool:
-        """Whether there are areas that were not compared with the robot's place yet."""
+        """Whether there are areas not yet compared with the robot's place."""
         return self._crossed is None and bool(self.offers)
 
     def enter(self, applications: Collection[str]) -> None:
-        """Take the robot to be in the areas of these applications."""
+        """Assume that the robot is in the areas of these applications."""
         self._inside = {area.id for area, name in self.offers if name in applications}
 
     def cross(self, here: Point) -> list[Crossing]:
-        """Load what an area offers that the robot has come into, and unload what it has left."""
+        """Load the applications of areas that the robot has entered; unload those it has left."""
         if here is self._crossed or not self.offers:
             return []
         self._crossed = here

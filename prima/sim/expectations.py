@@ -13,16 +13,16 @@ from prima.markup.tree import Node
 from prima.sim.happenings import TRIGGERS
 
 SUBJECTS = ("says", "does", "finishes", "event", "logs", "sends", "state", "ends")
-"""What an expectation may be of."""
+"""The possible subjects of an expectation."""
 WITH_DATA = ("does", "finishes", "event", "sends")
-"""Subjects that may be told closer by values."""
+"""Subjects that may be narrowed down by values."""
 MAX_EXPECTATIONS = 1000
 """Expectations that a scenario may have."""
 
 
 @dataclass(slots=True, eq=False)
 class Expectation:
-    """What has to happen in a run, or must never; times in ms.
+    """Something that has to happen in a run, or must never happen; times in ms.
 
     ``words`` are the subjects given, by the attribute's name. The rest says when: after
     ``previous`` (the one before it in an ``in-order``), after or before another of that id,
@@ -48,7 +48,7 @@ class Expectation:
 
 
 def read_expectations(reader: Reader, root: Node) -> list[Expectation]:
-    """All that is expected of the run."""
+    """Everything that is expected of the run."""
     found: list[Expectation] = []
     ids: set[str] = set()
 
@@ -80,7 +80,7 @@ def _expectation(
 ) -> Expectation:
     given = [name for name in SUBJECTS if name in node.attributes]
     triggers = [name for name in TRIGGERS if name in node.attributes]
-    if node.key in reader.vocabulary.elements:  # else of another namespace; told already
+    if node.key in reader.vocabulary.elements:  # otherwise of another namespace; already reported
         _check_subject(reader, node, given)
     _check_when(reader, node, triggers)
     if ordered and "state" in given:
@@ -110,10 +110,10 @@ def _expectation(
 
 
 def _check_subject(reader: Reader, node: Node, given: list[str]) -> None:
-    """One thing is expected, with what belongs to it."""
+    """Check that an expectation has one subject, and what belongs to it."""
     if not given:
         known = {item.name for item in reader.vocabulary.elements[node.key].attributes}
-        if set(node.attributes) <= known:  # else a word is misspelt; told already
+        if set(node.attributes) <= known:  # otherwise a word is misspelt; already reported
             message = f"<{node.tag}> does not say what."
             remedy = f"It needs one of {', '.join(SUBJECTS[:-1])} or {SUBJECTS[-1]}."
             reader.problem(node, "missing-attribute", message, "", remedy)
@@ -130,7 +130,7 @@ def _check_subject(reader: Reader, node: Node, given: list[str]) -> None:
 
 
 def _check_closer(reader: Reader, node: Node, given: list[str]) -> None:
-    """What tells a subject closer belongs to it."""
+    """Check that what narrows down a subject belongs to it."""
     first = given[0]
     if "reason" in node.attributes and first != "ends":
         reader.problem(node, "exclusive", "reason says why an application ends.", "reason",
@@ -148,7 +148,7 @@ def _check_closer(reader: Reader, node: Node, given: list[str]) -> None:
 
 
 def _check_when(reader: Reader, node: Node, triggers: list[str]) -> None:
-    """One trigger at most, and one that can be counted if it is."""
+    """Check that there is one trigger at most, and that ``count`` goes with a countable one."""
     if len(triggers) > 1:
         message = f'<{node.tag}> has both "{triggers[0]}" and "{triggers[1]}".'
         reader.problem(node, "exclusive", message, triggers[1], "Keep one of them.")
@@ -158,7 +158,7 @@ def _check_when(reader: Reader, node: Node, triggers: list[str]) -> None:
 
 
 def _check_other(reader: Reader, node: Node, name: str, ids: set[str]) -> None:
-    """after and before name an expectation that stands above."""
+    """Check that ``after`` and ``before`` name an expectation above."""
     other = node.get(name)
     if not other or other in ids:
         return

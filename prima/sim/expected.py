@@ -1,4 +1,4 @@
-"""Names in a scenario's expectations that its robot and applications do not know."""
+"""Names in a scenario's expectations that are unknown to its robot and applications."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ COMMANDS = ("does", "finishes", "doing", "done")
 def check_expectations(
     scenario: Scenario, documents: list[AnyDocument], robot: Profile
 ) -> list[Problem]:
-    """What the expectations of a scenario name and is not there."""
+    """Unknown names in a scenario's expectations."""
     problems: list[Problem] = []
-    commands = {*robot.commands, *TABLE_4_2}  # what it cannot do of the table is a warning
+    commands = {*robot.commands, *TABLE_4_2}  # those it cannot do are warnings
     applications = {document.id for document in documents}
     services = {service.name for service in scenario.services}
     forms: dict[str, set[str] | None] = {}
@@ -62,7 +62,7 @@ def _forms(by: str, documents: list[AnyDocument]) -> set[str] | None:
 
 
 def _state(one: Expectation, forms: set[str] | None, problems: list[Problem]) -> None:
-    """What an expectation says of a state has to be about a form that is there."""
+    """A state named in an expectation has to be in an existing form."""
     if forms is not None:
         wrong = f"{one.by} has no form" if one.by else "No application has a form"
         _known(one, "state", forms, wrong, problems)

@@ -1,4 +1,4 @@
-"""What a scenario lets happen: the user, the surroundings, services and calls."""
+"""The events of a scenario: the user, the surroundings, services and calls."""
 
 from __future__ import annotations
 
@@ -32,22 +32,22 @@ class When:
 
     trigger: str
     what: Any
-    """What is waited for: words, a Command, an event; an :class:`Amount` (ms) for ``at``."""
+    """What it waits for: words, a Command, an event; an :class:`Amount` (ms) for ``at``."""
     after: Amount
     times: int
     count: int
     doings: list[Doing]
     chance: Chance = SURE
     person: str = ""
-    """Whose doing it is; empty for the first person's."""
+    """The person who does it; empty for the first person."""
     node: Node | None = None
 
 
 @dataclass(slots=True)
 class Reply:
-    """What a service answers, after how long (ms); ``error`` where it fails.
+    """A service's answer, after how long (ms); ``error`` if it fails.
 
-    ``src`` names the file that a fetch is answered with, ``body`` is what it holds.
+    ``src`` names the file that answers a fetch, ``body`` is its content.
     """
 
     data: dict[str, Json] = field(default_factory=dict)
@@ -61,17 +61,17 @@ class Reply:
 
 @dataclass(slots=True)
 class Service:
-    """A service, and the URI under which it is reached by its address."""
+    """A service, and the URI by which it is reached."""
 
     name: str
     uri: str
     replies: list[Reply]
     application: str = ""
-    """The application that alone may ask it; empty if all may."""
+    """The only application that may use it; empty if all may."""
 
 
 UNANSWERED = ("busy", "noanswer", "network_busy")
-"""How a call ends that nobody answers (VoiceXML 2.0, 2.3.7.2.2)."""
+"""The outcomes of an unanswered call (VoiceXML 2.0, 2.3.7.2.2)."""
 ENDINGS = (
     "far_end_disconnect",
     "network_disconnect",
@@ -79,7 +79,7 @@ ENDINGS = (
     "maxtime_disconnect",
     "unknown",
 )
-"""How one ends that somebody has answered."""
+"""The outcomes of an answered call."""
 
 
 @dataclass(slots=True)
@@ -96,7 +96,7 @@ TRIGGERS = ("at", "said", "asked", "doing", "done", "on")
 
 
 def read_services(draws: Draws) -> list[Service]:
-    """The services; what an application sends to a name goes to its own, or to that of all."""
+    """The services; a message goes to the application's own service of that name, or to all's."""
     reader = draws.reader
     seen: set[tuple[str, str]] = set()
     services = []
@@ -137,7 +137,7 @@ def read_when(draws: Draws, node: Node) -> When:
 
 
 def _trigger(reader: Reader, node: Node) -> str:
-    """The attribute that says when; ``at`` if none does."""
+    """The trigger's attribute; ``at`` if there is none."""
     given = [name for name in TRIGGERS if name in node.attributes]
     message = "<when> needs exactly one of at, said, asked, doing, done, on."
     if len(given) > 1:
@@ -175,7 +175,7 @@ def _one_of(draws: Draws, node: Node) -> Doing:
 
 
 def _said(reader: Reader, node: Node) -> Doing:
-    """What the user says; without words they stay silent."""
+    """The user's words; without words they stay silent."""
     known = reader.vocabulary.attributes[node.key]
     if not node.text and node.attributes.keys() <= known.keys():
         message = f"<{node.tag}> holds no words: the user stays silent."
@@ -241,7 +241,7 @@ def read_reply(draws: Draws, node: Node) -> Reply:
 
 
 def read_connection(node: Node) -> dict[str, Json]:
-    """The user's call as ``session.connection`` has it (VoiceXML 2.0, 5.1.4)."""
+    """The user's call as in ``session.connection`` (VoiceXML 2.0, 5.1.4)."""
     given = node.attributes
     found: dict[str, Json] = {
         side: {"uri": given[side]} for side in ("remote", "local") if side in given

@@ -1,4 +1,4 @@
-"""What a scenario waits for and never comes, and what happens in it that nobody hears."""
+"""Checks for triggers of a scenario that never occur, and for events in it that nobody handles."""
 
 from __future__ import annotations
 
@@ -33,21 +33,21 @@ from prima.voicexml.pages import Pages, spoken_in
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 ENDINGS = frozenset({"exit", "unloaded"})
-"""Why an application ends, beside the names of events."""
+"""The reasons for an application's end other than names of events."""
 OPEN = (
     *("end.", "cancel.", "interrupted.", "expired.", "reply.", "error.service."),
     *("error.unsupported.", "error.badfetch."),
 )
-"""Beginnings of events that go on with a name that is not the language's own."""
+"""Beginnings of events that continue with a name from outside the language."""
 MOST = 500
-"""So many triggers of a kind are looked at: each is compared with all that may be said."""
+"""Only so many triggers of a kind are checked: each is compared with all possible utterances."""
 WORDS = (
     ("answer", "to", True),
     ("when", "asked", True),
     ("when", "said", False),
     ("never", "says", False),
 )
-"""What names words: its tag, its attribute, and whether they are asked, not said."""
+"""An attribute that names words: the tag, the attribute, and whether they are asked, not said."""
 
 CANNOT = UNSUPPORTED_COMMAND.says(
     "This robot cannot do {command}: it lacks {lacks}. This never happens.",
@@ -68,7 +68,7 @@ def check_hearing(cast: Cast) -> list[Problem]:
     corners = [*_corners(nodes, events, pages, world)]
     problems += [*corners, *_words(nodes, cast)]
     if pages:
-        return problems  # what a VoiceXML application hears is known only when it runs
+        return problems  # what a VoiceXML application accepts is known only at run time
     problems += _services(events, cast)
     told = {one.place for one in corners}
     triggers = [one for one in _triggers(nodes, events, cast) if one.place not in told]
@@ -76,7 +76,7 @@ def check_hearing(cast: Cast) -> list[Problem]:
 
 
 def _not_there(cast: Cast) -> Iterator[Problem]:
-    """What documents name and neither the world nor the robot has."""
+    """Names in documents that neither the world nor the robot has."""
     world, robot = cast.world, cast.robot
     names = Surroundings(
         *(frozenset(world.places), frozenset(world.things), frozenset(robot.gestures)),
@@ -92,7 +92,7 @@ def _not_there(cast: Cast) -> Iterator[Problem]:
 def _corners(
     nodes: list[Node], events: list[KnownEvents], pages: list[Node], world: Map
 ) -> Iterator[Problem]:
-    """A corner's event that is waited for and that no corner of the world raises: likely a slip."""
+    """A corner's event that is waited for but that no corner of the world raises: likely a typo."""
     corners = {corner.event for corner in world.corners} - {"corner"}
     known = {*corners, *_raised(nodes, events)}
     known.update(*(thrown_in(root) for root in pages))
@@ -103,7 +103,7 @@ def _corners(
 
 
 def _no_corner(place: Place, name: str, corners: set[str]) -> Iterator[Problem]:
-    """An event that nothing raises, if it was meant to be a corner's."""
+    """An event that nothing raises, if a corner's event was probably meant."""
     other = "" if name.startswith(OPEN) else near(name, corners)
     if other or name.startswith("corner."):
         message = f'No corner of the world raises the event "{name}".'
@@ -122,7 +122,7 @@ def _raised(nodes: list[Node], events: list[KnownEvents]) -> set[str]:
 def _waiting(
     nodes: list[Node], events: list[KnownEvents], pages: list[Node]
 ) -> Iterator[tuple[Place, str]]:
-    """The events that handlers, triggers and expectations name, each with its place."""
+    """The events named by handlers, triggers and expectations, each with its place."""
     for handler in chain.from_iterable(one.handlers for one in events):
         for name in handler.events:
             yield event_place(handler.node, name), name
@@ -133,7 +133,7 @@ def _waiting(
 
 
 def _awaited(nodes: list[Node]) -> Iterator[tuple[Node, str, str]]:
-    """The events that triggers and expectations name: element, attribute, name."""
+    """The events named by triggers and expectations: element, attribute, name."""
     for node in [one for one in nodes if one.tag in ("when", "expect", "never")][:MOST]:
         for attribute in ("on", "event", "reason"):
             if name := node.get(attribute):
@@ -141,7 +141,7 @@ def _awaited(nodes: list[Node]) -> Iterator[tuple[Node, str, str]]:
 
 
 def _in_voicexml(root: Node, names: Surroundings) -> Iterator[Problem]:
-    """What a VoiceXML document names and is not there: in Commands of PRIMA, and touch sensors."""
+    """Unknown names in a VoiceXML document: in PRIMA's Commands, and touch sensors."""
     commands = (one for one in root.walk() if one.namespace == PRIMA_NAMESPACE)
     for node in [one for one in commands if one.tag in TABLE_4_2]:
         placed = PLACED.keys() & TABLE_4_2[node.tag].arguments.keys()
@@ -154,7 +154,7 @@ def _in_voicexml(root: Node, names: Surroundings) -> Iterator[Problem]:
 
 
 def _sayings(cast: Cast) -> tuple[Sayings, Sayings] | None:
-    """What the applications ask, and what they say; None if that is known only in a run."""
+    """What the applications ask, and what they say; None if known only at run time."""
     asked: list[Sequence[object]] = []
     said: list[Sequence[object]] = []
     for document in cast.documents:
@@ -172,7 +172,7 @@ def _sayings(cast: Cast) -> tuple[Sayings, Sayings] | None:
 
 
 def _words(nodes: list[Node], cast: Cast) -> Iterator[Problem]:
-    """Triggers that wait for words which nobody says; what is never to be said, if it is a slip."""
+    """Triggers that wait for words that nobody says; forbidden words, if likely a typo."""
     named = [
         (node, name, asked)
         for tag, name, asked in WORDS
@@ -187,7 +187,7 @@ def _words(nodes: list[Node], cast: Cast) -> Iterator[Problem]:
 def _never_said(
     node: Node, name: str, asked: bool, questions: Sayings, sayings: Sayings
 ) -> Iterator[Problem]:
-    """Words that no application asks or says; what only a run tells is no problem."""
+    """Words that no application asks or says; those known only at run time are not reported."""
     words, said = node.get(name), questions if asked else sayings
     if not words.strip() or said.may_hold(words):
         return
@@ -213,7 +213,7 @@ def _unheard(nodes: list[Node], events: list[KnownEvents]) -> Iterator[Problem]:
 
 
 def _triggers(nodes: list[Node], events: list[KnownEvents], cast: Cast) -> Iterator[Problem]:
-    """Triggers and expectations of an event whose name is most likely a slip."""
+    """Triggers and expectations of an event whose name is likely a typo."""
     known = _raised(nodes, events) | {f"touch.{sensor}" for sensor in cast.robot.touch}
     known |= {corner.event for corner in cast.world.corners}
     begins = {name for one in known for name in beginnings(one)}
@@ -242,14 +242,14 @@ def _is_time(text: str) -> bool:
 
 
 def _late(nodes: list[Node], until: int) -> Iterator[Problem]:
-    """What is written for a time (ms) at which the run is over."""
+    """Elements with a time after the end (ms) of the run."""
     for node in nodes:
         at = node.get("at") if node.tag in ("when", "expect", "never") else ""
         if not at or at == "end":
             continue
         after = node.get("after") if node.tag == "when" else ""
         times = [read_value("delay", one) for one in (at, after) if one]
-        if sum(one for one in times if isinstance(one, int)) > until:  # others are drawn
+        if sum(one for one in times if isinstance(one, int)) > until:  # others are random
             message = f"The run is over after {until / 1000:g} s (until): this never comes."
             remedy = "Write an earlier time, or a later until."
             place = node.attribute_place("at")
@@ -257,7 +257,7 @@ def _late(nodes: list[Node], until: int) -> Iterator[Problem]:
 
 
 def _outside(nodes: list[Node], world: Map) -> Iterator[Problem]:
-    """Users who begin outside (m) the walls of a world whose places are all inside."""
+    """Users who begin outside the walls (m) of a world whose places are all inside."""
     persons = [one for one in nodes if one.tag == "person" and {"x", "y"} <= one.attributes.keys()]
     for node, (name, least, most) in product(persons, _inside(world)):
         if not least <= float(read_value("number", node.get(name))) <= most:
@@ -268,7 +268,7 @@ def _outside(nodes: list[Node], world: Map) -> Iterator[Problem]:
 
 
 def _inside(world: Map) -> list[tuple[str, float, float]]:
-    """Where (m) a world's walls begin and end in x and y; nothing if a place is not among them."""
+    """The bounds (m) of a world's walls in x and y; nothing if a place is outside them."""
     corners = [end for wall in world.walls for end in wall]
     if not corners:
         return []
@@ -278,7 +278,7 @@ def _inside(world: Map) -> list[tuple[str, float, float]]:
 
 
 def _unable(nodes: list[Node], robot: Profile) -> Iterator[Problem]:
-    """Commands that are waited for or expected, and that the robot cannot do."""
+    """Commands that are waited for or expected, but that the robot cannot do."""
     lacking = {name: row for name, row in TABLE_4_2.items() if name not in robot.commands}
     for node in nodes if lacking else ():
         for attribute in COMMANDS if node.tag in ("when", "expect", "never") else ():
@@ -289,7 +289,7 @@ def _unable(nodes: list[Node], robot: Profile) -> Iterator[Problem]:
 
 
 def _nobody(nodes: list[Node]) -> Iterator[Problem]:
-    """A user who moves in a scenario without one; who only speaks may be on the telephone."""
+    """A user who moves in a scenario without persons; one who only speaks may be on the phone."""
     if any(node.tag == "person" for node in nodes):
         return
     for node in [one for one in nodes if one.tag in ("walk", "look")][:1]:
@@ -299,7 +299,7 @@ def _nobody(nodes: list[Node]) -> Iterator[Problem]:
 
 
 def _services(events: list[KnownEvents], cast: Cast) -> Iterator[Problem]:
-    """Services that are asked and not there, if another was meant, or are another application's."""
+    """Services that do not exist, if another was meant, or that are another application's."""
     owners: dict[str, set[str]] = {}
     for service in cast.scenario.services:
         owners.setdefault(service.name, set()).add(service.application)

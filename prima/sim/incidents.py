@@ -1,4 +1,4 @@
-"""What happens in a scenario and is none of the user's doing."""
+"""Events of a scenario that the user does not cause."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from prima.sim.robot import Robot
 
 
 def happen(doing: Doing, robot: Robot, sensors: dict[str, Json], now: int) -> list[Inbound]:
-    """Let something happen at a time (ms); ``sensors`` takes what sensors are to say."""
+    """Let something happen at a time (ms); ``sensors`` takes new sensor values."""
     values = doing.values
     match doing.name:
         case "note":

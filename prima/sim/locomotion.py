@@ -1,4 +1,4 @@
-"""How the simulated robot moves its body, loop by loop: the wheels' speeds for each Command."""
+"""How the simulated robot moves: the wheels' speeds for each Command, loop by loop."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from prima.sim.routes import Routes
 from prima.sim.world import World, bearing, difference, distance
 
 ARRIVED = 0.1
-"""How near a goal is reached (m)."""
+"""A goal is reached at this distance (m)."""
 PASSED = 0.25
-"""How near a point on the way is passed (m)."""
+"""A point on the way is passed at this distance (m)."""
 BLOCKED_MS = 10_000
-"""How long a way may be blocked before the move has failed."""
+"""How long a way may be blocked before the move fails."""
 IN_THE_WAY = 0.8
-"""How near a person in front makes the robot go round them (m)."""
+"""The robot goes round a person in front of it who is nearer than this (m)."""
 TOO_NEAR = 0.1
-"""How near (m) its body may come to them in front."""
+"""The distance (m) that its body keeps from a person in front."""
 PASSING = 70.0
 """How many degrees off the person's direction it passes them."""
 ALIGNED = 1.5
-"""How many degrees off a direction counts as turned to it."""
+"""The robot counts as turned in a direction within this many degrees."""
 REACTING_S = 0.2
-"""How long the robot goes on off its way after a dance has stopped taking it there (X5)."""
+"""How long the robot stays off its way after a dance has stopped moving it (X5)."""
 AFTERMATH_MS = 1000
-"""How long after it moved the body a dance answers for where the robot is (X5)."""
+"""How long after moving the body a dance accounts for where the robot is (X5)."""
 
 
 @dataclass(slots=True)
@@ -44,7 +44,7 @@ class LocomotionMemory:
     sought: Point | None = None
     scanned: float = 0.0
     goal: bool = False
-    """Whether it has got where it was to go."""
+    """Whether it has reached its goal."""
     track: list[Point] = field(default_factory=list)
     """The whole way of a move, from where it began."""
     strayed: float = 0.0
@@ -52,14 +52,14 @@ class LocomotionMemory:
 
 
 class Locomotion:
-    """Sets the wheels. A motion gives True when it has nothing left to do."""
+    """Sets the wheels. A motion returns True when nothing is left to do."""
 
     def __init__(self, profile: Profile, world: World, routes: Routes) -> None:
         self.profile = profile
         self.world = world
         self.routes = routes
         self._stopped: dict[str, tuple[Point, list[Point]]] = {}
-        """By the places it was on the way to: where it stopped, and which way was left."""
+        """By destination: where it stopped, and the rest of the way."""
 
     def stand(self) -> None:
         """Stop the wheels."""
@@ -68,9 +68,9 @@ class Locomotion:
     # Ways ---------------------------------------------------------------------------
 
     def way(self, to: str) -> list[Point] | None:
-        """The way to a place: the one it was on, where the robot still is where it stopped.
+        """The way to a place: the previous one, if the robot is still where it stopped.
 
-        Else a pause would let it cut a corner, and nobody would hear of that corner.
+        Otherwise it would cut a corner after a pause, and that corner's event would be lost.
         """
         at, left = self._stopped.get(to, (self.world.position, []))
         if left and distance(at, self.world.position) <= ARRIVED:
@@ -78,11 +78,11 @@ class Locomotion:
         return self.routes.route(self.world, to)
 
     def note_way(self, to: str, plan: LocomotionMemory) -> None:
-        """Note where a move has stopped, and its way from there."""
+        """Note where a move has stopped, and the rest of its way."""
         self._stopped[to] = self.world.position, list(plan.path or ())
 
     def blocked(self, plan: LocomotionMemory) -> bool:
-        """Whether a move has not got on for too long; another try may find another way."""
+        """Whether a move has been stuck for too long; another attempt may find another way."""
         position, heading = self.world.position, self.world.heading
         before = plan.last or (position, heading)
         moved = distance(position, before[0]) > 0.02
@@ -125,7 +125,7 @@ class Locomotion:
         return difference(heading, before)
 
     def turn(self, plan: LocomotionMemory) -> bool:
-        """Turn by what is left of an angle."""
+        """Turn by the rest of an angle."""
         plan.turn_left -= self._turned(plan)
         if abs(plan.turn_left) <= ALIGNED:
             self.world.drive = (0.0, 0.0)
@@ -134,7 +134,7 @@ class Locomotion:
         return False
 
     def face(self, plan: LocomotionMemory) -> bool:
-        """Turn to the user, looking for them all round."""
+        """Turn to the user, searching all round for them."""
         world = self.world
         plan.scanned += abs(self._turned(plan))
         if world.sees_person() and world.person is not None:
@@ -164,7 +164,7 @@ class Locomotion:
             world.drive = (min(fastest, max(near * 1.5, 0.1)), turning)
 
     def _round_person(self, heading: float, goal: Point) -> tuple[float, float]:
-        """The direction and speed that pass a person who stands in the way, if one does."""
+        """The direction and speed that pass a person who is in the way, if anyone is."""
         for person in self.world.people_within(IN_THE_WAY):
             found = self._round(person, heading, goal)
             if found is not None:
@@ -172,7 +172,7 @@ class Locomotion:
         return heading, self.profile.speed
 
     def _round(self, person: Point, heading: float, goal: Point) -> tuple[float, float] | None:
-        """The direction and speed that pass a person, or None if they do not stand in the way."""
+        """The direction and speed that pass a person, or None if they are not in the way."""
         world, profile = self.world, self.profile
         gap = distance(world.position, person)
         if gap > distance(world.position, goal):
@@ -223,7 +223,7 @@ class Locomotion:
             else:
                 world.drive = (0.0, 0.0)
         elif not seen and left <= PASSED:
-            plan.sought = None  # they are not where they were seen last: look around
+            plan.sought = None  # they are not where they were last seen: look around
         else:
             toward = bearing(world.position, plan.sought)
             heading, fastest = self._round_person(toward, plan.sought)
@@ -231,7 +231,7 @@ class Locomotion:
         return False
 
     def search(self, plan: LocomotionMemory) -> bool:
-        """Turn on while the user is not to be seen."""
+        """Keep turning while the user is out of sight."""
         plan.turn_left -= self._turned(plan)
         if abs(plan.turn_left) > ALIGNED and not self.world.find_somebody():
             self._rotate(plan.turn_left)
@@ -243,10 +243,10 @@ class Locomotion:
     def dance(
         self, plan: LocomotionMemory, motion: Motion, now: int, began: int, track: list[Point]
     ) -> bool:
-        """Go through the steps of an added motion, on top of a move that goes on (X5).
+        """Perform the steps of an added motion, on top of a move that goes on (X5).
 
         Args:
-            plan: the motion's.
+            plan: the motion's memory.
             motion: its steps.
             now: the time (ms).
             began: when it began.

@@ -12,12 +12,12 @@ from prima.sim.vocabulary.world import WORLD
 
 Point = tuple[float, float]
 MAX_AREAS = 256
-"""Areas that a world may have."""
+"""Maximum number of areas of a world."""
 
 
 @dataclass(slots=True)
 class Corner:
-    """Where an event is raised when the robot comes near (radius in m)."""
+    """A point that raises an event when the robot comes near (radius in m)."""
 
     id: str
     at: Point
@@ -27,7 +27,7 @@ class Corner:
 
 @dataclass(slots=True)
 class Area:
-    """Where an application is offered: its corners (m), and the application's document."""
+    """An area that offers an application: its corners (m), and the application's document."""
 
     id: str
     title: str
@@ -57,9 +57,9 @@ class Map:
     corners: list[Corner] = field(default_factory=list)
     areas: list[Area] = field(default_factory=list)
     warnings: list[Problem] = field(default_factory=list)
-    """What is odd in its document, and no error."""
+    """The warnings about its document."""
     plan: FloorPlan | None = None
-    """Its ways and walls with their elements, of a world that has been read."""
+    """Its ways and walls with their elements, if the world was read from a document."""
 
     def point(self, name: str) -> Point | None:
         """Where a place or thing is (m)."""
@@ -83,7 +83,7 @@ def read_world(file: str, data: bytes) -> Map:
     _read_areas(reader, world, seen)
     world.plan = _plan(reader.root, world)
     errors = {problem.code for problem in reader.problems if problem.severity == "error"}
-    if errors <= {"no-such-name"}:  # others may be about what stands where
+    if errors <= {"no-such-name"}:  # others may depend on where things are
         reader.problems += world.plan.problems(whole=not errors)
     reader.finish()
     world.warnings = reader.problems

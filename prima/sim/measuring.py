@@ -6,25 +6,25 @@ from prima.messages import Json
 from prima.sim.world import World, distance
 
 ITS_OWN = frozenset({"human", "position", "moving"})
-"""What it measures itself, by the first part of the sensors' names."""
+"""The sensors that it measures itself, by the first part of their names."""
 STANDING = (0.0, 0.0)
-"""What the wheels are told when the robot stands."""
+"""The wheels' speeds when the robot is still."""
 
 
 class OwnSensors:
-    """Measures where the robot is, how it moves, and where the person is."""
+    """Measures the robot's position and motion, and where the person is."""
 
     def __init__(self, world: World) -> None:
         self.told_of: frozenset[str] | None = None
-        """Sensors that somebody looks at, by the first part of their names; None for all of them."""
+        """Sensors that are in use, by the first part of their names; None for all of them."""
         self._world = world
         self._around: tuple[object, ...] = ()
-        """Where robot and person were when it last measured, and how the robot moved."""
+        """The positions of robot and person at the last measurement, and the robot's motion."""
 
     def measure(self) -> dict[str, Json]:
-        """What the sensors say, if anything around the robot has changed.
+        """The sensor values, if anything around the robot has changed.
 
-        The first time that is all of them; later only what somebody looks at.
+        The first call returns all of them; later ones only those in use.
         """
         looked_at = ITS_OWN if self.told_of is None or not self._around else self.told_of
         world = self._world

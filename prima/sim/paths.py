@@ -1,12 +1,12 @@
-"""Values of a scenario by their paths, as ``when[2].after`` or ``person.speed``.
+"""Values of a scenario by path, such as ``when[2].after`` or ``person.speed``.
 
 A path leads from the root element down. Each step is the name of a child element, with its
 number among those of that name (``when[2]``) or its own name (``service[message-server]``)
 where there are several; a first step may be an element's ``id``. The last one may be an
-attribute; without one the path means the element's own value, as in OWN.
+attribute; without one the path denotes the element's own value, as in OWN.
 
-A path that begins with ``robot`` and does not mean the scenario's own ``<robot>`` leads on in the
-document that the scenario names as its robot: ``robot.speed``, ``robot.gesture[nod]``.
+A path that begins with ``robot`` and does not denote the scenario's own ``<robot>`` continues in
+the document of the scenario's robot: ``robot.speed``, ``robot.gesture[nod]``.
 """
 
 from __future__ import annotations
@@ -43,23 +43,23 @@ OWN = {
     **dict.fromkeys(("gesture", "adds"), "duration"),
     "voice": "rate",
 }
-"""The attribute that is an element's own value; its text where it is empty.
+"""The attribute that is an element's own value; if empty, its text is.
 
 Of a ``when`` it is ``after``, or ``at`` where that is its trigger.
 """
 NAMES = ("id", "name", "to", "src", "lang", "sensor", "command")
 """Attributes by whose values a step may choose among elements of one name."""
 LOADED = frozenset({"scenario", "person", "application", "service", "reply"})
-"""Elements of which some attributes name files, or what runs."""
+"""Elements with attributes that name files or applications."""
 LIGHT = frozenset(
     {
         *("until", "date", "policy", "patience", "seed", "id", "title"),
         *("at", "x", "y", "speed", "after", "start", "reason", "status"),
     }
 )
-"""Attributes of these elements that do neither."""
+"""Attributes of these elements that name neither."""
 MOST_TOLD = 12
-"""Names that a message lists."""
+"""The number of names that a message lists."""
 
 
 class ScenarioValue(NamedTuple):
@@ -74,7 +74,7 @@ class ScenarioValue(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """The kind of its values (see :mod:`prima.language.values`): also of those that are drawn."""
+        """The kind of its values (see :mod:`prima.language.values`), including random ones."""
         kind = self.attribute.kind if self.attribute else "text"
         return DRAWABLE.get(kind, kind)
 
@@ -87,30 +87,30 @@ class ScenarioValue(NamedTuple):
 
     @property
     def loads(self) -> bool:
-        """Whether another value may mean that other files are read, or other applications run."""
+        """Whether another value may cause other files to be read, or other applications to run."""
         if self.of_robot or self.node.tag not in LOADED:
             return False
         return self.attribute is None or self.attribute.name not in LIGHT
 
     def edit(self, value: str) -> TextEdit:
-        """Give it a value; an empty one takes the attribute, or the element of a text, away."""
+        """Give it a value; an empty one removes the attribute, or the element of a text."""
         if self.attribute is None:
             return set_text(self.node, value)
         return set_attribute(self.node, self.attribute.name, value)
 
 
 def find(root: Node, path: str, robot: Callable[[], Node]) -> ScenarioValue:
-    """The value that a path means in a scenario.
+    """The value that a path denotes in a scenario.
 
     Args:
         root: the scenario.
         path: the path.
-        robot: gives the document of its robot, if the path leads there.
+        robot: returns the document of its robot, if the path leads there.
 
     Raises:
         DocumentError: the robot's document has errors.
-        UsageError: the path is malformed, or leads to nothing, or to several elements, or to what
-            only another document of the robot can change.
+        UsageError: the path is malformed, or leads to nothing, to several elements, or to
+            something that only another document of the robot can change.
     """
     steps = _steps(path)
     if not _leads_to_robot(root, steps):
@@ -124,7 +124,7 @@ def find(root: Node, path: str, robot: Callable[[], Node]) -> ScenarioValue:
 
 
 _Step = tuple[str, str | None]
-"""A name, and which of several is meant."""
+"""A name, and which of several elements it selects."""
 
 
 def _steps(path: str) -> list[_Step]:
@@ -135,7 +135,7 @@ def _steps(path: str) -> list[_Step]:
 
 
 def _leads_to_robot(root: Node, steps: list[_Step]) -> bool:
-    """Whether a path leads into the robot's document: its second step means nothing before."""
+    """Whether a path leads into the robot's document: the scenario lacks its second step."""
     if steps[0] != ("robot", None) or len(steps) == 1 or _named(root, "robot"):
         return False
     return steps[1][0] not in {one.name for one in SCENARIO.elements["robot"].attributes}
@@ -144,7 +144,7 @@ def _leads_to_robot(root: Node, steps: list[_Step]) -> bool:
 def _named(root: Node, name: str) -> Node | None:
     """The element with an id."""
     everything = iter(root.walk())
-    next(everything)  # its own id names the document
+    next(everything)  # the root's id names the document
     return next((one for one in everything if one.get("id") == name), None)
 
 
@@ -177,7 +177,7 @@ class _Search:
         return next((one for one in element.attributes if one.name == name), None)
 
     def below(self, node: Node, name: str, which: str | None, first: bool) -> Node:
-        """The child that a step means."""
+        """The child that a step denotes."""
         called = _named(self.root, name) if first and which is None else None
         if called is not None:
             return called

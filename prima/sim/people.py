@@ -17,9 +17,9 @@ from prima.sim.scenario import Scenario
 from prima.sim.world import World, distance
 
 KEYS = frozenset("0123456789*# ")
-"""What is pressed, where nothing else is said."""
+"""What is pressed by default."""
 KEYS_THAT_END = "#*"
-"""Keys pressed at the end of what is recorded: there is no silence to wait for."""
+"""Keys pressed to end a recording: there is no silence to wait for."""
 
 PHASES = {
     "asked": ("listening",),
@@ -28,60 +28,60 @@ PHASES = {
     "done": ("end",),
     "on": ("event",),
 }
-"""The records in which users see what they wait for, by their phase."""
+"""The records that users wait for, by their phase."""
 OVER = ("end", "cancel", "fail")
-"""How a behaviour ends in the records."""
+"""The kinds of records that end a behaviour."""
 
 
 @dataclass(slots=True, order=True)
 class TriggeredScript:
-    """What follows a trigger: what is left of it, and when it goes on (ms)."""
+    """The rest of a trigger's sequence, and when it continues (ms)."""
 
     time: int
     triggered: bool
-    """Whether something that the robot did has begun it; what was planned comes first."""
+    """Whether it was triggered by the robot; planned sequences come first."""
     serial: int
     left: list[Doing] = field(compare=False)
     who: str = field(default="", compare=False)
-    """Whose doing it is."""
+    """The person who does it."""
     number: int = field(default=1, compare=False)
-    """Which time it is that this is done, from 1: what is drawn in it depends on that."""
+    """How many times this has been done, from 1: its random values depend on that."""
     speaking: str = field(default="", compare=False)
     began: int = field(default=0, compare=False)
     """When they began to speak."""
     lasts: int = field(default=0, compare=False)
     """How long (ms) they speak."""
     told: dict[str, Json] = field(default_factory=dict, compare=False)
-    """What is told of it where it is recorded."""
+    """What is reported of it if it is recorded."""
 
 
 class People:
-    """Plays the users: observes what the robot does, and does what the scenario says."""
+    """Plays the users: observes the robot, and follows the scenario."""
 
     def __init__(self, scenario: Scenario, world: World, robot: Robot) -> None:
         self.world = world
         self.robot = robot
         self.sensors: dict[str, Json] = {}
         self.first = scenario.persons[0].name
-        """Who does what nobody is named for."""
+        """The person who acts where no person is named."""
         self._several = len(scenario.persons) > 1
         self._seed = scenario.seed
         self._speeds = {one.name: one.speed.drawn(self._seed) for one in scenario.persons}
         self._awaited: dict[str, list[tuple[int, When]]] = {}
-        """What is waited for in records of a phase, with its number in the scenario."""
+        """Triggers by the phase of the records that they wait for, with their numbers."""
         self._fired: dict[int, int] = {}
         self._seen: dict[int, int] = {}
         self._scripts: list[TriggeredScript] = []
-        """What is still to be done, as a heap: what comes next is first."""
+        """What is yet to be done, as a heap: the next is first."""
         self._playing: list[TriggeredScript] = []
-        """What is being done at this instant, and not in the heap meanwhile."""
+        """What is being done at this instant and is not in the heap meanwhile."""
         self._serial = 0
         self._listens = False
-        """Whether it matters to anybody what is said."""
+        """Whether anything waits for what is said."""
         self._texts: dict[str, str] = {}
-        """What the behaviours that go on have said."""
+        """The texts of the behaviours that are under way."""
         self._following: dict[str, float] = {}
-        """Who goes behind the robot, and how far (m)."""
+        """The people who follow the robot, and at which distance (m)."""
         for index, when in enumerate(scenario.whens):
             if when.trigger == "at" and when.chance.happens(self._seed, 1):
                 time = when.what.ms(self._seed) + when.after.ms(self._seed)
@@ -100,28 +100,28 @@ class People:
         return script
 
     def play(self, time: int, doings: list[Doing]) -> Callable[[], bool]:
-        """Let the first do something at a time (ms) still to come, as a ``when`` then would.
+        """Let the first person do something at a future time (ms), as a ``when`` would.
 
         Returns:
-            what tells whether all of it has been done.
+            a function that says whether all of it has been done.
         """
         script = self._begin(doings, time, False)
         return lambda: not any(one is script for one in self._scripts)
 
     @property
     def there(self) -> bool:
-        """Whether the first is there."""
+        """Whether the first person is present."""
         return self.world.people[self.first].at is not None
 
     @property
     def will_load(self) -> bool:
-        """Whether an application is still to be put in again."""
+        """Whether an application is yet to be loaded again."""
         return any(doing.name == "load" for one in self._scripts for doing in one.left)
 
     # Observing --------------------------------------------------------------------
 
     def observe(self, now: int, records: list[Record]) -> None:
-        """See what has happened, and react to it after a while."""
+        """Observe what has happened, and react to it after a delay."""
         for record in records:
             phase = record["phase"]
             if phase == "start" and self._listens and record.get("text"):
@@ -143,7 +143,7 @@ class People:
             self._begin(when.doings, now + after, True, when.person, fired)
 
     def _is(self, when: When, phase: str, record: Record) -> bool:
-        """Whether a record, of one of the trigger's phases, is what the user waits for."""
+        """Whether a record with one of the trigger's phases is what the user waits for."""
         behavior = record.get("behavior") or ""
         match when.trigger:
             case "asked":
@@ -167,11 +167,11 @@ class People:
     # Doing ------------------------------------------------------------------------
 
     def due(self) -> int | None:
-        """When something is to be done next, if ever."""
+        """When there is next something to do, if ever."""
         return self._scripts[0].time if self._scripts else None
 
     def collect(self, now: int) -> list[Inbound]:
-        """Everything that happens at ``now`` by the scenario's script."""
+        """Everything that the scenario's script does at ``now``."""
         made: list[Inbound] = []
         if self._scripts and self._scripts[0].time <= now:
             while self._scripts and self._scripts[0].time <= now:
@@ -205,11 +205,11 @@ class People:
         return made
 
     def _by(self, who: str) -> dict[str, Json]:
-        """Who has spoken or touched, where that is not clear."""
+        """Who has spoken or touched, if that is not clear."""
         return {"person": who} if self._several else {}
 
     def _does(self, who: str, what: str) -> list[Inbound]:
-        """What somebody does, for the reader."""
+        """What somebody does, as a note for the reader."""
         return [Narrated("user", f"{who} {what}" if self._several else what)]
 
     def _do(self, doing: Doing, script: TriggeredScript, now: int) -> list[Inbound]:
@@ -242,7 +242,7 @@ class People:
         return []
 
     def _speak(self, text: str, script: TriggeredScript, now: int) -> None:
-        """Begin to say something; what is recorded is over after a silence, or cut off."""
+        """Begin to say something; a recording ends after a silence, or is cut off."""
         self.robot.speech_begins(now)
         script.began, script.speaking, script.told = now, text, {}
         bounds = self.robot.ear.recording()
@@ -266,7 +266,7 @@ class People:
         return voice.timeline(text, voice.language(text), self.robot.profile.voices, ())
 
     def _hang_up(self, now: int) -> Inbound:
-        """Hang up, and say nothing more; what is being recorded is told as far as it goes."""
+        """Hang up, and say nothing more; a recording in progress is reported as far as it got."""
         data: dict[str, Json] = {}
         speaking = [one for one in (*self._playing, *self._scripts) if one.speaking]
         for script in sorted(speaking, key=lambda one: one.serial):
@@ -281,7 +281,7 @@ class People:
         return Occurred("connection.disconnect.hangup", "user", data)
 
     def _go(self, doing: Doing, script: TriggeredScript, now: int) -> list[Inbound]:
-        """Walk somewhere, go along with the robot, stop, or go away."""
+        """Walk somewhere, follow the robot, stop, or go away."""
         who = script.who
         self._following.pop(who, None)
         match doing.name:
@@ -323,5 +323,5 @@ class People:
 
 
 def _part(said: voice.SpeechTimeline, ms: int) -> str:
-    """What has been said after a time: whole words, unless not even one is over."""
+    """What has been said after a time: whole words, unless not even one is finished."""
     return said.heard(ms) or said.text[: max(sum(1 for end in said.ends if end <= ms), 1)]

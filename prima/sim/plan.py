@@ -1,4 +1,4 @@
-"""What is odd on a world's map, and no error: ways through walls, places to which nothing leads."""
+"""Warnings about a world's map: ways through walls, places to which nothing leads."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from prima.markup.tree import Node
 Point = tuple[float, float]
 Segment = tuple[Point, Point]
 MOST = 300_000
-"""How many pairs of lines are compared at most; of a larger map nothing is said."""
+"""The maximum number of pairs of lines to compare; larger maps are not checked."""
 
 
 def crosses(one: Segment, two: Segment) -> bool:
@@ -64,7 +64,7 @@ class FloorPlan:
         self._walls = walls
 
     def problems(self, whole: bool = True) -> Iterator[Problem]:
-        """Warnings about it; ``whole`` says whether all its ways are known."""
+        """Warnings about the map; ``whole`` says whether all its ways are known."""
         if len(self._ways) * len(self._walls) <= MOST:
             yield from self._blocked()
         if whole and self._ways and len(self._places) ** 2 * max(len(self._walls), 1) <= MOST:
@@ -83,13 +83,13 @@ class FloorPlan:
                 yield Problem(node.place, "warning", "blocked-way", message, remedy)
 
     def narrow(self, room: float) -> Iterator[Problem]:
-        """Warnings of ways that are nearer (m) to a wall than a robot can be that goes along them."""
+        """Warnings about ways that are too close (m) to a wall for the robot to go along them."""
         if len(self._ways) * len(self._walls) > MOST:
             return
         for begin, end, node in self._ways:
             line = self._places[begin], self._places[end]
             if any(crosses(line, segment) for segment, _ in self._walls):
-                continue  # told already
+                continue  # already reported
             near = [(apart(line, segment), wall) for segment, wall in self._walls]
             metres, wall = min(near, key=lambda one: one[0], default=(room, node))
             if metres < room:
@@ -101,9 +101,9 @@ class FloorPlan:
                 yield Problem(node.place, "warning", "blocked-way", message, remedy)
 
     def _unreachable(self) -> Iterator[Problem]:
-        """Places to which no way leads, and that cannot be seen from some place either.
+        """Places to which no way leads and that some place does not see.
 
-        The robot begins a route at any place that it sees.
+        The robot can begin a route at any place that it sees.
         """
         groups = self._groups()
         for group in groups[1:]:
@@ -116,7 +116,7 @@ class FloorPlan:
                 yield Problem(place, "warning", "unreachable", message, remedy)
 
     def _groups(self) -> list[list[str]]:
-        """Places that ways connect, in the order of the document."""
+        """Places connected by ways, in the order of the document."""
         leads: dict[str, set[str]] = {name: set() for name in self._places}
         for begin, end, _ in self._ways:
             leads[begin].add(end)

@@ -1,4 +1,4 @@
-"""A rehearsal: a scenario run in virtual time; and whether its parts go together."""
+"""A rehearsal: a scenario run in virtual time; and checks that its parts fit together."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ def check_names(
     robot: Profile | None,
     documents: list[AnyDocument] | None,
 ) -> list[Problem]:
-    """Names in a scenario that its world, robot and applications do not know.
+    """Names in a scenario that are unknown to its world, robot and applications.
 
-    What could not be read is None: then nothing is said of its names.
+    What could not be read is None: its names are not checked.
     """
     problems: list[Problem] = []
     known: dict[tuple[str, str], tuple[set[str] | None, str]] = {}
@@ -41,7 +41,7 @@ def check_names(
     if robot is not None:
         known["touch", "sensor"] = set(robot.touch), "touch sensor"
         known["fail", "device"] = known["repair", "device"] = set(robot.devices), "device"
-        commands = {*robot.commands, *TABLE_4_2}  # what it cannot do of the table is a warning
+        commands = {*robot.commands, *TABLE_4_2}  # those it cannot do are warnings
         known["when", "doing"] = known["when", "done"] = commands, "Command"
     if documents is not None:
         ids = {document.id for document in documents}
@@ -61,7 +61,7 @@ def check_names(
 
 
 def check_cast(cast: Cast) -> list[Problem]:
-    """What is wrong with a scenario together with its world, robot and applications."""
+    """The problems of a scenario together with its world, robot and applications."""
     scenario = cast.scenario
     problems = check_names(scenario, cast.world, cast.robot, cast.documents)
     seen: set[str] = set()

@@ -13,7 +13,7 @@ from prima.sim.world import World
 
 
 class Robot:
-    """Takes the mediator's orders, and gives what comes in."""
+    """Takes the mediator's orders, and returns inbound values."""
 
     def __init__(
         self, profile: Profile, world: World, routes: Routes, exclusive: bool = True
@@ -24,10 +24,10 @@ class Robot:
         self.conductor = Conductor(profile, world.pose, exclusive=exclusive)
         self.ear = self.conductor.ear
         self._reached: list[Occurred] = []
-        """Events of the corners that the body has come near to at this instant."""
+        """The events of corners that the body has come near at this instant."""
 
     def due(self) -> int | None:
-        """The next instant at which something is to be reported, if one is known (ms)."""
+        """When the next report is due (ms), if known."""
         return earliest(self.body.due(), self.conductor.due(self.world.sees_person()))
 
     def order(self, now: int, order: Order) -> None:
@@ -36,7 +36,7 @@ class Robot:
         self._carry_out(now)
 
     def _carry_out(self, now: int) -> None:
-        """Let the body do what the conductor says, until nothing more comes of it."""
+        """Let the body carry out the conductor's calls until there are no more reports."""
         while calls := self.conductor.drain():
             for call in calls:
                 self._report(now, self.body.take(now, call))
@@ -46,9 +46,9 @@ class Robot:
             self.conductor.report(now, report)
 
     def get_on(self, now: int) -> bool:
-        """Let the body get on to ``now``; whether anything but motion came of it.
+        """Advance the body to ``now``; whether anything but motion resulted.
 
-        Whatever motion brings about is asked here: what time brings, :meth:`due` knows.
+        This covers the effects of motion; :meth:`due` covers those of time.
         """
         reports = self.body.collect(now)
         if reports:
@@ -60,7 +60,7 @@ class Robot:
         return self.conductor.sight.heeds(self.world.sees_person())
 
     def collect(self, now: int) -> list[Inbound]:
-        """Everything that the devices report at ``now``, to which the body has got on."""
+        """Everything that the devices report at ``now``, once the body has been advanced."""
         visible = self.world.sees_person()
         where = self.body.locomotion.whereabouts() if visible else {}
         told = self.conductor.collect(now, visible, where)
@@ -68,18 +68,18 @@ class Robot:
         return [*told, *self._reached]
 
     def settle(self, now: int) -> None:
-        """All orders of an instant have been given."""
+        """Note that all orders of an instant have been given."""
         self.conductor.end_loops()
         self._carry_out(now)
 
     def sense(self, values: Data) -> list[Inbound]:
-        """What the sensors say, if it has changed: the body's, and others of the surroundings."""
+        """The sensor values that have changed: the body's, and those of the surroundings."""
         return self.conductor.sensors.take({**self.body.sensors.measure(), **values})
 
     # What happens to it ---------------------------------------------------------------
 
     def broke(self, now: int, device: str, hangs: bool) -> list[Inbound]:
-        """A device fails, and what runs on it with it (E1); or it hangs, and says nothing more."""
+        """A device fails, with what runs on it (E1); or it hangs and no longer reports."""
         self._report(now, self.body.broke(device, hangs))
         if hangs:
             for task in self.conductor.tasks.values():

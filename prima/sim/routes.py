@@ -14,21 +14,21 @@ if TYPE_CHECKING:
     from networkx import Graph
 
 SHORTEST = 0.001
-"""The length (m) of a way between places on one spot: without one, each would lead to the other."""
+"""The length (m) of a way between places on the same spot: at 0, each would lead to the other."""
 
 
 class Routes:
-    """Shortest ways between places, each looked for once."""
+    """Shortest ways between places, each computed once."""
 
     def __init__(self, plan: Map) -> None:
         self._map = plan
         self._leads: dict[str, dict[str, tuple[float, str]]] = {}
-        """By places that have been asked for: how far it is from others (m), and by which."""
+        """By destination: the distance from other places (m), and the next place."""
 
     @cached_property
     def _graph(self) -> Graph[str]:
         """The places, and the ways between them with their lengths (m)."""
-        from networkx import Graph  # few runs ask for a way, and it takes a tenth of a second
+        from networkx import Graph  # few runs need a way, and importing takes a tenth of a second
 
         graph: Graph[str] = Graph()
         graph.add_nodes_from(self._map.places)
@@ -38,7 +38,7 @@ class Routes:
         return graph
 
     def route(self, world: World, to: str) -> list[Point] | None:
-        """Points to go through from where the robot is to a place, or None if there is no way."""
+        """The points from the robot's position to a place, or None if there is no way."""
         here, places = world.position, self._map.places
         if to not in places:
             return None
@@ -53,9 +53,9 @@ class Routes:
         return [places[name] for name in path]
 
     def _lead_to(self, to: str) -> dict[str, tuple[float, str]]:
-        """How far it is to a place from all those that have a way to it, and which comes next.
+        """The distance to a place from all places with a way to it, and the next place on it.
 
-        Of ways of one length, that by the place first in the alphabet.
+        Of ways of equal length, the one through the place first in the alphabet.
         """
         from networkx import dijkstra_predecessor_and_distance
 
@@ -65,9 +65,9 @@ class Routes:
         }
 
     def _first(self, free: Callable[[Point, Point], bool], here: Point, to: str) -> str | None:
-        """The place from which the way to another is shortest, of those that are free to go to.
+        """The place with the shortest way to another, among those that can be reached freely.
 
-        Whether one is free takes longest to tell: it is asked only of those that are nearer.
+        Checking that takes longest, so only nearer places are checked.
         """
         found, shortest = None, inf
         for name, (length, _) in sorted(self._leads[to].items()):

@@ -28,9 +28,9 @@ from prima.sim.user import User
 from prima.sim.vocabulary.scenario import SCENARIO
 
 UNTIL_MS = 600_000
-"""When a run ends whose scenario does not say."""
+"""When a run ends if the scenario does not say."""
 WALKING = Amount(1.0)
-"""How fast a person walks of whom nobody says so."""
+"""How fast a person walks by default."""
 
 
 @dataclass(slots=True)
@@ -39,7 +39,7 @@ class Person:
 
     name: str
     at: str = ""
-    """The place or thing where they are at first."""
+    """The place or thing where they start."""
     point: Point | None = None
     speed: Amount = WALKING
     """Metres a second."""
@@ -61,10 +61,10 @@ class Scenario:
     """When the run begins by its own calendar, as ``2005-03-01T10:00:00`` (UTC)."""
     policy: str
     patience: int
-    """How long (ms) an application may keep others from the speaker (E6); 0 for ever."""
+    """How long (ms) an application may keep others from the speaker (E6); 0 for no limit."""
     entrances: bool
     seed: int
-    """By which is drawn what the scenario, and its users, leave to chance."""
+    """The seed of the random values of the scenario and its users."""
     robot_at: str
     robot_heading: float | None
     persons: list[Person]
@@ -73,22 +73,22 @@ class Scenario:
     whens: list[When]
     services: list[Service]
     connection: dict[str, Json]
-    """What is known of the user's call, as ``session.connection`` has it."""
+    """The user's call, as in ``session.connection``."""
     transfers: list[CallTransfer]
     expectations: list[Expectation]
-    """What ``prima test`` checks, in document order."""
+    """The expectations that ``prima test`` checks, in document order."""
     draws: Draws
     node: Node
     users: dict[str, User] = field(default_factory=dict)
-    """How persons behave by documents of their own, by their names."""
+    """The behaviour of persons with a document of their own, by name."""
 
     @property
     def drawn(self) -> bool:
-        """Whether anything in it is drawn by its seed."""
+        """Whether anything in it is random."""
         return self.draws.any or any(user.draws.any for user in self.users.values())
 
     def take(self, name: str, user: User) -> None:
-        """Let a person be a user of a kind: what the scenario says of them itself comes first."""
+        """Let a person be a user of a kind; the scenario's own settings take precedence."""
         self.users[name] = user
         for person in self.persons:
             if person.name == name and person.node is not None:
@@ -117,10 +117,10 @@ def read_scenario(file: str, data: bytes) -> Scenario:
 
 
 def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
-    """A scenario and its problems; what is wrong in it has no value.
+    """A scenario and its problems; invalid parts have no value.
 
     Raises:
-        DocumentError: it is no XML document, or beyond a limit.
+        DocumentError: it is not an XML document, or exceeds a limit.
     """
     reader = Reader(SCENARIO, file, data)
     root = reader.root
@@ -170,7 +170,7 @@ def _applications(draws: Draws) -> list[tuple[str, Amount, Node]]:
 
 
 def _check_ids(reader: Reader) -> None:
-    """Note names of happenings and answers that are there twice."""
+    """Note duplicate names of happenings and answers."""
     seen: set[str] = set()
     for node in reader.root.all("when", "answer"):
         name = node.get("id")
@@ -181,7 +181,7 @@ def _check_ids(reader: Reader) -> None:
 
 
 def _only(reader: Reader, tag: str) -> Node | None:
-    """The element of a tag that there may be once; a second one is a problem."""
+    """The element of a tag that may occur once; a second one is a problem."""
     found = reader.root.all(tag)
     for extra in found[1:]:
         reader.problem(extra, "duplicate-element", f"There is a second <{tag}>.", "", "Keep one.")
@@ -189,7 +189,7 @@ def _only(reader: Reader, tag: str) -> Node | None:
 
 
 def _persons(draws: Draws) -> list[Person]:
-    """Who is there; one whom nobody has placed if the scenario names none."""
+    """The people present; one without a place if the scenario names nobody."""
     reader = draws.reader
     nodes, seen = reader.root.all("person"), set[str]()
     for node in nodes:
@@ -221,7 +221,7 @@ def _persons(draws: Draws) -> list[Person]:
 
 
 def _point(reader: Reader, person: Node) -> Point | None:
-    """Where a person begins, if that is given by coordinates (m)."""
+    """Where a person starts, if given by coordinates (m)."""
     if "x" not in person.attributes:
         return None
     return reader.get(person, "x") or 0.0, reader.get(person, "y") or 0.0

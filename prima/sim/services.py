@@ -1,4 +1,4 @@
-"""The services of a scenario: they answer after a while, or fail; and hosts that a run may ask."""
+"""The services of a scenario, which answer after a while or fail, and hosts that a run may ask."""
 
 from __future__ import annotations
 
@@ -13,33 +13,33 @@ from prima.messages import Data, Fetched, Inbound, Occurred, Order
 from prima.sim.happenings import Reply, Service
 
 SCHEME = "service:"
-"""How the URI of a scenario's service begins."""
+"""The prefix of the URI of a scenario's service."""
 NO_ANSWER = "the host does not answer"
 SILENCE = 10_000
-"""Simulated milliseconds after which an application is told that a host does not answer."""
+"""Simulated milliseconds after which an application is notified that a host does not answer."""
 Answering = Callable[[], Fetched | None]
 """Waits for the answer to a fetch, in real time; None if the host does not answer in time."""
 
 
 Web = Callable[[str, str, str, Data], Answering]
-"""Begins to fetch for an application a URI by a method with values; the answer's application
-and serial are open."""
+"""Begins to fetch a URI for an application by a method with values; the answer's application
+and serial are not yet set."""
 
 
 class Addressed(Protocol):
-    """What a service is found by."""
+    """The keys by which a service is found."""
 
     @property
     def name(self) -> str:
-        """As ``<send>`` and ``service:NAME`` have it."""
+        """The name in ``<send>`` and ``service:NAME``."""
 
     @property
     def application(self) -> str:
-        """The application that alone may ask it; empty where all may."""
+        """The only application that may use it; empty if all may."""
 
     @property
     def uri(self) -> str:
-        """Where fetches reach it, and below; empty where they do by its name alone."""
+        """The address at and below which fetches reach it; empty if only its name does."""
 
 
 Found = TypeVar("Found", bound=Addressed)
@@ -53,11 +53,11 @@ class Directory(Generic[Found]):
         self._names = {name for name, _ in self._services}
 
     def named(self, name: str, app: str) -> Found | None:
-        """The service of a name that an application may ask: its own, or that of all."""
+        """The service of a name that an application may use: its own, or that for all."""
         return self._services.get((name, app)) or self._services.get((name, ""))
 
     def of(self, uri: str, app: str) -> Found | None:
-        """The service that a URI is of: the one named, or the one with the longest address."""
+        """The service that a URI denotes: the one named, or the longest matching address."""
         if uri.startswith(SCHEME):
             return self.named(uri.removeprefix(SCHEME), app)
         below = [
@@ -68,7 +68,7 @@ class Directory(Generic[Found]):
         return max(below, key=lambda one: (len(one.uri), one.application), default=None)
 
     def for_order(self, order: Order) -> Found | None:
-        """The service that an order to it, or a fetch, is for."""
+        """The service to which an order or a fetch is addressed."""
         find = self.of if "method" in order.data else self.named
         return find(str(order.data["to"]), order.app)
 
@@ -81,7 +81,7 @@ class Directory(Generic[Found]):
 
 
 class Services:
-    """Answers what applications send or fetch; one that the scenario does not name does not."""
+    """Answers what applications send or fetch; services that the scenario does not name fail."""
 
     def __init__(self, services: Iterable[Service], web: Web | None = None, seed: int = 1) -> None:
         self._seed = seed
@@ -90,7 +90,7 @@ class Services:
         self._asked: dict[tuple[str, str], int] = {}
         self._pending: list[tuple[int, int, Occurred | Fetched]] = []
         self._begun: list[tuple[int, Order, Answering]] = []
-        """What hosts have been asked, since when, and what waits for it."""
+        """Pending requests to hosts: since when, and what waits for the answer."""
         self._serial = 0
 
     def order(self, now: int, order: Order) -> None:
@@ -104,7 +104,7 @@ class Services:
         if service is None:
             reply = Reply(error=self._services.lacking(order.data["to"]))
         elif not service.replies:
-            return  # it takes what it is sent and says nothing
+            return  # it accepts messages and does not reply
         else:
             which = service.name, service.application
             asked = self._asked.get(which, 0)
@@ -114,7 +114,7 @@ class Services:
         self._later(now, after, fetched_of(order, reply) if fetches else event_of(order, reply))
 
     def _outside(self, now: int, order: Order) -> None:
-        """What no service of the scenario answers: a host does, if it may be asked."""
+        """A fetch that no service of the scenario answers: a host does, if it is allowed."""
         uri, data = order.data["to"], order.data
         if self._web is not None and not uri.startswith(SCHEME):
             asking = self._web(order.app, uri, data["method"], data["params"])
@@ -141,7 +141,7 @@ class Services:
 
     @property
     def owed(self) -> set[str]:
-        """The applications that an answer is under way to."""
+        """The applications to which an answer is under way."""
         begun = {order.app for _, order, _ in self._begun}
         return begun | {value.app or "" for _, _, value in self._pending}
 
@@ -163,7 +163,7 @@ class Services:
 
 
 def serial_of(order: Order) -> int:
-    """The serial of what an application has sent."""
+    """The serial of an application's message."""
     return int(order.behavior.rpartition("!")[2])
 
 
@@ -174,7 +174,7 @@ def is_below(uri: str, base: str) -> bool:
 
 
 def event_of(order: Order, reply: Reply) -> Occurred:
-    """A reply as the event that an application is told of."""
+    """A reply as an event for an application."""
     name = order.data["to"]
     if reply.error:
         data = {"service": name, "message": reply.error}
@@ -191,7 +191,7 @@ def fetched_of(order: Order, reply: Reply) -> Fetched:
 
 
 def answer(app: str, serial: int, uri: str, data: bytes) -> Fetched:
-    """Bytes as an answer: text, of which the same bytes can be made again."""
+    """Bytes as an answer: text from which the same bytes can be restored."""
     try:
         return Fetched(app, serial, uri, data.decode("utf-8"))
     except UnicodeDecodeError:
@@ -208,7 +208,7 @@ def _xml(data: Data) -> bytes:
 
 
 def not_allowed(uri: str) -> str:
-    """Why a host is not asked, and what to do."""
+    """Why a host is not asked, and the remedy."""
     return f'the run does not allow the host: add "--allow-host {host_of(uri)}"'
 
 

@@ -1,4 +1,4 @@
-"""The telephone of a scenario: how the calls go that applications transfer the user to."""
+"""The telephone of a scenario: the outcome of calls to which applications transfer the user."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from prima.sim.happenings import AT_ONCE, UNANSWERED, CallTransfer
 
 ANSWERED = "answered"
 NOBODY = CallTransfer("", "noanswer", AT_ONCE, AT_ONCE)
-"""How a bridged call goes where the scenario says nothing."""
+"""The default course of a bridged call."""
 GIVEN_AWAY = CallTransfer("", "unknown", AT_ONCE, AT_ONCE)
-"""How other calls go there: somebody answers, and the user is gone."""
+"""The default course of other calls: somebody answers, and the user is gone."""
 
 
 class Telephone:
-    """Puts calls through as the scenario says, and tells what becomes of them."""
+    """Puts calls through as the scenario says, and reports what becomes of them."""
 
     def __init__(self, transfers: Iterable[CallTransfer] = (), seed: int = 1) -> None:
         self._seed = seed
@@ -44,7 +44,7 @@ class Telephone:
             self._later(ends, Transferred(order.app, serial, uri, then))
 
     def _of(self, uri: str) -> CallTransfer | None:
-        """How the next call to a destination goes: by what says most of it, in order."""
+        """How the next call to a destination goes: the longest matching prefix wins, in order."""
         fitting = [one for one in self._transfers if uri.startswith(one.to)]
         if not fitting:
             return None
@@ -54,7 +54,7 @@ class Telephone:
         return ways[min(made, len(ways)) - 1]
 
     def _hang_up(self, app: str, serial: int) -> None:
-        """Nothing more comes of a call."""
+        """Drop a call, with its pending reports."""
         self._pending = sorted(
             one for one in self._pending if (one[2].app, one[2].serial) != (app, serial)
         )
@@ -64,11 +64,11 @@ class Telephone:
         heappush(self._pending, (time, self._serial, value))
 
     def due(self) -> int | None:
-        """When there is news of a call next, if ever."""
+        """When the next report on a call is due, if ever."""
         return self._pending[0][0] if self._pending else None
 
     def collect(self, now: int) -> list[Inbound]:
-        """What becomes of calls at ``now``."""
+        """The reports on calls at ``now``."""
         arrived: list[Inbound] = []
         while self._pending and self._pending[0][0] <= now:
             arrived.append(heappop(self._pending)[2])

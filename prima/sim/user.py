@@ -1,4 +1,4 @@
-"""Users of a kind, as patient or hasty ones: how a person of a scenario behaves, by a document."""
+"""Kinds of users, such as patient or hasty ones: documents of how a scenario's person behaves."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from prima.sim.vocabulary.user import USER
 
 @dataclass(slots=True)
 class User:
-    """How a person walks and answers, and what they do of their own accord."""
+    """How a person walks and answers, and what they do on their own."""
 
     speed: Amount
     """Metres a second."""
     after: Amount
-    """How long (ms) they take to answer where the scenario does not say."""
+    """How long (ms) they take to answer unless the scenario says so."""
     chance: Chance
-    """How likely they are to answer at all where it does not say."""
+    """The probability that they answer at all unless the scenario says so."""
     whens: list[When]
     """What they do and answer, whatever the scenario says."""
     draws: Draws
     node: Node
 
     def answer(self, when: When, name: str) -> None:
-        """Let an answer of the scenario, of a name, come as this user answers."""
+        """Adapt an answer of the scenario, with its name, to how this user answers."""
         assert when.node is not None
         given = when.node.attributes
         if "after" not in given:  # answers to other questions have streams of their own

@@ -1,4 +1,4 @@
-"""The physical world: bodies, walls, what can be seen. This alone knows pymunk."""
+"""The physical world: bodies, walls, visibility. Only this module uses pymunk."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ STEP_MS = 50
 """The longest step of physics."""
 WALLS = pymunk.ShapeFilter(mask=0b10)
 ROOM = 0.1
-"""How much room (m) it leaves beside its body where it may choose."""
+"""How much room (m) the robot leaves beside its body if it can choose."""
 WALL = 0.05
-"""Half of how thick (m) walls are."""
+"""Half the thickness (m) of walls."""
 THICK = 0.7
-"""The share of the body's radius on both sides of its way in which no wall may be."""
+"""The share of the body's radius that must be free of walls on both sides of its way."""
 FAR = 3.0
-"""How far (m) walls are looked for around the robot."""
+"""The radius (m) around the robot within which walls are considered."""
 EPSILON = 1e-6
 
 
@@ -36,18 +36,18 @@ def bearing(a: Point, b: Point) -> float:
 
 
 def difference(angle: float, other: float) -> float:
-    """The way from ``other`` to ``angle``, between -180 and 180 degrees."""
+    """The difference from ``other`` to ``angle``, between -180 and 180 degrees."""
     return (angle - other + 180.0) % 360.0 - 180.0
 
 
 def room_beside(profile: Profile) -> float:
-    """How far (m) a robot must be from a wall beside it, so as not to be blocked by it."""
+    """How far (m) a robot must be from a wall beside it not to be blocked by it."""
     return profile.radius * THICK + WALL
 
 
 @dataclass(slots=True)
 class Somebody:
-    """A person in the world: where they are (m; None where they have gone), and are going."""
+    """A person in the world: their position (m; None if they have left) and destination."""
 
     at: Point | None
     goal: Point | None = None
@@ -74,22 +74,22 @@ class World:
         self._free: tuple[Point, float] = (at, -1.0)
         """A place, and how far (m) around it there is no wall."""
         self._looked: tuple[object, ...] = ()
-        """From where to where the camera has looked last, and how it was turned."""
+        """The positions from and to which the camera last looked, and its direction."""
         self._visible = False
         self._place(at, math.radians(heading))
         self.drive = (0.0, 0.0)
-        """What the wheels are told: metres a second forward, degrees a second to the left."""
+        """The wheels' speeds: metres a second forward, degrees a second to the left."""
         self.pan = 0.0
         self.people: dict[str, Somebody] = {}
-        """Who is there, by their names."""
+        """The people present, by name."""
         self._attended = ""
-        """To whom the robot attends; nobody before it has seen one of several."""
+        """The person to whom the robot attends; of several, nobody until it has seen one."""
         self._inside: set[str] = {corner.id for corner in plan.corners if self._near(corner)}
         self._searched = self.position
-        """Where the robot was when it was last looked for corners near to it."""
+        """Where the robot was when nearby corners were last computed."""
 
     def _place(self, position: Point, angle: float) -> None:
-        """Note where the body has got to; in physics it is put when physics is needed."""
+        """Note the body's position; physics is updated only when needed."""
         self.position = position
         """Where the robot is (m)."""
         self._angle = angle
@@ -106,33 +106,33 @@ class World:
     # People --------------------------------------------------------------------
 
     def put(self, name: str, at: Point | None) -> None:
-        """Let a person be there; the robot attends to an only one from the start."""
+        """Add a person; if they are the only one, the robot attends to them from the start."""
         self.people[name] = Somebody(at)
         self._attended = name if len(self.people) == 1 else ""
 
     @property
     def person(self) -> Point | None:
-        """Where the person is to whom the robot attends (m)."""
+        """The position (m) of the person to whom the robot attends."""
         return self.people[self._attended].at if self._attended else None
 
     def attend(self, name: str) -> None:
-        """Attend to a person who has spoken, or has touched the robot."""
+        """Attend to a person who has spoken or touched the robot."""
         if self.people[name].at is not None:
             self._attended = name
 
     def walk(self, name: str, to: Point | None, speed: float) -> None:
-        """Send a person somewhere in a straight line; None lets them stay."""
+        """Send a person somewhere in a straight line; with None they stay."""
         somebody = self.people[name]
         somebody.goal, somebody.speed = to, speed
 
     def leave(self, name: str) -> None:
-        """Let a person go away: the robot attends to whom of the others it sees next."""
+        """Let a person leave: the robot attends to the next of the others whom it sees."""
         self.people[name] = Somebody(None)
         if name == self._attended and len(self.people) > 1:
             self._attended = ""
 
     def people_within(self, reach: float) -> list[Point]:
-        """Where people are as near as that (m), those nearest to the robot first."""
+        """The positions of people within a distance (m), nearest to the robot first."""
         near: list[tuple[float, Point]] = []
         for one in self.people.values():
             if one.at is not None and (gap := distance(self.position, one.at)) <= reach:
@@ -143,7 +143,7 @@ class World:
     # Seeing --------------------------------------------------------------------
 
     def clear(self, a: Point, b: Point) -> bool:
-        """Whether no wall stands between two points; one that begins in a wall may leave it."""
+        """Whether no wall is between two points; a line that begins in a wall may leave it."""
         found = self._space.segment_query_first(a, b, 0.0, WALLS)
         if found is not None and found.alpha == 0.0:
             return not any(crosses((a, b), wall) for wall in self.map.walls)
@@ -152,7 +152,7 @@ class World:
     def passable(self, a: Point, b: Point) -> bool:
         """Whether the robot's body, and a little more, fits through in a straight line.
 
-        Where it starts nearer to a wall than that, it has to get no nearer.
+        If it starts closer to a wall than that, it must not get any closer.
         """
         wide = self.profile.radius + ROOM
         if not self.clear(a, b):
@@ -166,7 +166,7 @@ class World:
         return True
 
     def beside_walls(self, heading: float) -> float:
-        """The direction (degrees) nearest to another that leads the body into no wall."""
+        """The direction (degrees) closest to another that does not lead the body into a wall."""
         near = self._space.point_query_nearest(self.position, self.profile.radius + ROOM, WALLS)
         if near is None:
             return heading
@@ -178,10 +178,10 @@ class World:
         return wall + (away if aside >= 0 else -away)
 
     def sees_person(self) -> bool:
-        """Whether the person attended to is in the camera's view, near enough and not hidden.
+        """Whether the person attended to is in the camera's view, close enough and not hidden.
 
-        If it attends to nobody, it begins to attend to the nearest whom it sees. Seeing is
-        computed anew only where somebody has moved or turned.
+        If it attends to nobody, it begins to attend to the nearest person it sees. Visibility is
+        recomputed only if somebody has moved or turned.
         """
         looks = self._looks()
         if looks != self._looked:
@@ -192,7 +192,7 @@ class World:
         return self._visible
 
     def _looks(self) -> tuple[object, ...]:
-        """From where to where the camera looks, and how it is turned."""
+        """The positions from and to which the camera looks, and its direction."""
         view = (self.position, self.heading, self.pan, self._attended)
         if self._attended:
             return (*view, self.person)
@@ -222,7 +222,7 @@ class World:
 
     @property
     def moving(self) -> bool:
-        """Whether physics has to be stepped."""
+        """Whether a physics step is needed."""
         if self.drive != (0.0, 0.0):
             return True
         return any(one.goal is not None for one in self.people.values())
@@ -244,7 +244,7 @@ class World:
                 self._step_person(somebody, somebody.at, somebody.goal, seconds)
 
     def _move(self, forward: float, turning: float, seconds: float) -> None:
-        """Move the body; only where it may touch a wall it takes more than its speed."""
+        """Move the body; physics is used only if it may touch a wall."""
         near = self._wall_within(self.profile.radius + abs(forward) * seconds + 0.05)
         if near and forward and self._wall_ahead(forward, seconds):
             forward = 0.0
@@ -252,7 +252,7 @@ class World:
         if near:
             body = self._body
             body.position, body.angle = self.position, self._angle
-            # Each step sets both anew: what a push has left of them counts for nothing.
+            # Each step sets both anew, whatever a push has left of them.
             body.velocity, body.angular_velocity = (along, across), turning
             self._space.step(seconds)
             self._place((body.position.x, body.position.y), body.angle)
@@ -262,7 +262,7 @@ class World:
             self._place(there, self._angle + turning * seconds)
 
     def _wall_ahead(self, forward: float, seconds: float) -> bool:
-        """Whether going on would press the body against a wall."""
+        """Whether continuing would press the body against a wall."""
         reach = self.profile.radius * 0.3 + abs(forward) * seconds + 0.05
         thick = self.profile.radius * THICK
         angle = self._angle if forward > 0 else self._angle + math.pi
@@ -271,7 +271,7 @@ class World:
         return self._space.segment_query_first((x, y), ahead, thick, WALLS) is not None
 
     def _wall_within(self, reach: float) -> bool:
-        """Whether a wall may be as near as that (m): measured only where it may have changed."""
+        """Whether a wall may be within a distance (m): measured only if that may have changed."""
         at, free = self._free
         if distance(at, self.position) + reach < free:
             return False
@@ -290,7 +290,7 @@ class World:
             somebody.at = (at[0] + (goal[0] - at[0]) * share, at[1] + (goal[1] - at[1]) * share)
 
     def corners(self) -> list[Corner]:
-        """Corners that the robot has come near to since the last time."""
+        """Corners that the robot has come near since the last call."""
         if self.position is self._searched:
             return []
         self._searched = self.position

@@ -354,9 +354,9 @@ def test_a_grammar_fills_them_where_the_model_does_not(
 @pytest.mark.parametrize(
     ("more", "told"),
     [
-        ('url="ftp://x/"/>', "is no address"),
+        ('url="ftp://x/"/>', "is not an address"),
         ('url="http://me:pass@x/"/>', "holds a password"),
-        ('url="http://x/" retries="2"/>', "not asked again"),
+        ('url="http://x/" retries="2"/>', "not repeated"),
         ('url="http://x/" key="my key"/>', "environment variable"),
         ('url="http://x/"/><service name="library" url="http://x/"/>', "there twice"),
         ('url="http://x/" dedline="1s"/>', "dedline"),

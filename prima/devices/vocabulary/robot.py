@@ -8,7 +8,7 @@ from prima.markup.vocabulary import Element, Instead, Vocabulary, attribute
 
 LIMITS = (
     attribute("accept", "duration", "how long the robot may take to begin", low=1),
-    attribute("progress", "duration", "how long it may go on without a report", low=1),
+    attribute("progress", "duration", "how long it may continue without a report", low=1),
     attribute("cancel", "duration", "how long it may take to stop", low=1),
 )
 """How long a driver may take before it is given up."""
@@ -26,12 +26,17 @@ ROBOT = Vocabulary(
                 TITLE,
                 attribute("radius", "number", "the body's", default="0.2", low=0.05, high=2),
                 attribute(
-                    "speed", "number", "metres a second at most", default="0.5", low=0.01, high=3
+                    "speed",
+                    "number",
+                    "the maximum, in metres a second",
+                    default="0.5",
+                    low=0.01,
+                    high=3,
                 ),
                 attribute(
                     "turn-speed",
                     "number",
-                    "degrees a second at most",
+                    "the maximum, in degrees a second",
                     default="90",
                     low=1,
                     high=720,
@@ -45,7 +50,7 @@ ROBOT = Vocabulary(
                 attribute(
                     "absence",
                     "duration",
-                    "after how long without being seen, heard or felt the user is absent (K1)",
+                    "how long the user has to be neither seen, heard nor felt to count as absent (K1)",
                     default="20s",
                 ),
             ),
@@ -56,12 +61,12 @@ ROBOT = Vocabulary(
         ),
         Element(
             "device",
-            "A device that the robot has; Commands whose devices it lacks it cannot do.",
-            (attribute("name", "id", "as in Table 4.2, or its own", "required"),),
+            "A device that the robot has; it cannot do Commands whose devices it lacks.",
+            (attribute("name", "id", "as in Table 4.2, or one of its own", "required"),),
         ),
         Element(
             "camera",
-            "What it sees humans with.",
+            "The camera by which it sees humans.",
             (
                 attribute(
                     "angle", "number", "field of view in degrees", default="60", low=1, high=360
@@ -164,7 +169,7 @@ ROBOT = Vocabulary(
         ),
         Element(
             "allows",
-            "An additional argument of a Command, for an FA alone.",
+            "An additional argument of a Command, for FAs only.",
             (
                 attribute("command", "id", "the Command", "required"),
                 attribute("argument", "id", "the argument's name", "required"),
@@ -172,15 +177,14 @@ ROBOT = Vocabulary(
         ),
         Element(
             "driver",
-            "What carries out Commands on the real robot, and tells what its sensors say.",
+            "Carries out Commands on the real robot, and reports what its sensors say.",
             (
-                attribute("kind", "id", "which driver, as `sim` or `ros2`", "required"),
+                attribute("kind", "id", "which driver, such as `sim` or `ros2`", "required"),
                 attribute("address", "text", "where it reaches the robot: a URL, a host, a port"),
                 attribute(
                     "devices",
                     "text",
-                    "the devices that are its, separated by spaces; by default all that no other"
-                    " driver names",
+                    "its devices, separated by spaces; by default all that no other driver names",
                 ),
                 attribute(
                     "open", "duration", "how long it may take to connect", default="10s", low=1
@@ -188,7 +192,7 @@ ROBOT = Vocabulary(
                 attribute(
                     "heartbeat",
                     "duration",
-                    "how often it is asked whether the robot is still there",
+                    "how often it checks that the robot is still there",
                     default="2s",
                     low=100,
                 ),
@@ -211,7 +215,7 @@ ROBOT = Vocabulary(
                     choices=("action", "service", "topic"),
                 ),
                 attribute(
-                    "stop", "text", "the service or method that stops it, where cancelling does not"
+                    "stop", "text", "the service or method that stops it, if cancelling does not"
                 ),
                 *LIMITS,
             ),
@@ -233,14 +237,14 @@ ROBOT = Vocabulary(
         ),
         Element(
             "senses",
-            "What the driver tells of by itself: an event, a sensor's value, or what users say.",
+            "What the driver reports by itself: an event, a sensor's value, or what users say.",
             (
                 attribute("event", "id", "the event that is raised"),
                 attribute("sensor", "id", "the sensor whose value it is"),
                 attribute(
                     "as",
                     "text",
-                    "what else it is: what a user says, the robot's pose, whether the user is seen,"
+                    "what it is otherwise: what a user says, the robot's pose, whether the user is seen,"
                     " or the emergency stop",
                     choices=("heard", "pose", "human", "emergency"),
                 ),
@@ -251,7 +255,7 @@ ROBOT = Vocabulary(
                 attribute(
                     "actor",
                     "text",
-                    "whose doing the event is",
+                    "who causes the event",
                     default="user",
                     choices=("user", "environment", "robot"),
                 ),
@@ -261,7 +265,7 @@ ROBOT = Vocabulary(
             "place",
             "Where a place of the site is on the robot's own map.",
             (
-                attribute("name", "id", "its name, as Commands have it", "required"),
+                attribute("name", "id", "its name, as in Commands", "required"),
                 attribute("x", "number", "metres", "required"),
                 attribute("y", "number", "metres", "required"),
                 attribute("heading", "number", "degrees to the left of the x axis", default="0"),

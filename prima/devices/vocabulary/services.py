@@ -6,20 +6,27 @@ from prima.devices.vocabulary.common import VERSION
 from prima.markup.vocabulary import Element, Instead, Vocabulary, attribute
 
 COMMON = (
-    attribute("name", "id", "as `<send>` and `service:NAME` have it", "required"),
-    attribute("application", "id", "the application that alone may ask it; without, all may"),
-    attribute("url", "text", "where it is asked: http or https", "required"),
-    attribute("deadline", "duration", "how long all of an answer may take", default="3s", low=1),
+    attribute("name", "id", "its name, as in `<send>` and `service:NAME`", "required"),
+    attribute("application", "id", "the only application that may use it; by default all may"),
+    attribute("url", "text", "its URL: http or https", "required"),
+    attribute("deadline", "duration", "how long the whole answer may take", default="3s", low=1),
     attribute(
         "retries",
         "integer",
-        "how often it is asked again within the deadline, where it cannot be reached or answers"
+        "how often a request is repeated within the deadline, if it cannot be reached or answers"
         " 429, 502, 503 or 504",
         default="0",
         low=0,
         high=10,
     ),
-    attribute("most", "integer", "bytes of an answer", default="100000", low=1, high=10_000_000),
+    attribute(
+        "most",
+        "integer",
+        "the maximum size of an answer in bytes",
+        default="100000",
+        low=1,
+        high=10_000_000,
+    ),
     attribute(
         "key", "text", "the environment variable whose value is sent as `Authorization: Bearer`"
     ),
@@ -31,7 +38,7 @@ SERVICES = Vocabulary(
     (
         Element(
             "services",
-            "The services that a live run may ask, and no others.",
+            "The services that a live run may use; it may use no others.",
             (VERSION,),
             ("service", "language-model"),
         ),
@@ -43,14 +50,14 @@ SERVICES = Vocabulary(
                 attribute(
                     "method",
                     "text",
-                    "how it is asked: `get` has the values in the URL, the others as JSON",
+                    "the method: `get` sends the values in the URL, the others as JSON",
                     default="post",
                     choices=("get", "put", "post"),
                 ),
                 attribute(
                     "idempotent",
                     "boolean",
-                    "whether a `post` may be asked again; `get` and `put` always may",
+                    "whether a `post` may be repeated; `get` and `put` always may",
                     default="false",
                 ),
             ),
@@ -68,18 +75,18 @@ SERVICES = Vocabulary(
             (
                 attribute("name", "text", "its name", "required"),
                 attribute("value", "text", "its value"),
-                attribute("variable", "text", "the environment variable that has its value"),
+                attribute("variable", "text", "the environment variable that holds its value"),
             ),
         ),
         Element(
             "prompt",
-            "A message to the model; {NAME} stands for a value that is sent.",
+            "A message to the model; {NAME} is replaced by a value that is sent.",
             (attribute("role", "text", "whose it is", default="user", choices=("system", "user")),),
             text=True,
         ),
         Element(
             "slot",
-            "A value of the answer. Where there are slots, nothing else of an answer is taken.",
+            "A value of the answer. If there are slots, the rest of an answer is ignored.",
             (
                 attribute("name", "id", "its name in the reply", "required"),
                 attribute(
@@ -101,10 +108,12 @@ SERVICES = Vocabulary(
         ),
         Element(
             "fallback",
-            "A grammar that fills the slots where the model does not.",
+            "A grammar that fills the slots if the model does not.",
             (
-                attribute("grammar", "text", "the file, an SRGS grammar beside", "required"),
-                attribute("of", "id", "the value that is sent and that it reads", "required"),
+                attribute(
+                    "grammar", "text", "the file: an SRGS grammar beside this document", "required"
+                ),
+                attribute("of", "id", "the sent value that it parses", "required"),
             ),
         ),
     ),

@@ -14,18 +14,20 @@ _ACTIONS = (
     *("message", "event", "sensor", "fail", "repair", "emergency", "release", "unload", "load"),
 )
 _CONFIDENCE = attribute(
-    "confidence", "number", "how sure the recogniser is of the words", default="1", low=0, high=1
+    "confidence", "number", "the recogniser's confidence in the words", default="1", low=0, high=1
 )
 _CALLED = attribute("id", "id", "its name, for experiments that vary it (prima sweep)")
 CHANCE = attribute(
     "chance",
     "number",
-    "how likely it is, each time, from 0 to 1; drawn by the scenario's seed",
+    "its probability each time, from 0 to 1; drawn by the scenario's seed",
     default="1",
     low=0,
     high=1,
 )
-_PERSON = attribute("person", "id", "whose doing it is, of several persons; by default the first's")
+_PERSON = attribute(
+    "person", "id", "the person who does it, if there are several; by default the first"
+)
 SPEED = attribute("speed", "quantity", "metres a second", default="1", low=0.05, high=5)
 TRIGGERS = (
     attribute("at", "delay", "a time of the run"),
@@ -74,14 +76,14 @@ HAPPENINGS = (
     ),
     Element(
         "one-of",
-        "One of these happens, each as likely as the others; drawn by the scenario's seed.",
+        "One of these happens, with equal probability; drawn by the scenario's seed.",
         (),
         _ACTIONS,
     ),
     Element("say", "The user says something.", (_CONFIDENCE,), ("alternative",), text=True),
     Element(
         "alternative",
-        "What else it may have been, as the recogniser hears it: it is less sure of this.",
+        "An alternative result of the recogniser, with a lower confidence.",
         (replace(_CONFIDENCE, required=True, default=""),),
         text=True,
     ),
@@ -110,7 +112,7 @@ HAPPENINGS = (
     ),
     Element(
         "follow",
-        "The user goes behind the robot from now on.",
+        "The user follows the robot from now on.",
         (attribute("distance", "number", "metres", default="1.2", low=0.3, high=10),),
     ),
     Element("stay", "The user stays where they are."),
@@ -121,7 +123,7 @@ HAPPENINGS = (
         "A message arrives from the network: the event message, with its sender and text.",
         (
             attribute("from", "text", "who sends it", default=""),
-            attribute("to", "id", "the application that alone gets it; without, all do"),
+            attribute("to", "id", "the only application that gets it; by default all do"),
         ),
         text=True,
     ),
@@ -133,7 +135,7 @@ HAPPENINGS = (
     ),
     Element(
         "data",
-        "A value given along.",
+        "A value passed with it.",
         (
             attribute("name", "text", "its name", "required"),
             attribute("value", "text", "its value", "required"),
@@ -164,12 +166,12 @@ HAPPENINGS = (
     ),
     Element(
         "unload",
-        "An application is taken out.",
+        "An application is unloaded.",
         (attribute("application", "id", "its id", "required"),),
     ),
     Element(
         "load",
-        "An application that has ended, or was taken out, is put in again: it starts anew.",
+        "An application that has ended or was unloaded is loaded again: it starts anew.",
         (attribute("application", "id", "its id", "required"),),
     ),
 )

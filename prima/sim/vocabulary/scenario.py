@@ -13,7 +13,7 @@ from prima.sim.vocabulary.world import HEADING
 
 _EXPECTED = (
     attribute("says", "text", "the robot begins to say something with these words"),
-    attribute("does", "id", "the robot begins a Command of this type; may stand beside says"),
+    attribute("does", "id", "the robot begins a Command of this type; may be combined with says"),
     attribute("finishes", "id", "the robot ends a Command of this type"),
     attribute("event", "event", "such an event happens"),
     attribute("logs", "text", "an application logs something with these words"),
@@ -21,12 +21,12 @@ _EXPECTED = (
     attribute("state", "id", "an application is in this form"),
     attribute("ends", "id", "this application ends"),
     attribute("reason", "text", "why it ends: exit, unloaded or an error's name"),
-    attribute("by", "id", "the application whose doing it is; without, any"),
-    attribute("after", "text", "it comes after this other expectation, by its id"),
-    attribute("before", "text", "it comes before this other expectation, by its id"),
+    attribute("by", "id", "the application that does it; by default any"),
+    attribute("after", "text", "it comes after the expectation with this id"),
+    attribute("before", "text", "it comes before the expectation with this id"),
     attribute("at", "text", "it comes from this time of the run on; for a state also end"),
     *(replace(one, doc=f"it comes after {one.doc}") for one in TRIGGERS[1:]),
-    attribute("count", "integer", "which time of these counts", default="1", low=1),
+    attribute("count", "integer", "which of these occurrences counts", default="1", low=1),
     attribute("within", "duration", "how long afterwards at most"),
 )
 
@@ -37,7 +37,7 @@ SCENARIO = Vocabulary(
     (
         Element(
             "scenario",
-            "A run: who is where, what the user does and when, what services answer.",
+            "A run: who is where, what the user does and when, and how services answer.",
             (
                 VERSION,
                 ID,
@@ -50,14 +50,14 @@ SCENARIO = Vocabulary(
                 attribute(
                     "date",
                     "date",
-                    "when the run begins, for Date in documents; in UTC, as all times",
+                    "when the run begins, for Date in documents; in UTC, like all times",
                     default=START,
                 ),
                 attribute("policy", "text", "the mediator's policy", default="prima"),
                 attribute(
                     "patience",
                     "duration",
-                    "how long an application may keep others from the speaker (E6); 0s for ever",
+                    "how long an application may keep others from the speaker (E6); 0s for no limit",
                     default="60s",
                 ),
                 attribute(
@@ -70,7 +70,7 @@ SCENARIO = Vocabulary(
                 attribute(
                     "seed",
                     "integer",
-                    "which of all possible runs it is: what is drawn in it depends on this alone",
+                    "which of all possible runs it is: its random values depend on this alone",
                     default="1",
                     low=0,
                 ),
@@ -91,12 +91,12 @@ SCENARIO = Vocabulary(
         ),
         Element(
             "robot",
-            "Where the robot is at first.",
+            "Where the robot starts.",
             (attribute("at", "id", "a place", "required"), HEADING),
         ),
         Element(
             "person",
-            "The user, and where at first; of several the robot attends to one at a time.",
+            "The user, and where they start; of several the robot attends to one at a time.",
             (
                 attribute("id", "id", "their name; needed where there are several", default="user"),
                 attribute("at", "id", "a place or thing"),
@@ -118,29 +118,31 @@ SCENARIO = Vocabulary(
                 attribute(
                     "kind",
                     "text",
-                    "whether it is the robot's own or a place's; it counts, whatever the document says",
+                    "whether it is the robot's own or a place's; overrides the document",
                     default="ea",
                     choices=("fa", "ea"),
                 ),
-                attribute("uri", "text", "where a VoiceXML document is served as it runs for real"),
-                attribute("folder", "path", "its folder, or one above it, that is served there"),
+                attribute("uri", "text", "where a VoiceXML document is served in real use"),
+                attribute(
+                    "folder", "path", "the folder that is served there: its own, or one above it"
+                ),
             ),
         ),
         *HAPPENINGS,
         *SERVED,
         Element(
             "expect",
-            "What has to happen in the run. prima test checks it; a run itself takes no notice.",
+            "What has to happen in the run. prima test checks it; a run itself ignores it.",
             (
                 attribute("id", "id", "its name, for after and before of others"),
                 *_EXPECTED,
-                attribute("times", "integer", "how often exactly; without, at least once", low=1),
+                attribute("times", "integer", "how often exactly; by default at least once", low=1),
             ),
             ("data",),
         ),
         Element("never", "What must not happen in the run.", _EXPECTED, ("data",)),
         Element(
-            "in-order", "Expectations that have to come true one after the other.", (), ("expect",)
+            "in-order", "Expectations that have to be met one after the other.", (), ("expect",)
         ),
     ),
     hints={

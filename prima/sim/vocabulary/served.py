@@ -9,14 +9,12 @@ SERVED = (
     Element(
         "service",
         "A service that applications send to. Its replies are given in order; the last repeats. One"
-        " without replies takes what it is sent and says nothing.",
+        " without replies accepts messages and does not answer.",
         (
             attribute("name", "id", "its name", "required"),
+            attribute("uri", "text", "an http(s) URI: it answers fetches from there or below"),
             attribute(
-                "uri", "text", "an http(s) URI: it answers what is fetched from there or below"
-            ),
-            attribute(
-                "application", "id", "the application that alone may ask it; without, all may"
+                "application", "id", "the only application that may use it; by default all may"
             ),
         ),
         ("reply", "failure"),
@@ -29,19 +27,19 @@ SERVED = (
             attribute(
                 "src",
                 "path",
-                "the file that a fetch of a VoiceXML document is answered with; without one,"
-                " with XML of its data",
+                "the file that answers a fetch of a VoiceXML document; without one,"
+                " the answer is XML of its data",
             ),
         ),
         ("data",),
     ),
     Element(
         "failure",
-        "No answer but an error.",
+        "An error instead of an answer.",
         (
             AFTER,
             attribute("reason", "text", "why", default="the service does not answer"),
-            attribute("status", "integer", "the status of HTTP that a fetch is answered with"),
+            attribute("status", "integer", "the HTTP status that answers a fetch"),
         ),
     ),
     Element(
@@ -50,17 +48,17 @@ SERVED = (
         " it, or an attribute of it, that is undefined.",
         (
             attribute("remote", "text", "the URI of the user's telephone"),
-            attribute("local", "text", "the URI that they have called"),
-            attribute("protocol", "text", "the protocol's name, as sip"),
+            attribute("local", "text", "the URI that they called"),
+            attribute("protocol", "text", "the protocol's name, such as sip"),
             attribute("version", "text", "the protocol's version"),
-            attribute("aai", "text", "what came along with the call"),
+            attribute("aai", "text", "data passed with the call"),
             attribute("originator", "text", "who has called", choices=("local", "remote")),
         ),
         ("redirect",),
     ),
     Element(
         "redirect",
-        "A station that the call has been redirected from, the last one first.",
+        "A station that redirected the call, the last one first.",
         (
             attribute("uri", "text", "its URI", "required"),
             attribute("pi", "text", "the presentation information"),
@@ -70,7 +68,7 @@ SERVED = (
     ),
     Element(
         "transfer",
-        "How calls to a destination go that a VoiceXML application transfers the user to."
+        "How calls go to a destination to which a VoiceXML application transfers the user."
         " Of several for a destination each is for one call, in order; the last repeats.",
         (
             attribute("to", "text", "the destination's URI, or what it begins with", default=""),

@@ -23,13 +23,13 @@ USER = Vocabulary(
     (
         Element(
             "user",
-            "A kind of users: how a person of a scenario behaves, whatever the scenario is about.",
+            "A kind of users: how a person of a scenario behaves, whatever the scenario.",
             (VERSION, ID, TITLE, SPEED),
             ("answers", "answer", "when"),
         ),
         Element(
             "answers",
-            "How they give the scenario's answers, where these do not say so themselves.",
+            "How they give the scenario's answers, unless these specify it themselves.",
             (attribute("after", "delay", "how long after the question", default="1s"), CHANCE),
         ),
         _without(SCENARIO.elements["answer"], "person"),
@@ -42,8 +42,8 @@ USER = Vocabulary(
         **{tag: hint for tag, hint in SCENARIO.hints.items() if tag != "user"},
         **dict.fromkeys(
             ("event", "message", "sensor", "fail", "repair", "service"),
-            "It is the scenario that says what happens around the user.",
+            "The scenario says what happens around the user.",
         ),
-        "person": "It is the scenario that says who is where.",
+        "person": "The scenario says who is where.",
     },
 )

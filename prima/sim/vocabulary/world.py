@@ -24,7 +24,7 @@ WORLD = Vocabulary(
         Element("place", "A place of the topological map.", (ID, _X, _Y, HEADING, TITLE)),
         Element(
             "way",
-            "A way between two places, to be gone in both directions.",
+            "A way between two places, usable in both directions.",
             (
                 attribute("from", "id", "a place", "required"),
                 attribute("to", "id", "another place", "required"),
@@ -32,7 +32,7 @@ WORLD = Vocabulary(
         ),
         Element(
             "wall",
-            "A straight wall: the robot neither sees nor goes through it. The user goes as told.",
+            "A straight wall: the robot neither sees nor moves through it. The user ignores walls.",
             (
                 *(
                     attribute(name, "number", doc, "required", low=-1000, high=1000)
@@ -60,7 +60,7 @@ WORLD = Vocabulary(
         Element(
             "area",
             "A building or room whose entrance offers an application: the robot loads it when it"
-            " comes in and unloads it when it goes out.",
+            " enters and unloads it when it leaves.",
             (
                 ID,
                 TITLE,
@@ -81,6 +81,6 @@ WORLD = Vocabulary(
         **dict.fromkeys(("room", "location", "position", "node", "waypoint"), Instead("place")),
         **dict.fromkeys(("path", "road", "route", "edge", "link"), Instead("way")),
         **dict.fromkeys(("object", "item", "landmark"), Instead("thing")),
-        **dict.fromkeys(("robot", "person"), "It is the scenario that says who is where."),
+        **dict.fromkeys(("robot", "person"), "The scenario says who is where."),
     },
 )
