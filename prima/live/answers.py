@@ -1,4 +1,4 @@
-"""What services answer, read strictly, and without the secrets that they were sent."""
+"""Services' answers: parsed strictly, and without the secrets that were sent."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from prima.devices.endpoints import Unfit
 from prima.messages import Fetched, Inbound, Json, Occurred
 
 HIDDEN = "***"
-"""What takes the place of a secret that a host sends back."""
+"""Replaces a secret that a host sends back."""
 JSON_TYPE = re.compile(r"application/(?:[\w.+-]+\+)?json", re.IGNORECASE)
 T = TypeVar("T", bound=Inbound)
 
 
 def check_type(response: HTTPResponse) -> None:
-    """See that an answer is said to be JSON; one that says nothing of it is read as such.
+    """Check that an answer is declared as JSON; one without a declaration is read as JSON.
 
     Raises:
         Unfit: it is something else.
@@ -33,10 +33,10 @@ def check_type(response: HTTPResponse) -> None:
 
 
 def read_json(body: bytes | str, what: str) -> Json:
-    """A text as JSON (RFC 8259) of which a journal can be made.
+    """A text as JSON (RFC 8259) that a journal can hold.
 
     Raises:
-        Unfit: it is none, or has what a journal cannot have.
+        Unfit: it is not JSON, or contains something that a journal cannot hold.
     """
 
     def refuse(name: str) -> NoReturn:
@@ -75,10 +75,10 @@ def read_json(body: bytes | str, what: str) -> Json:
 
 
 def said_by_model(given: Json) -> Json:
-    """What a language model says, as JSON.
+    """A language model's output, as JSON.
 
     Raises:
-        Unfit: it says nothing, or no JSON.
+        Unfit: it is empty or not JSON.
     """
     try:
         said = given["choices"][0]["message"]["content"]
@@ -90,7 +90,7 @@ def said_by_model(given: Json) -> Json:
 
 
 def hidden(value: T, secrets: Iterable[str]) -> T:
-    """What comes in, without secrets, however the host has written them."""
+    """An inbound value without secrets, however the host has encoded them."""
     words = "|".join(re.escape(one) for one in sorted(secrets, key=len, reverse=True))
     if not words:
         return value

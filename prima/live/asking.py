@@ -22,13 +22,13 @@ from prima.sim.services import host_of
 
 T = TypeVar("T")
 BUSY = frozenset([429, 502, 503, 504])
-"""Statuses after which a service is asked again."""
+"""Statuses after which a request is repeated."""
 FIRST_S = 0.1
-"""How long (s) it is waited before a service is asked again; then twice as long, and so on."""
+"""The delay (s) before a request is repeated; it doubles each time."""
 
 
 class _Busy(Unfit):
-    """It may help to ask again."""
+    """An error after which repeating the request may help."""
 
 
 @dataclass(slots=True)
@@ -43,7 +43,7 @@ class ServiceRequests:
     closed: bool = False
 
     async def repeat(self, make: Callable[[], Request], retries: int) -> bytes:
-        """Ask, and again where it may help, later each time.
+        """Send a request, and repeat it where that may help, with growing delays.
 
         Raises:
             Unfit: there is no answer.
@@ -86,7 +86,7 @@ class ServiceRequests:
         end_connections(self.held)
 
     def _check(self, request: Request) -> None:
-        """Let no other host be asked, nor any but the service's own be told a secret."""
+        """Refuses redirects to other hosts, and sends secrets only to the service's own."""
         url, own = request.full_url, self.endpoint.uri
         if self.closed:
             raise Unfit("nobody waits for it any more")
@@ -100,7 +100,7 @@ class ServiceRequests:
             request.add_header(name, before + secret)
 
     def _read(self, response: HTTPResponse) -> bytes:
-        """An answer's body, chunk by chunk: its deadline is that of all."""
+        """An answer's body, chunk by chunk, within the deadline of the whole."""
         self.check(response)
         most = self.endpoint.most
         ends = time.monotonic() + self._seconds
@@ -113,7 +113,7 @@ class ServiceRequests:
 
 
 async def in_thread(work: Callable[[], T]) -> T:
-    """Let something that waits run in a thread that nobody waits for at the end of the run."""
+    """Run something blocking in a thread that the end of the run does not wait for."""
     loop = asyncio.get_running_loop()
     done: asyncio.Future[T] = loop.create_future()
 

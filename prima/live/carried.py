@@ -1,4 +1,4 @@
-"""Which driver carries a goal out, and what to write where none does."""
+"""Which driver carries out a goal, and what to write if none does."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from prima.session import AnyDocument
 
 UNCARRIED = UNSUPPORTED_COMMAND.says("{what}: {lacking}.")
 SPEECH_MS = 5_000
-"""How much longer than expected a text may take, besides twice its time."""
+"""How much longer than twice its expected time a text may take."""
 SPOKEN = ("pause", "speak", "q-and-a")
 """Commands that move nothing."""
 
 
 def route(drivers: Sequence[Driver], goal: Begin) -> Driver | None:
-    """The driver of a goal: the one that says how, or else the first with one of its devices."""
+    """The driver of a goal: the one that specifies how, else the first with one of its devices."""
     there = [one for one in drivers if one.settings.devices & goal.devices]
     how = (one for one in there if one.does(goal) is not None)
     able = (one for one in there if not one.mapped or goal.kind in one.own)
@@ -33,7 +33,7 @@ def route(drivers: Sequence[Driver], goal: Begin) -> Driver | None:
 
 
 def lacking(drivers: Sequence[Driver], goal: Begin) -> str:
-    """What a robot's document lacks so that a goal is carried out; nothing if it lacks nothing."""
+    """What a robot's document lacks for a goal to be carried out; empty if nothing."""
     if route(drivers, goal) is not None:
         return ""
     if goal.kind == RECORD:
@@ -47,7 +47,7 @@ def lacking(drivers: Sequence[Driver], goal: Begin) -> str:
 
 
 def limits_of(drivers: Sequence[Driver], goal: Begin, rates: dict[str, float]) -> DriverLimits:
-    """How long a goal's driver may take: as the document says, else as suits the goal."""
+    """How long a goal's driver may take: as the document says, or else by the kind of goal."""
     driver = route(drivers, goal)
     if driver is None:
         return DriverLimits()
@@ -65,7 +65,7 @@ def limits_of(drivers: Sequence[Driver], goal: Begin, rates: dict[str, float]) -
 def uncarried(
     robot: Profile, drivers: Sequence[Driver], documents: Iterable[AnyDocument]
 ) -> list[Problem]:
-    """Commands of documents that the robot has, but no driver of it: warnings."""
+    """Warnings about documents' Commands that the robot has but none of its drivers carries out."""
     found = []
     for document in documents:
         commands = document_commands(document) if isinstance(document, Document) else ()
@@ -78,12 +78,12 @@ def uncarried(
 
 
 def _goal(robot: Profile, command: CommandTemplate) -> Begin | None:
-    """What a driver would be told to begin, as far as the document tells; None for mere speech."""
+    """The goal for a driver, as far as the document determines it; None for mere speech."""
     row = robot.commands.get(command.type)
     if row is None or row.substitute or row.name in SPOKEN:
         return None
     name = command.args.get("name") if row.name == "gesture" else None
     args: dict[str, Json] = {"name": name} if isinstance(name, str) else {}
     if args and name not in robot.gestures:
-        return None  # that is told already
+        return None  # that is already reported
     return Begin("", row.name, Command(row.name, args), row.devices)

@@ -1,4 +1,4 @@
-"""What a live run is made of: as chosen, and as its journal says it was."""
+"""The parts of a live run: as chosen, or as recorded in its journal."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from prima.messages import Json, Record
 from prima.sim.services import Web
 
 STAGE = "stage.xml"
-"""The scenario that is made of applications, and no file."""
+"""The name of a scenario that is made from applications instead of a file."""
 
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """What a live run is made of. Paths are as given on the command line."""
+    """The parts of a live run. Paths are as given on the command line."""
 
     robot: str = ""
     scenario: str = ""
@@ -49,7 +49,7 @@ class Chosen:
         return loaded
 
     def answering(self, web: Web | None) -> LiveServices:
-        """What answers what applications send and fetch.
+        """The services that answer applications' messages and fetches.
 
         Raises:
             UsageError: a secret is not in the environment.
@@ -57,7 +57,7 @@ class Chosen:
         return LiveServices(load_services(self.services)[0] if self.services else (), web)
 
     def told(self, folder: str) -> dict[str, Json]:
-        """The same for a journal in a folder: paths lead from there, and the robot is whole."""
+        """The same for a journal in a folder: paths from there, and the whole robot document."""
 
         def seen(path: str) -> str:
             return os.path.relpath(path, folder or ".")
@@ -78,10 +78,10 @@ class Chosen:
 
 
 def _check_owners(endpoints: Iterable[Endpoint], known: list[str]) -> None:
-    """Check that services are for applications that the run has.
+    """Check that services belong to applications of the run.
 
     Raises:
-        DocumentError: one is not.
+        DocumentError: one does not.
     """
     strange = [one for one in endpoints if one.application and one.application not in known]
     if strange:
@@ -98,14 +98,14 @@ def _check_owners(endpoints: Iterable[Endpoint], known: list[str]) -> None:
 
 
 def chosen_then(head: Record, name: str) -> Chosen:
-    """What a journal says that it was made with.
+    """The parts that a journal was made with.
 
     Args:
         head: its first record.
         name: its path, from which paths in it lead.
 
     Raises:
-        UsageError: the record says nothing of files.
+        UsageError: the record does not name files.
     """
     live = head["data"].get("live")
     if not isinstance(live, dict) or not (live.get("robot") or live.get("scenario")):
@@ -132,7 +132,7 @@ def chosen_then(head: Record, name: str) -> Chosen:
 
 
 def reloaded(head: Record, name: str) -> Loaded:
-    """Load what a journal says that it was made with; the robot is the one in the journal.
+    """Load the parts that a journal was made with; the robot is the one in the journal.
 
     Args:
         head: its first record.
@@ -140,7 +140,7 @@ def reloaded(head: Record, name: str) -> Loaded:
 
     Raises:
         DocumentError: documents are wrong.
-        UsageError: the record says nothing of files, or a file is not the one of then.
+        UsageError: the record does not name files, or a file has changed since.
     """
     chosen = chosen_then(head, name)
     live, texts = head["data"]["live"], {}

@@ -7,7 +7,7 @@ from time import monotonic
 
 
 class Clock:
-    """Milliseconds of the run, from a monotonic clock: setting the machine's time changes nothing.
+    """Milliseconds of the run, from a monotonic clock: setting the machine's time has no effect.
 
     Args:
         speed: how many times as fast as real time the run goes.
@@ -28,13 +28,13 @@ class Clock:
         return self._start + int((monotonic() - self._began) * 1000 * self.speed)
 
     async def wait(self, until: int | None, woken: asyncio.Event) -> None:
-        """Wait until a time (ms; None for ever), or until somebody wakes the run."""
+        """Wait until a time (ms; None for no limit), or until the run is woken."""
         if until is None:
             await woken.wait()
             return
         left = (until - self._start) / 1000 / self.speed - (monotonic() - self._began)
         if left <= 0:
-            await asyncio.sleep(0)  # let drivers tell what they have
+            await asyncio.sleep(0)  # let drivers report
             return
         try:
             async with asyncio.timeout(left):

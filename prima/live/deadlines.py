@@ -1,4 +1,4 @@
-"""Deadlines that hold even if a driver does not heed that it is cancelled."""
+"""Deadlines that hold even if a driver ignores cancellation."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from collections.abc import Collection, Coroutine
 from typing import Any, TypeVar
 
 GRACE_S = 1.0
-"""How long what is cancelled may take to end; after that it is left behind."""
+"""How long a cancelled task may take to end before it is abandoned."""
 
 T = TypeVar("T")
 
 
 async def within(seconds: float, work: Coroutine[Any, Any, T]) -> T:
-    """What a driver's work gives; it is cancelled at its deadline.
+    """The result of a driver's work, which is cancelled at its deadline.
 
     Raises:
-        TimeoutError: the deadline has come.
-        Exception: what the work raises.
+        TimeoutError: the deadline has passed.
+        Exception: whatever the work raises.
     """
     task = asyncio.ensure_future(work)
     try:
@@ -31,9 +31,9 @@ async def within(seconds: float, work: Coroutine[Any, Any, T]) -> T:
 
 
 def run(work: Coroutine[Any, Any, T]) -> T:
-    """Run work in an event loop of its own, which ends when the work does.
+    """Run work in a separate event loop, which ends when the work does.
 
-    Whatever else still runs in it then is cancelled, and left behind if it does not heed that.
+    Other tasks still running in it are then cancelled, and abandoned if they ignore that.
     """
 
     async def alone() -> T:
@@ -47,9 +47,9 @@ def run(work: Coroutine[Any, Any, T]) -> T:
 
 
 async def leave(tasks: Collection[asyncio.Task[Any]]) -> None:
-    """Cancel what still runs; what does not end soon is nobody's any more.
+    """Cancel running tasks; those that do not end soon are abandoned.
 
-    The event loop, which waits for all tasks before it ends, forgets those.
+    The event loop waits for all tasks before it ends, so it is made to forget those.
     """
     left = [one for one in tasks if not one.done()]
     for task in left:
@@ -63,5 +63,5 @@ async def leave(tasks: Collection[asyncio.Task[Any]]) -> None:
 
 
 def _keep_for_ever(task: asyncio.Task[Any]) -> None:
-    """Let Python never destroy a task: that would run its code again, which may never end."""
+    """Prevent Python from destroying a task: that would run its code again, which may never end."""
     ctypes.pythonapi.Py_IncRef(ctypes.py_object(task))

@@ -1,6 +1,6 @@
-"""A real robot as the devices of a run: the conductor, its drivers, services, and the places.
+"""A real robot as the devices of a run: the conductor, drivers, services and places.
 
-It has no clock of its own and starts no task: the shell gives it both.
+It has no clock of its own and starts no tasks: the shell provides both.
 """
 
 from __future__ import annotations
@@ -44,19 +44,19 @@ from prima.sim.entrances import Entrances
 
 T = TypeVar("T")
 MOST_NEWS = 10_000
-"""What drivers may tell in one turn, before the one that tells more is given up."""
+"""How many reports drivers may make in one turn; a driver that exceeds this is given up."""
 SAFE_S = 5.0
 """How long a driver may take to stop everything."""
 
 
 class Answering(Protocol):
-    """What answers the messages that applications send."""
+    """Answers the messages that applications send."""
 
     def due(self) -> int | None:
         """When an answer is to be collected (ms)."""
 
     def collect(self, now: int) -> list[Inbound]:
-        """The answers that have come."""
+        """The answers that have arrived."""
 
     def order(self, now: int, order: Order) -> None:
         """Take a message."""
@@ -68,13 +68,13 @@ class LiveDevices:
     Args:
         profile: the robot.
         drivers: its drivers, in the document's order.
-        services: what answers what applications send.
+        services: answers applications' messages.
         loads: the applications to be loaded at once, by their ids.
         entrances: the areas of the site that offer applications.
         watches: whether any application watches sensors.
-        read: the sensors that they look at; None if that cannot be told.
+        read: the sensors that they use; None if that cannot be determined.
         exclusive: whether a device does one thing at a time (every policy with a mediator).
-        start: the instant after which the run begins, or goes on.
+        start: the instant after which the run begins or resumes.
     """
 
     def __init__(
@@ -98,23 +98,23 @@ class LiveDevices:
         self.now: Callable[[], int] = lambda: 0
         """The run's clock."""
         self.wake: Callable[[], None] = lambda: None
-        """Lets the shell look at once what is due."""
+        """Makes the shell check at once what is due."""
         self.spawn: Callable[[Coroutine[Any, Any, None]], object] = lambda one: one.close()
-        """Lets something run in the background."""
+        """Runs something in the background."""
         self.lost: Callable[[Driver], None] = lambda _: None
-        """Is told of a driver that has lost its robot."""
+        """Called with a driver that has lost its robot."""
         self._watches = watches
         self.listening: Callable[[], Sequence[Answers]] = tuple
-        """What is listened for now."""
+        """Returns what questions and links are listening for."""
         self._taken: Sequence[Answers] = ()
-        """What the drivers were told of that."""
+        """What the drivers were last told to listen for."""
         self._read = read
         self._loads = list(loads)
         self._entrances = entrances or Entrances([])
         self._routes: dict[str, Driver] = {}
         self._news: list[News | Inbound] = []
         self._told: int | None = None
-        """Since when something waits that was told."""
+        """Since when a report has been waiting."""
         self._last = start
         """The latest instant."""
         self._at: At | None = None
@@ -122,9 +122,9 @@ class LiveDevices:
         self._stopping = 0
         """How many drivers are being made safe."""
         self._failing: set[Driver] = set()
-        """Drivers that have failed themselves, and are asked for nothing until they are back."""
+        """Drivers that have failed and are not called until they are back."""
         self._flooding: set[Driver] = set()
-        """Drivers that have told too much in this turn."""
+        """Drivers that have made too many reports in this turn."""
         self._speech = UserSpeech(self.conductor)
         self._carrying = False
 
@@ -132,11 +132,11 @@ class LiveDevices:
 
     @property
     def awaits(self) -> bool:
-        """Whether an application is still to be loaded."""
+        """Whether an application is yet to be loaded."""
         return bool(self._loads) or bool(self._entrances.offers)
 
     def due(self) -> int | None:
-        """The next instant at which something is to be collected, if one is known."""
+        """When there is next something to collect, if known."""
         told = None if self._told is None else max(self._told, self._last + 1)
         return earliest(
             self._last + 1 if self._loads or self._entrances.unseen else None,
@@ -148,7 +148,7 @@ class LiveDevices:
         )
 
     def collect(self, now: int) -> list[Inbound]:
-        """All that has come in by ``now``, in order."""
+        """Everything that has come in by ``now``, in order."""
         self._last = now
         for driver in self.drivers:
             self._let(driver, partial(driver.sample, now))
@@ -163,11 +163,11 @@ class LiveDevices:
         news, self._news = self._news, []
         while news and not (self._stopping and _releases(news[0])):
             inbound += self._take(now, news.pop(0))
-        self._news = news  # a release counts when everything has stopped
+        self._news = news  # a release counts once everything has stopped
         return [*inbound, *self._speech.cut_off(now), *self.services.collect(now)]
 
     def order(self, now: int, order: Order) -> None:
-        """Give an order to whom it is for."""
+        """Pass an order to its recipient."""
         if order.verb == "send":
             self.services.order(now, order)
             return
@@ -175,7 +175,7 @@ class LiveDevices:
         self._carry_out()
 
     def observe(self, now: int, records: list[Record]) -> None:
-        """All orders of an instant have been given: the ear listens on."""
+        """Note that all orders of an instant have been given: the ear keeps listening."""
         self.conductor.end_loops()
         self._carry_out()
         self._speech.listen_on(now)
@@ -188,11 +188,11 @@ class LiveDevices:
             self._let(driver, partial(driver.observe, now, records))
 
     def go_on(self, state: KnownAtCut, first: list[Inbound]) -> None:
-        """Go on after a run that was cut off.
+        """Continue a run that was cut off.
 
         Args:
-            state: what it knew then.
-            first: what is told before anything else.
+            state: its state at that time.
+            first: values to report before anything else.
         """
         self._loads = [name for name in self._loads if name not in state.loaded]
         self._entrances.enter(state.inside)
@@ -204,7 +204,7 @@ class LiveDevices:
     # The drivers' side -------------------------------------------------------------------
 
     def tell(self, driver: Driver, told: Report | News) -> None:
-        """Take what a driver tells; reports reach the conductor at once."""
+        """Take a driver's news; reports on goals reach the conductor at once."""
         now = self._now()
         if not isinstance(told, Accepted | Progress | Stopped) and self._told is None:
             self._told = now
@@ -229,7 +229,7 @@ class LiveDevices:
         self.wake()
 
     def _take(self, now: int, news: News | Inbound) -> list[Inbound]:
-        """What a driver's news mean for the session."""
+        """The inbound values that a driver's news amounts to."""
         match news:
             case Speaks(begins=True):
                 self._speech.begins(now)
@@ -252,7 +252,7 @@ class LiveDevices:
                 return [news]
 
     def _matters(self, sensor: str) -> bool:
-        """Whether an application looks at a sensor; of the others the first value is told."""
+        """Whether a sensor's value matters; if no application uses it, only its first does."""
         read, known = self._read, self.conductor.sensors.values
         looks = read is None or sensor.partition(".")[0] in read
         return self._watches and (looks or sensor not in known)
@@ -276,7 +276,7 @@ class LiveDevices:
             self.wake()
 
     def _let(self, driver: Driver, what: Callable[[], T]) -> T | None:
-        """Ask a driver for something; one that fails itself has lost its robot."""
+        """Call a driver; one that raises an error has lost its robot."""
         if driver in self._failing:
             return None
         try:
@@ -287,7 +287,7 @@ class LiveDevices:
             return None
 
     def _carry_out(self) -> None:
-        """Let the drivers do what the conductor says, until nothing more comes of it."""
+        """Let the drivers carry out the conductor's calls until there are no more."""
         if self._carrying:
             return
         self._carrying = True
@@ -339,7 +339,7 @@ class LiveDevices:
         return {"x": round(at.x, 3), "y": round(at.y, 3), "heading": round(at.heading, 1) % 360.0}
 
     def _whereabouts(self) -> dict[str, float]:
-        """Where the user is, as far as the camera tells."""
+        """Where the user is, by the camera's latest report."""
         sees = self._sees
         told = {"distance": sees.distance, "angle": sees.angle} if sees.visible else {}
         return {name: value for name, value in told.items() if value is not None}

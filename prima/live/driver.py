@@ -1,7 +1,7 @@
-"""Drivers: what carries goals out on a robot, and tells what its sensors say.
+"""Drivers carry out goals on a robot, and report what its sensors say.
 
-A driver knows no rule of mediation. :class:`Driver` is the plain interface;
-:class:`TaskDriver` is what most robots need: one coroutine for each goal.
+Drivers do not know the rules of mediation. :class:`Driver` is the plain interface;
+:class:`TaskDriver` suits most robots: it runs one coroutine for each goal.
 All methods are called in the event loop of the run; a thread reports with
 :meth:`Driver.post`.
 """
@@ -38,15 +38,15 @@ Tell = Callable[[Report | News], None]
 
 
 class Unreachable(RunError):
-    """The robot, or the program that drives it, is not there."""
+    """The robot, or the program that drives it, cannot be reached."""
 
 
 class Unusable(UsageError):
-    """The driver is not set up: a library is missing, or its address is none."""
+    """The driver is not set up: a library is missing, or its address is invalid."""
 
 
 class Refused(Exception):
-    """A goal is not reached: the robot refuses it, or has failed at it.
+    """A goal is not reached: the robot refuses it or has failed.
 
     Args:
         reason: why, for people.
@@ -70,11 +70,11 @@ class Driver:
     kind: ClassVar[str] = ""
     """Its name in robots' documents."""
     mapped: ClassVar[bool] = False
-    """Whether a Command needs a ``does`` to be carried out."""
+    """Whether Commands need a ``does`` to be carried out."""
     own: ClassVar[frozenset[str]] = frozenset()
     """The Commands (and ``say``, ``listen``) that it carries out without one."""
     progress: ClassVar[DriverLimits] = DriverLimits()
-    """How long it takes at most by its own nature, where the document says nothing."""
+    """The driver's own time limits, used where the document gives none."""
 
     def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:
         self.settings = settings
@@ -83,7 +83,7 @@ class Driver:
         self.now: Callable[[], int] = lambda: 0
         """The run's time (ms)."""
         self.recordings = Recordings()
-        """Where it keeps what it records."""
+        """Where it stores recordings."""
         self._tell: Tell = lambda _: None
         self._loop: asyncio.AbstractEventLoop | None = None
 
@@ -93,12 +93,12 @@ class Driver:
         """Connect to the robot; called again after the connection was lost.
 
         Raises:
-            Unreachable: it is not there; the message says what to do.
-            Unusable: it can never be there as the driver is set up.
+            Unreachable: it cannot be reached; the message says what to do.
+            Unusable: with this setup of the driver it never can be.
         """
 
     def start(self, goal: Begin) -> None:
-        """Begin a goal. Reports of it follow, now or later: accepted, then one of its ends."""
+        """Begin a goal. Reports follow, now or later: accepted, then one of its ends."""
         raise NotImplementedError
 
     def cancel(self, key: str) -> None:
@@ -109,16 +109,16 @@ class Driver:
         """A feedback Command makes another loop: its goal simply goes on."""
 
     def stand(self) -> None:
-        """Stop the wheels where the body rolls on after a Command (rule F5)."""
+        """Stop the wheels if the body rolls on after a Command (rule F5)."""
 
     def hears(self, takes: Sequence[Answers]) -> None:
-        """What the questions and links that listen take from now on; told each time it changes.
+        """Called with what the listening questions and links accept, each time that it changes.
 
-        A recogniser makes its grammar of it. Others need not heed it.
+        A recogniser makes its grammar from it. Others can ignore it.
         """
 
     async def safe(self) -> None:
-        """Stop everything at once, whatever runs. Called more than once, and after a loss."""
+        """Stop everything at once. May be called more than once, and after a loss."""
 
     async def ping(self) -> None:
         """Ask whether the robot is still there, within the heartbeat.
@@ -128,25 +128,25 @@ class Driver:
         """
 
     async def check(self) -> dict[str, str]:
-        """Try what only this driver can try before a run, as whether the microphone hears anything.
+        """Check what only this driver can check before a run, such as whether the microphone works.
 
         Returns:
-            what was tried, each with a sentence of what does not work, or nothing.
+            the checks, each with a sentence on what does not work, or an empty one.
         """
         return {}
 
     async def close(self) -> None:
-        """Give back the connection; the run is over."""
+        """Close the connection; the run is over."""
 
     def due(self) -> int | None:
-        """When it has something to tell by itself (ms of the run): a simulated robot's clock."""
+        """When it next has something to report (ms of the run), for simulated robots."""
         return None
 
     def sample(self, now: int) -> None:
-        """Tell what has to be known at this instant, as where the robot is. Must not block."""
+        """Report what has to be known at this instant, such as the robot's pose. Must not block."""
 
     def observe(self, now: int, records: list[Record]) -> None:
-        """See what the run has made of an instant."""
+        """Observe the records of an instant."""
 
     # What a driver uses -----------------------------------------------------------------
 
@@ -156,7 +156,7 @@ class Driver:
         self._loop = asyncio.get_running_loop()
 
     def tell(self, report: Report | News) -> None:
-        """Tell the run something, from its event loop; if no record can hold it, the robot is lost."""
+        """Report to the run, from its event loop; if no record can hold it, the robot is lost."""
         try:
             told = well_formed(report)
         except WRONG as error:
@@ -166,22 +166,22 @@ class Driver:
             self._tell(told)
 
     def post(self, report: Report | News) -> None:
-        """Tell the run something, from another thread. After the run's end it is dropped."""
+        """Report to the run from another thread. After the run's end it is dropped."""
         loop = self._loop
         if loop is not None and not loop.is_closed():
             loop.call_soon_threadsafe(self.tell, report)
 
     def lose(self, reason: str) -> None:
-        """Tell that the connection is gone: what runs fails, and :meth:`open` is called again."""
+        """Report a lost connection: running goals fail, and :meth:`open` is called again."""
         self.tell(Lost(self.settings.devices, reason))
 
     def does(self, goal: Begin) -> Does | None:
-        """How a goal is carried out, by the robot's document."""
+        """How a goal is carried out according to the robot's document."""
         gesture = str(goal.command.args.get("name", "")) if goal.kind == "gesture" else ""
         return self.settings.how(goal.kind, gesture)
 
     def values(self, goal: Begin) -> dict[str, Json]:
-        """What a goal gives to be put into arguments: see ``set`` in the robot's document."""
+        """The values that a goal provides for arguments: see ``set`` in the robot's document."""
         command = goal.command
         values: dict[str, Json] = {**command.args, "lang": command.lang or "en"}
         if command.text is not None:
@@ -193,7 +193,7 @@ class Driver:
     def place(self, goal: Begin) -> Pose | None:
         """The place that a goal names, on the robot's own map; None if it names none.
 
-        The robot's document says where a place is there; else it is where the site's map has it.
+        The robot's document says where a place is there; otherwise the site's map does.
         """
         args = goal.command.args
         name = str(args.get("to", args.get("toward", "")))
@@ -203,7 +203,7 @@ class Driver:
 
 
 class TaskDriver(Driver):
-    """A driver that has one coroutine for each goal.
+    """A driver that runs one coroutine for each goal.
 
     A goal is done when :meth:`perform` returns, fails when it raises, and has stopped when it
     has ended after being cancelled: stop the robot where :class:`asyncio.CancelledError` arrives.
@@ -216,27 +216,27 @@ class TaskDriver(Driver):
         super().__init__(settings, profile, site)
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._said: dict[str, int] = {}
-        """How many characters of their texts goals have said, as far as :meth:`perform` tells."""
+        """How many characters of their texts goals have said, as far as :meth:`perform` reports."""
 
     async def perform(self, goal: Begin) -> Data:
-        """Carry out a goal to its end; gives what the device tells then.
+        """Carry out a goal to its end; returns the data that the device reports then.
 
         Raises:
             Refused: the robot does not do it.
-            Unreachable: it is not there any more.
+            Unreachable: the robot cannot be reached any more.
         """
         raise NotImplementedError
 
     def has_said(self, goal: Begin, characters: int) -> None:
-        """So much of a goal's text has been said: the run is told when it is cancelled (X2)."""
+        """Note how much of a goal's text has been said, to report if it is cancelled (X2)."""
         self._said[goal.key] = characters
 
     def accept(self, goal: Begin) -> None:
-        """The robot has begun a goal."""
+        """Report that the robot has begun a goal."""
         self.tell(Accepted(goal.key))
 
     def report(self, goal: Begin) -> None:
-        """The robot is on with a goal."""
+        """Report that the robot is still working at a goal."""
         self.tell(Progress(goal.key))
 
     def start(self, goal: Begin) -> None:
@@ -247,19 +247,19 @@ class TaskDriver(Driver):
             self.accept(goal)
 
     def cancel(self, key: str) -> None:
-        """Cancel the coroutine of a goal; one that is over has told its end already."""
+        """Cancel the coroutine of a goal; one that is over has already reported its end."""
         if task := self._tasks.get(key):
             task.cancel()
 
     async def close(self) -> None:
-        """Cancel what still runs, and wait for it to end."""
+        """Cancel running goals, and wait for them to end."""
         tasks = list(self._tasks.values())
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
 
     def _never_run(self, key: str) -> None:
-        """Tell the end of a goal that was cancelled before its coroutine had its first turn."""
+        """Report the end of a goal that was cancelled before its coroutine first ran."""
         if self._tasks.pop(key, None) is not None:
             self.tell(Stopped(key))
 
@@ -271,7 +271,7 @@ class TaskDriver(Driver):
         except Unreachable as error:
             self.lose(str(error))
             return
-        except SystemExit as error:  # a robot's library wants to end the program
+        except SystemExit as error:  # a robot's library tries to end the program
             device = min(goal.devices, default="none")
             report = Broke(goal.key, device, f"the driver has failed: SystemExit: {error}")
         except Exception as error:
@@ -285,5 +285,5 @@ class TaskDriver(Driver):
 
 
 def speaks(goal: Begin) -> str:
-    """The text that a goal has to say, with spaces at its ends cut off; nothing for others."""
+    """The text that a goal has to say, stripped of surrounding spaces; empty for other goals."""
     return (goal.command.text or "").strip() if goal.kind == SAY else ""

@@ -1,7 +1,7 @@
-"""The journal of a live run: its transcript, appended instant by instant, and how a run goes on from it.
+"""The journal of a live run: its transcript, appended instant by instant, from which it can resume.
 
-An instant is written before its orders are carried out. So whatever a journal lacks at its end
-the world has not seen, but for what came in at the very last instant.
+An instant is written before its orders are carried out. So nothing missing at the end of a
+journal has taken effect in the world, except what came in at the very last instant.
 """
 
 from __future__ import annotations
@@ -23,38 +23,38 @@ from prima.session import Session
 from prima.transcript.lines import check_head, finished, line, read_lines
 
 REDACTED = "[redacted]"
-"""What stands for what a user has said."""
+"""Replaces what a user has said."""
 MOST_FREE = 1000
-"""How many of the latest utterances that no grammar took are looked for."""
+"""How many of the latest utterances without a matching grammar are searched for."""
 LONG_ENOUGH = 8
-"""Letters of an utterance that nobody took; a shorter one comes back by chance."""
+"""Minimum length of an utterance that nobody took; a shorter one recurs by chance."""
 CHANGED = (
     "the documents do not give this record again: lines are missing above it or were changed,"
     " or another version of PRIMA has written them."
 )
 SPOKEN = ("utterance", "alternatives", "recorded", "text")
-"""Where the data of records have what a user has said."""
+"""The fields of records' data that hold what a user has said."""
 
 
 class Redactor:
-    """Leaves out of records what users say: its time, and what grammars made of it, stay.
+    """Removes what users say from records; its times and the grammars' results are kept.
 
-    What no grammar took is left out wherever it comes back word for word: as a field's value, in
-    what is sent to services, in what the robot says. Such a journal can be shown and measured; it
-    cannot be run again, nor gone on with.
+    What no grammar took is removed wherever it recurs word for word: as a field's value, in
+    messages to services, in what the robot says. Such a journal can be shown and measured; it
+    cannot be replayed or resumed.
 
     Args:
-        listening: gives what is listened for now.
+        listening: returns what is listened for now.
     """
 
     def __init__(self, listening: Callable[[], Sequence[Answers]]) -> None:
         self._listening = listening
         self._takes: Sequence[Answers] = ()
         self._free: deque[Pattern[str]] = deque(maxlen=MOST_FREE)
-        """Finds what users have said in their own words."""
+        """Finds users' own words."""
 
     def __call__(self, records: list[Record]) -> list[Record]:
-        """The records of an instant without it."""
+        """The records of an instant without users' words."""
         made = [self._redacted(record) for record in records]
         self._takes = self._listening()
         return made
@@ -74,7 +74,7 @@ class Redactor:
         return record
 
     def _note(self, said: str) -> None:
-        """Keep what was said freely; a short word only where a question takes any text."""
+        """Remember free speech; short words only if a question takes any text."""
         taken = any(one.type == "text" for one in self._takes)
         if len(fold(said)) < (1 if taken else LONG_ENOUGH):
             return
@@ -83,7 +83,7 @@ class Redactor:
             self._free.append(re.compile(rf"(?<![a-z0-9]){words}(?![a-z0-9])", re.I))
 
     def _without(self, value: Json) -> Json:
-        """A value without what users have said in their own words."""
+        """A value without users' own words."""
         if isinstance(value, str):
             for said in self._free:
                 value = said.sub(REDACTED, value)
@@ -97,12 +97,12 @@ class Journal:
     """A file that grows by each instant's records.
 
     Args:
-        path: where it is, a device among them; a new file unless ``kept`` is given.
-        sync: whether each instant is on the disk before it is carried out.
-        kept: how many bytes of an older journal are kept; it goes on after these.
+        path: its path, which may be a device; a new file unless ``kept`` is given.
+        sync: whether each instant is flushed to the disk before it is carried out.
+        kept: the number of bytes of an older journal to keep; writing continues after them.
 
     Raises:
-        UsageError: the file is there already, or cannot be written.
+        UsageError: the file already exists, or cannot be written.
     """
 
     def __init__(self, path: str, sync: bool = False, kept: int | None = None) -> None:
@@ -126,7 +126,7 @@ class Journal:
         """Append records, times in ms.
 
         Raises:
-            RunError: they cannot be written, as on a full disk.
+            RunError: they cannot be written, for example because the disk is full.
         """
         data = "".join(map(line, records)).encode()
         try:
@@ -138,7 +138,7 @@ class Journal:
             raise RunError(f"{self.path}: cannot be written: {error.strerror}.") from None
 
     def discard(self) -> None:
-        """Remove the file, where it is one."""
+        """Remove the file, if it is a regular file."""
         if os.path.isfile(self.path):
             os.unlink(self.path)
 
@@ -149,7 +149,7 @@ class Journal:
 
 @dataclass(slots=True)
 class CutJournal:
-    """A journal that was cut off: its whole records, and how many bytes these are."""
+    """A journal that was cut off: its complete records, and their size in bytes."""
 
     path: str
     records: list[Record]
@@ -162,10 +162,10 @@ class CutJournal:
 
 
 def read_broken(path: str) -> CutJournal:
-    """Read a journal up to its last whole record.
+    """Read a journal up to its last complete record.
 
     Raises:
-        UsageError: it is none, cannot be read, or its run has ended.
+        UsageError: it is not a journal, cannot be read, or its run has ended.
     """
     try:
         if Path(path).exists() and not Path(path).is_file():
@@ -191,22 +191,22 @@ def read_broken(path: str) -> CutJournal:
 
 
 def catch_up(broken: CutJournal, session: Session) -> list[Record]:
-    """Bring a new session to where a journal was cut off.
+    """Bring a new session to the point where a journal was cut off.
 
     Returns:
-        Records (times in ms) that the last instant lacks in the journal.
+        Records (times in ms) of the last instant that are missing in the journal.
 
     Raises:
-        UsageError: the session does not make the journal's records: other documents made it.
+        UsageError: the session does not reproduce the journal's records: other documents made it.
     """
     return lacking(broken, replay_instants(session, broken.records, broken.path))
 
 
 def lacking(broken: CutJournal, made: Iterable[Record]) -> list[Record]:
-    """What a journal lacks of the records that were made again, times in ms.
+    """The reproduced records that a journal lacks, times in ms.
 
     Raises:
-        UsageError: the records are others.
+        UsageError: the records differ.
     """
     again = iter(made)
     for number, before in enumerate(broken.records[1:], start=2):
@@ -231,25 +231,25 @@ GOES_ON = "the run was cut off here, and goes on"
 
 @dataclass(slots=True)
 class KnownAtCut:
-    """What a run knew when it was cut off."""
+    """The state of a run when it was cut off."""
 
     loaded: set[str]
-    """Applications that were there."""
+    """Applications that were loaded."""
     inside: set[str]
-    """Those of areas that the robot was in."""
+    """Those of the areas that the robot was in."""
     found: bool
     """Whether the user was seen."""
     sensors: dict[str, Json]
     halted: bool
     """Whether the emergency stop was pressed."""
     own: bool = False
-    """Whether resuming after an earlier cut pressed it, and nobody else."""
+    """Whether only resuming after an earlier cut pressed it."""
     asked: dict[str, Order] = field(default_factory=dict)
-    """What applications had asked and had no answer to, by its name, the oldest first."""
+    """Applications' requests without an answer, by name, the oldest first."""
 
 
 def known(records: list[Record]) -> KnownAtCut:
-    """What a run knew at the end of its records."""
+    """The state of a run at the end of its records."""
     state, cut = KnownAtCut(set(), set(), False, {}, False), -1.0
     for record in records:
         match record["phase"]:
@@ -274,13 +274,13 @@ def known(records: list[Record]) -> KnownAtCut:
 
 
 def _note_asked(asked: dict[str, Order], record: Record) -> None:
-    """Keep what is asked until it is answered.
+    """Keep requests until they are answered.
 
-    A service's reply does not say to which message it is one: it counts for the oldest.
+    A service's reply does not say which message it answers: the oldest is assumed.
     """
     app, data = str(record.get("app", "")), record.get("data") or {}
     match record["phase"]:
-        case "load" | "unload":  # whoever has asked is gone
+        case "load" | "unload":  # the application that asked is gone
             for name in [name for name, order in asked.items() if order.app == app]:
                 del asked[name]
         case "send" if data.get("transfer") == "over":
@@ -297,7 +297,7 @@ def _note_asked(asked: dict[str, Order], record: Record) -> None:
 
 
 def _answered(asked: dict[str, Order], app: str, event: str) -> str:
-    """The name of what an application has asked that an event answers; empty for nothing."""
+    """The name of the request that an event answers; empty if none."""
     for name, order in asked.items():
         to = order.data["to"]
         if order.app == app and event in (f"reply.{to}", f"error.service.{to}"):
@@ -306,9 +306,9 @@ def _answered(asked: dict[str, Order], app: str, event: str) -> str:
 
 
 def going_on(state: KnownAtCut) -> Iterator[Inbound]:
-    """What a run is told when it goes on: all that ran was interrupted, and starts again (E5).
+    """The events with which a run resumes: everything was interrupted and starts again (E5).
 
-    A stop that somebody has pressed stays so, until they release it.
+    A stop that somebody has pressed stays pressed until it is released.
     """
     yield Narrated("environment", GOES_ON)
     if not state.halted:

@@ -1,4 +1,4 @@
-"""What drivers share whose robot has an interface of its own, which its document maps Commands to."""
+"""The common part of drivers for robots whose document maps Commands to the robot's interface."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from prima.live.told import Teller
 from prima.messages import Json
 
 DEGREES: Final = ("angle", "heading", "pan", "tilt", "down", "turn", "turn-speed")
-"""Values that a robot may want in radians: ``{NAME-radians}``."""
+"""Values that are also available in radians: ``{NAME-radians}``."""
 FLUSH_S: Final = 0.05
-"""How long sensors' values are gathered before they are told: the newest counts."""
+"""How long sensor values are collected before the newest is reported."""
 OFTEN: Final = frozenset({"sensor", "pose", "human"})
-"""What is told by its newest value; of the rest each message counts."""
+"""Kinds of which only the newest value is reported; for others each message counts."""
 
 
 class MappedDriver(TaskDriver):
-    """A driver that carries out what its ``does`` say, and tells what its ``senses`` say."""
+    """A driver that carries out Commands by its ``does``, and reports by its ``senses``."""
 
     mapped: ClassVar[bool] = True
     own: ClassVar[frozenset[str]] = frozenset({LISTEN})
@@ -37,7 +37,7 @@ class MappedDriver(TaskDriver):
     # Goals ----------------------------------------------------------------------------------
 
     def lasts(self, goal: Begin) -> float | None:
-        """How long (s) a goal takes by itself where the robot does not tell; None if unknown."""
+        """How long (s) a goal takes if the robot does not report its end; None if unknown."""
         command, profile = goal.command, self.profile
         if goal.kind == SAY:
             rates = profile.voices
@@ -52,7 +52,7 @@ class MappedDriver(TaskDriver):
         return None if known is None else known / 1000
 
     def values(self, goal: Begin) -> dict[str, Json]:
-        """Add what robots ask for: times in seconds, radians, and quaternions."""
+        """Add values that robots need: times in seconds, radians, and quaternions."""
         values = super().values(goal)
         if self._at is not None:
             values.setdefault("heading", self._at.heading)
@@ -73,7 +73,7 @@ class MappedDriver(TaskDriver):
         return values | {"heading-z": math.sin(half), "heading-w": math.cos(half)}
 
     def _turn(self, goal: Begin) -> float | None:
-        """By how many degrees to the left a goal turns the body, if it does."""
+        """The degrees by which a goal turns the body to the left, if it does."""
         if goal.kind not in ("turn", "turn-and-speak", "set-direction"):
             return None
         args, at, place = goal.command.args, self._at, self.place(goal)
@@ -87,14 +87,14 @@ class MappedDriver(TaskDriver):
         return (heading - at.heading + 180) % 360 - 180
 
     async def hear(self, goal: Begin) -> None:
-        """Listen without being told how: the ear is open all the time."""
+        """Listen without a ``does``: the ear is always open."""
         self.accept(goal)
         await asyncio.get_running_loop().create_future()
 
     # The connection -------------------------------------------------------------------------
 
     def lose(self, reason: str) -> None:
-        """Tell once that the connection is gone."""
+        """Report, once, that the connection is lost."""
         if not self.gone:
             self.gone = True
             super().lose(reason)
@@ -109,12 +109,12 @@ class MappedDriver(TaskDriver):
     # Senses -----------------------------------------------------------------------------------
 
     def sense_from_thread(self, senses: Senses, message: Json) -> None:
-        """Take a message of the robot, in any thread."""
+        """Take a message of the robot, from any thread."""
         if self._loop is not None and not self._loop.is_closed():
             self._loop.call_soon_threadsafe(partial(self.sense, senses, message))
 
     def sense(self, senses: Senses, message: Json) -> None:
-        """Take a message of the robot. Times of what is told often are evened out."""
+        """Take a message of the robot. Frequent values are reported at regular times."""
         self._teller = self._teller or Teller()
         self._teller.take(senses, message)
         if senses.what not in OFTEN:

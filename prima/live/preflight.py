@@ -1,4 +1,4 @@
-"""The preflight: each driver is opened, and each Command begun and really cancelled."""
+"""The preflight check: each driver is opened, and each Command begun and actually cancelled."""
 
 from __future__ import annotations
 
@@ -31,30 +31,30 @@ from prima.sim.services import Services
 LASTING_MS = 300
 """How long a Command goes on before it is cancelled."""
 UNBOUNDED_MS = 10_000
-"""How long a driver may take where its document says nothing."""
+"""How long a driver may take unless its document says otherwise."""
 SENTENCE = "This is a check of my voice."
 TICKS, TICK_S = 5, 0.02
-"""How often the clock has to tick, and how long (s) that takes each time."""
+"""The number of clock ticks to measure, and the length (s) of each."""
 ENDS = (Done, Stopped, Broke, Lost)
 INTERRUPTED = 130
 """The exit code after a signal."""
 HEEDED_S = 0.15
-"""By when a goal that ends well after a cancel may just have come to its end."""
+"""Within this time after a cancel, a goal that ends well may simply have finished."""
 SLOW_S = 1.0
-"""How long it may take to stop before that is remarkable."""
+"""A longer stopping time is reported."""
 LINE = "{:5}  {:26}  {:10}  {:>9}  {:>9}  {}"
-"""How a line looks: the result, what is tried, the driver, two times, and what there is to say."""
+"""The format of a line: the result, the check, the driver, two times, and a remark."""
 SMALL = {"speed": 0.05, "x": 0.2, "angle": 30.0, "pan": 20.0}
-"""Arguments that move the robot so little that it does no harm, and so long that it can be cancelled."""
+"""Arguments with a movement small enough to be harmless and long enough to be cancelled."""
 LATE_S = 0.05
-"""By how much the clock's ticks may be late, half of them at least."""
+"""The maximum median lateness of the clock's ticks."""
 
 Say = Callable[[str], object]
 
 
 @dataclass(frozen=True, slots=True)
 class CommandFinding:
-    """What came of a Command: whether it is right, why not, and its times for people."""
+    """The result of trying a Command: whether it works, why not, and its times as text."""
 
     right: bool
     text: str
@@ -65,7 +65,7 @@ class CommandFinding:
 
 
 def _ended(report: Report, accepted: str) -> CommandFinding:
-    """What a Command is that has ended by itself."""
+    """The result of a Command that has ended by itself."""
     if isinstance(report, Broke | Lost):
         return CommandFinding(False, report.reason, accepted)
     if isinstance(report, Stopped):
@@ -78,10 +78,10 @@ def _ms(seconds: float) -> str:
 
 
 def check_robot(chosen: Chosen, settings: LiveSettings, say: Say) -> int:
-    """Try a robot, and say what came of it line by line.
+    """Try a robot, and print the results line by line.
 
     Returns:
-        an exit code: 0 if all of it works, 2 if a driver is not set up, 3 if it does not work.
+        an exit code: 0 if everything works, 2 if a driver is not set up, 3 if something fails.
 
     Raises:
         DocumentError: a document is wrong.
@@ -99,7 +99,7 @@ def check_robot(chosen: Chosen, settings: LiveSettings, say: Say) -> int:
 
 
 async def _stoppable(preflight: Preflight) -> int:
-    """Carry a check out; a signal ends it with a safe robot."""
+    """Carry out a check; a signal ends it and makes the robot safe."""
     task = asyncio.ensure_future(preflight.run())
     with heeding_signals(task.cancel):
         try:
@@ -158,7 +158,7 @@ class Preflight:
             self._tell(False, "end", reason, driver.kind)
 
     def _tell(self, right: bool | None, what: str, text: str, *columns: str) -> None:
-        """Say a line: whether it works (None for what is only told), what, and how."""
+        """Print a line: whether it works (None for information), what, and how."""
         self._wrong += right is False
         result = "-" if right is None else "ok" if right else "FAILS"
         self._say(LINE.format(result, what, *columns, *[""] * (3 - len(columns)), text).rstrip())
@@ -194,7 +194,7 @@ class Preflight:
         return True
 
     def _tell_stops(self) -> None:
-        """Say what the emergency stop is, which nobody presses here."""
+        """Print how the emergency stop is connected; it is not pressed here."""
         stops = [
             (driver, senses.by)
             for driver in self._drivers
@@ -212,7 +212,7 @@ class Preflight:
     # Commands ---------------------------------------------------------------------------
 
     def _commands(self) -> list[tuple[str, Command, frozenset[str]]]:
-        """What is tried: the goal's kind, the Command, and its devices."""
+        """The checks: the goal's kind, the Command, and its devices."""
         tried: list[tuple[str, Command, frozenset[str]]] = []
         for row in self._robot.commands.values():
             if row.substitute or row.name in SPOKEN:
@@ -246,7 +246,7 @@ class Preflight:
         return [args]
 
     def _value(self, name: str, argument: Argument) -> Json:
-        """A small value for an argument: the nearest to nothing that moves."""
+        """A small value for an argument: the smallest that moves the robot."""
         if argument.default is not None:
             return argument.default
         if argument.kind == "duration":
@@ -258,7 +258,7 @@ class Preflight:
         return next(iter([*places, *self._site.places]), None) if argument.kind == "id" else None
 
     async def _try(self, tried: tuple[str, Command, frozenset[str]]) -> None:
-        """Begin a Command, let it go on for a moment, and cancel it."""
+        """Begin a Command, let it run for a moment, and cancel it."""
         kind, command, devices = tried
         what = f"{kind} {command.args.get('name', '')}".strip()
         self._count += 1
@@ -274,13 +274,13 @@ class Preflight:
             self._tell(None, what, "not tried: its driver is not there", driver.kind)
         else:
             found = await self._carried_out(driver, begin, LASTING_MS)
-            if found.done:  # too quickly to be cancelled: once more
+            if found.done:  # too fast to be cancelled: try once more
                 again = replace(begin, key=f"{key}/again")
                 found = replace(await self._carried_out(driver, again, 0), accepted=found.accepted)
             self._tell(found.right, what, found.text, driver.kind, found.accepted, found.cancelled)
 
     async def _carried_out(self, driver: Driver, begin: Begin, lasts: int) -> CommandFinding:
-        """Begin a Command, let it go on for a while (ms), and cancel it."""
+        """Begin a Command, let it run for a while (ms), and cancel it."""
         key, limits = begin.key, self._devices.limits(begin)
         self._reports[key] = asyncio.Queue()
         try:
@@ -295,7 +295,7 @@ class Preflight:
     async def _watch(
         self, driver: Driver, key: str, limits: DriverLimits, lasts: int
     ) -> CommandFinding:
-        """What comes of a Command that was begun."""
+        """The result of a Command that was begun."""
         began = monotonic()
         first = await self._report(key, limits.accept)
         accepted = _ms(monotonic() - began)
@@ -334,7 +334,7 @@ class Preflight:
             return None
 
     async def _next(self, queue: asyncio.Queue[Report]) -> Report:
-        """The next report; simulated robots get on meanwhile."""
+        """The next report; simulated robots advance meanwhile."""
         while queue.empty():
             for driver in self._drivers:
                 if driver.due() is not None:

@@ -1,4 +1,4 @@
-"""A live run as it is asked for, from the command line or from Python."""
+"""A live run as requested on the command line or from Python."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from prima.live.visit import LiveSettings, Visit, begin
 def check_usage(
     chosen: Chosen, output: str | None, resume: str | None, checks: bool = False
 ) -> None:
-    """Refuse what does not go together.
+    """Reject options that cannot be combined.
 
     Args:
-        chosen: what the run is made of.
+        chosen: the parts of the run.
         output: the path of a new journal.
-        resume: the path of a journal whose run goes on.
-        checks: whether the robot is to be checked instead.
+        resume: the path of a journal whose run is resumed.
+        checks: whether to check the robot instead.
 
     Raises:
-        UsageError: there is some.
+        UsageError: there are such options.
     """
     own = [chosen.fas, chosen.eas, chosen.world, chosen.maps]
     if resume is not None:
@@ -47,11 +47,11 @@ def check_usage(
 def prepared(
     chosen: Chosen, settings: LiveSettings, output: str | None, resume: str | None
 ) -> Visit:
-    """A run that is ready to go: a new one, or one that goes on.
+    """A run that is ready to go: a new or a resumed one.
 
     Raises:
         DocumentError: documents are wrong.
-        UsageError: something does not go together, is not there, or is not the one of then.
+        UsageError: something cannot be combined, is missing, or has changed since.
     """
     check_usage(chosen, output, resume)
     if resume is not None:

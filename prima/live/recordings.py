@@ -1,4 +1,4 @@
-"""What users say into a recording: files beside the journal, to which records refer by name."""
+"""Users' recordings: files beside the journal, to which records refer by name."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from prima.messages import Heard
 TYPE: Final = "audio/x-wav"
 SAMPLE_BYTES = 2
 MOST_IN_MEMORY = 20
-"""Recordings that are kept where there is no folder for them."""
+"""Maximum number of recordings that are kept without a folder for them."""
 
 
 class Recordings:
     """The recordings of a run, 16-bit mono.
 
     Args:
-        journal: the journal's path, as VISIT.jsonl beside VISIT-1.wav; without one, and where
+        journal: the journal's path, such as VISIT.jsonl beside VISIT-1.wav; without one, or if
             what users say is left out of it, they are kept as long as the run lasts.
     """
 
@@ -31,15 +31,15 @@ class Recordings:
         self._held: dict[str, bytes] = {}
 
     def keep(self, sound: bytes, rate: int, cut: bool = False) -> Heard:
-        """Keep a recording.
+        """Store a recording.
 
         Args:
             sound: its samples.
             rate: how many of them are a second.
-            cut: whether it was as long as it may be, and so cut off.
+            cut: whether it reached the maximum length and was cut off.
 
         Returns:
-            what is told of it: its name, and how long and large it is.
+            the data to report: its name, length and size.
 
         Raises:
             OSError: it cannot be written.
@@ -73,7 +73,7 @@ class Recordings:
                 return path.name
 
     def samples(self, name: str) -> bytes | None:
-        """The samples of a recording of this run; None if there is none of that name."""
+        """The samples of a recording of this run; None if none has that name."""
         data = self._held.get(name)
         path = self._path
         if path is not None and name.startswith(f"{path.stem}-") and Path(name).name == name:

@@ -1,4 +1,4 @@
-"""How a run goes on that was cut off: on its robot, or as a scenario."""
+"""Resumes a run that was cut off: on its robot, or as a scenario."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ PATIENCE_S = PATIENCE_MS / 1000
 
 
 def go_on(broken: CutJournal, settings: LiveSettings) -> Visit:
-    """Prepare to go on with a run that was cut off.
+    """Prepare to resume a run that was cut off.
 
     Raises:
         DocumentError: documents are wrong.
-        UsageError: a file is not the one of then, or hosts were asked that cannot be asked again.
+        UsageError: a file has changed since, or hosts were asked that cannot be asked again.
     """
     head = broken.records[0]
     chosen, loaded = chosen_then(head, broken.path), reloaded(head, broken.path)
@@ -55,13 +55,13 @@ def go_on(broken: CutJournal, settings: LiveSettings) -> Visit:
 def _scenario(
     broken: CutJournal, loaded: Loaded, policy: Policy, settings: LiveSettings
 ) -> tuple[Loop, list[Record]]:
-    """A scenario runs again to the cut in no time, its world and its user with it.
+    """Run a scenario again up to the cut, in no time, with its world and its user.
 
     Returns:
         The loop at the cut, and the records that the journal's last instant lacks.
 
     Raises:
-        UsageError: a host has answered, which nobody can simulate again.
+        UsageError: a host has answered, which cannot be simulated again.
     """
     for number, record in enumerate(broken.records, 1):
         if record["phase"] == "fetched" and record["data"].get("host"):
@@ -80,7 +80,7 @@ def _scenario(
 def _robot(
     broken: CutJournal, chosen: Chosen, loaded: Loaded, policy: Policy, settings: LiveSettings
 ) -> tuple[Loop, list[Record]]:
-    """The session is told again what it was told; what ran was interrupted.
+    """Feed the session its inbound values again; what ran then was interrupted.
 
     Returns:
         The loop at the cut, and the records that the journal's last instant lacks.

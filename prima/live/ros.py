@@ -1,4 +1,4 @@
-"""What drivers of ROS robots share: actions, services and topics, over whatever link there is."""
+"""The common part of drivers for ROS robots: actions, services and topics, over any link."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ SAFE_S: Final = 2.0
 SUCCEEDED, CANCELED = 4, 5
 """States of a goal, of ``action_msgs/msg/GoalStatus``."""
 AGAIN_S: Final = 0.5
-"""After what time it is asked again to cancel a goal: a bridge forgets it where that comes early."""
+"""The delay before a cancel is repeated: a bridge forgets one that comes early."""
 REASONS: Final = ("error_msg", "error_string", "message", "reason")
-"""Where results tell why they failed."""
+"""The fields of results that say why they failed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class RosUse:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """How a goal of an action has ended."""
+    """How an action's goal has ended."""
 
     status: int
     result: dict[str, Json]
@@ -61,22 +61,22 @@ class Sent:
 
 
 class RosLink(Protocol):
-    """A connection with ROS. What has not been answered when it fails raises Unreachable."""
+    """A connection with ROS. If it fails, requests without an answer raise Unreachable."""
 
     async def connect(self, uses: list[RosUse], driver: RosDriver) -> None:
-        """Connect, subscribe to what is sensed, and see that all is there."""
+        """Connect, subscribe to what is sensed, and check that everything is available."""
 
     async def send_goal(self, use: RosUse, values: dict[str, Json], on: Callable[[], None]) -> Sent:
-        """Send a goal to an action; gives it when it has been accepted."""
+        """Send a goal to an action; returns it once it has been accepted."""
 
     async def call(self, use: RosUse, values: dict[str, Json]) -> dict[str, Json]:
-        """Call a service; gives its answer."""
+        """Call a service; returns its answer."""
 
     def publish(self, use: RosUse, values: dict[str, Json]) -> None:
         """Publish a message."""
 
     async def ping(self) -> None:
-        """Ask whether everything is still there."""
+        """Check that everything is still available."""
 
     def cancel_all(self) -> None:
         """Ask all actions to cancel all goals."""
@@ -89,7 +89,7 @@ class RosLink(Protocol):
 
 
 def use_of(does: Does, kind: str) -> RosUse:
-    """What a ``does`` uses.
+    """The interface that a ``does`` uses.
 
     Raises:
         UsageError: it does not say what that is.
@@ -106,13 +106,13 @@ def use_of(does: Does, kind: str) -> RosUse:
 
 
 def _kind(type_: str) -> str:
-    """The kind of interface that a type is for; nothing if it is no type."""
+    """The kind of interface that a type is for; empty if it is not a type."""
     parts = type_.split("/")
     return KINDS.get(parts[1], "") if len(parts) == 3 and all(parts) else ""
 
 
 def uses(settings: DriverSettings) -> list[RosUse]:
-    """All that a robot's document uses, once each.
+    """The interfaces that a robot's document uses, once each.
 
     Raises:
         UsageError: it does not say what that is.
@@ -134,7 +134,7 @@ class RosDriver(MappedDriver):
     _link: RosLink | None = None
 
     def make_link(self) -> RosLink:
-        """A connection that is still to be made."""
+        """A new connection, not yet opened."""
         raise NotImplementedError
 
     @property
@@ -149,7 +149,7 @@ class RosDriver(MappedDriver):
         return self._link
 
     async def open(self) -> None:
-        """Connect, and wait until all that the document maps to is there."""
+        """Connect, and wait until everything that the document maps to is available."""
         await self._leave()
         link = self.make_link()
         try:
@@ -170,12 +170,12 @@ class RosDriver(MappedDriver):
             await link.close()
 
     async def close(self) -> None:
-        """Cancel what still runs, and leave."""
+        """Cancel running goals, and disconnect."""
         await self.end_goals(SAFE_S)
         await self._leave()
 
     async def ping(self) -> None:
-        """Ask all servers whether they are there."""
+        """Check that all servers are available."""
         await self.link.ping()
 
     def lose(self, reason: str) -> None:
@@ -185,9 +185,9 @@ class RosDriver(MappedDriver):
             self._link.fail(reason)
 
     async def safe(self) -> None:
-        """Cancel all goals, of others too; publish that the body stands; call what stops.
+        """Cancel all goals, including others'; publish a zero velocity; call what stops the robot.
 
-        It is tried over a link that seems to be lost, too: perhaps only answers are.
+        It is tried even over a link that seems to be lost: perhaps only answers are.
         """
         if self._link is None:
             return
@@ -205,7 +205,7 @@ class RosDriver(MappedDriver):
             await asyncio.gather(self.end_goals(SAFE_S), *calls, return_exceptions=True)
 
     def stand(self) -> None:
-        """Publish that the body stands, and do what ``stop-moving`` does."""
+        """Publish a zero velocity, and do what ``stop-moving`` does."""
         if self._link is None or self.gone:
             return
         for does in self.settings.does:
@@ -268,7 +268,7 @@ class RosDriver(MappedDriver):
             try:
                 await self.link.call(RosUse("service", does.stop, ""), {})
             except (Refused, Unreachable):
-                pass  # what it should stop goes on, and is waited for
+                pass  # what it should stop continues, and is waited for
 
     async def _publish(self, goal: Begin, does: Does, use: RosUse, values: dict[str, Json]) -> None:
         link, lasts, moves = self.link, self.lasts(goal), self._moves(does)
@@ -291,7 +291,7 @@ class RosDriver(MappedDriver):
                 link.publish(use, {})
 
     async def _go_on(self, goal: Begin, lasts: float, again: Callable[[], Any] | None) -> None:
-        """Let a message work for so long (s), publishing it again and again."""
+        """Keep publishing a message for a time (s)."""
         loop = asyncio.get_running_loop()
         until = loop.time() + lasts
         while (left := until - loop.time()) > 0:

@@ -1,7 +1,7 @@
 """The services of a live run: real HTTP, by name, without making the run wait.
 
 A request runs in a thread, as a host may send so slowly that no timeout ends it. Its answer is
-an inbound record, so that a replay asks nobody. Deadlines are real time at any speed.
+an inbound record, so a replay sends no requests. Deadlines are in real time at any speed.
 """
 
 from __future__ import annotations
@@ -39,20 +39,20 @@ if TYPE_CHECKING:
     from prima.live.devices import LiveDevices
 
 MOST_ASKED = 32
-"""Requests of a run that are under way at one time."""
+"""Maximum number of a run's simultaneous requests."""
 CUT_OFF = "the run was cut off before the answer came; it is asked once only"
 
 
 class LiveServices:
-    """Asks the services of a run's document, and the hosts that the run allows.
+    """Sends requests to the services of a run's document, and to the hosts that the run allows.
 
     Args:
         endpoints: the services.
-        web: fetches from other hosts, where the run allows it.
-        environment: has the secrets.
+        web: fetches from other hosts if the run allows it.
+        environment: holds the secrets.
 
     Raises:
-        UsageError: a secret is not there.
+        UsageError: a secret is missing.
     """
 
     def __init__(
@@ -73,9 +73,9 @@ class LiveServices:
         self._last = -1
         self._under_way = 0
         self._open: list[tuple[Order, bool]] = []
-        """What has still to be asked of a run that was cut off, and whether it may have been."""
+        """Requests of a run that was cut off, and whether each may have been sent before."""
         self.run: LiveDevices
-        """Whose clock counts, and what lets things run in the background."""
+        """Provides the clock, and runs things in the background."""
 
     def due(self) -> int | None:
         """When an answer is to be collected."""
@@ -85,7 +85,7 @@ class LiveServices:
         return max(min(times), self._last + 1) if times else None
 
     def collect(self, now: int) -> list[Inbound]:
-        """The answers that have come."""
+        """The answers that have arrived."""
         self._last = now
         waiting, self._open = self._open, []
         for order, perhaps in waiting:
@@ -98,21 +98,21 @@ class LiveServices:
         return inbound + self._telephone.collect(now)
 
     def go_on(self, asked: Iterable[Order], never: Container[str]) -> None:
-        """See to what a run had asked that was cut off: nobody waits for ever.
+        """Handle the open requests of a run that was cut off, so that none waits for ever.
 
         Args:
-            asked: what has no answer, the oldest first.
-            never: the names of those that were certainly not asked before the cut.
+            asked: the requests without an answer, the oldest first.
+            never: the names of those that were certainly not sent before the cut.
         """
         self._open = [(order, order.behavior not in never) for order in asked]
 
     def _may_ask_again(self, order: Order) -> bool:
-        """Whether it does no harm to ask something twice."""
+        """Whether a request may safely be sent twice."""
         fetches, name = "method" in order.data, str(order.data["to"])
         if "transfer" in order.data or order.data.get("method") == "get":
             return True
         endpoint = self._endpoints.for_order(order)
-        if endpoint is None:  # one that is not there is not asked; other hosts are by a post
+        if endpoint is None:  # unknown services are not asked; other hosts by a post
             return not fetches or name.startswith(SCHEME)
         return endpoint.repeats
 
@@ -132,7 +132,7 @@ class LiveServices:
         self.run.wake()
 
     async def _answer(self, order: Order) -> None:
-        """See an order through; whatever happens, the application is told."""
+        """Carry out an order; whatever happens, the application is notified."""
         try:
             value = await self._asked(order)
         except Unfit as error:
@@ -158,7 +158,7 @@ class LiveServices:
         return fetched_of(order, Reply(data)) if fetches else event_of(order, Reply(data))
 
     async def _outside(self, order: Order) -> Inbound:
-        """Ask a host of ``--allow-host``."""
+        """Send a request to a host of ``--allow-host``."""
         uri, data = str(order.data["to"]), order.data
         if self._web is None:
             raise Unfit(not_allowed(uri))
@@ -168,7 +168,7 @@ class LiveServices:
         return found
 
     async def _fetch(self, endpoint: Endpoint, order: Order, params: Data) -> Inbound:
-        """Bytes of a service, for VoiceXML."""
+        """The bytes of a service's answer, for VoiceXML."""
         uri, method = str(order.data["to"]), str(order.data["method"])
         where = endpoint.uri if uri.startswith(SCHEME) else uri
         repeats = method == "get" or endpoint.repeats
@@ -178,7 +178,7 @@ class LiveServices:
         return found
 
     async def _data(self, endpoint: Endpoint, params: Data) -> dict[str, Json]:
-        """The data of a service's reply; for a language model perhaps the fallback's."""
+        """The data of a service's reply; for a language model possibly the fallback's."""
         try:
             what = endpoint.chat(params) if endpoint.model else params
             body = await self._ask(
@@ -200,12 +200,12 @@ class LiveServices:
         again: bool,
         check: Callable[[HTTPResponse], None] = lambda _: None,
     ) -> bytes:
-        """The bytes of an answer, asked for again where that is allowed and may help.
+        """The bytes of an answer; the request is repeated if that is allowed and may help.
 
-        ``check`` refuses answers by their headers.
+        ``check`` rejects answers by their headers.
 
         Raises:
-            Unfit: there is none.
+            Unfit: there is no answer.
         """
         asking = ServiceRequests(
             endpoint, self._secrets[endpoint.name, endpoint.application], self._hosts, check
@@ -220,10 +220,10 @@ class LiveServices:
 
 
 def _secrets(endpoint: Endpoint, environment: Mapping[str, str]) -> dict[str, tuple[str, str]]:
-    """What a service's headers have from the environment, with what stands before it.
+    """The values of a service's headers from the environment, with their prefixes.
 
     Raises:
-        UsageError: a variable is not set, or is no header's value.
+        UsageError: a variable is not set, or not valid as a header's value.
     """
     found = {}
     for name, (before, variable) in endpoint.variables.items():
@@ -248,7 +248,7 @@ def _request(endpoint: Endpoint, what: Data) -> Request:
 
 
 def _failed(order: Order, why: str) -> Inbound:
-    """The answer to an order of which nothing came."""
+    """The answer to an order that failed."""
     if "method" in order.data:
         return fetched_of(order, Reply(error=why))
     return event_of(order, Reply(error=why))

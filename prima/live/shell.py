@@ -1,7 +1,7 @@
 """The shell of a live run: one event loop, one clock, and the tasks of drivers.
 
 It waits until something is due or has come in, then lets the :class:`~prima.devices.loop.Loop`
-carry out what a rehearsal would carry out at once. What arrives in one turn is one instant (V3).
+carry out what a rehearsal would carry out at once. What arrives in one turn forms one instant (V3).
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from prima.live.devices import SAFE_S, LiveDevices
 from prima.live.driver import Driver, Unreachable, Unusable
 
 FIRST_S, LONGEST_S = 0.5, 30.0
-"""How long to wait before a lost robot is looked for again: at first, and at most."""
+"""The delays before trying to reach a lost robot again: the first, and the longest."""
 LATE_MS = 250
-"""How late an instant may be before that is worth telling."""
+"""An instant that is later than this is reported."""
 
 
 class Shell:
@@ -31,8 +31,8 @@ class Shell:
     Args:
         loop: the run; its devices may be simulated.
         clock: its time.
-        warn: is told what an operator should know.
-        late: how late (ms) an instant may be before ``warn`` is told; None for never.
+        warn: called with messages for the operator.
+        late: how late (ms) an instant may be before ``warn`` is called; None for never.
     """
 
     def __init__(
@@ -45,7 +45,7 @@ class Shell:
         self.loop = loop
         self.clock = clock
         self.latest = 0
-        """How late (ms) the latest of all instants was."""
+        """The maximum lateness (ms) of all instants."""
         self._warn = warn
         self._late = late
         self._woken = asyncio.Event()
@@ -69,7 +69,7 @@ class Shell:
             task.cancel()
 
     async def run(self) -> None:
-        """Carry out the run to its end; the robot is made safe then, whatever has happened.
+        """Carry out the run to its end; the robot is then made safe, whatever has happened.
 
         Raises:
             Unreachable: a driver cannot reach its robot at the start.
@@ -90,7 +90,7 @@ class Shell:
             if not self._advance():
                 return
             due = loop.due()
-            if due is None and not self._drivers:  # nobody can tell anything any more
+            if due is None and not self._drivers:  # no more reports can come
                 loop.finish(loop.until)
                 return
             due = loop.until if due is None else min(due, loop.until)
@@ -100,7 +100,7 @@ class Shell:
                 return
 
     def _advance(self) -> bool:
-        """Carry out all that is due; false when the run is over."""
+        """Carry out everything that is due; False when the run is over."""
         loop, late = self.loop, 0
         while not self._stopped:
             now, due = min(self.clock.now(), loop.until), loop.due()
@@ -134,7 +134,7 @@ class Shell:
             self._spawn(self._watch(driver))
 
     async def _open_all(self) -> None:
-        """Open all drivers at once; where one cannot be, none stays half open."""
+        """Open all drivers at once; if one fails, none stays half open."""
         tasks = self._opening = [asyncio.ensure_future(open_driver(one)) for one in self._drivers]
         try:
             if tasks:
@@ -149,7 +149,7 @@ class Shell:
                 raise problem
 
     async def _close(self) -> None:
-        """Make all robots safe at once, whatever still runs; then give the connections back."""
+        """Make all robots safe at once, whatever still runs; then close the connections."""
         tasks = list(self._tasks)
         for task in tasks:
             task.cancel()
@@ -159,7 +159,7 @@ class Shell:
         await asyncio.gather(*(self._end(driver, driver.close) for driver in self._drivers))
 
     async def _end(self, driver: Driver, end: Callable[[], Coroutine[Any, Any, None]]) -> None:
-        """Let a driver end something; warn if it fails to."""
+        """Let a driver end something; warn if it fails."""
         try:
             await within(SAFE_S, end())
         except Exception as error:
@@ -177,7 +177,7 @@ class Shell:
             self._warn(f"A driver has failed: {_why(error)}.")
 
     def _lose(self, driver: Driver) -> None:
-        """A driver has lost its robot: look for it again and again."""
+        """A driver has lost its robot: try repeatedly to reach it."""
         if driver in self._lost:
             return
         self._lost.add(driver)
@@ -195,13 +195,13 @@ class Shell:
             except (Unreachable, UsageError):
                 continue
             self._lost.discard(driver)
-            await self._end(driver, driver.safe)  # nobody has stopped it meanwhile
+            await self._end(driver, driver.safe)  # it was not stopped meanwhile
             self._warn(f"{driver.kind}: the robot is back.")
             driver.tell(Back(driver.settings.devices))
             return
 
     async def _watch(self, driver: Driver) -> None:
-        """Ask by the heartbeat whether the robot is still there."""
+        """Check at each heartbeat that the robot is still there."""
         seconds = driver.settings.heartbeat / 1000
         while True:
             await asyncio.sleep(seconds)
@@ -219,7 +219,7 @@ async def open_driver(driver: Driver) -> None:
     """Connect a driver with its robot, in the time that its document allows.
 
     Raises:
-        Unreachable: it is not there, does not answer in time, or the driver fails.
+        Unreachable: it cannot be reached, does not answer in time, or the driver fails.
         UsageError: the driver is not set up.
     """
     settings = driver.settings
@@ -236,13 +236,13 @@ async def open_driver(driver: Driver) -> None:
 
 
 async def _opened(driver: Driver) -> None:
-    """Open a driver; whatever goes wrong in it is an error of its own."""
+    """Open a driver; any error in it becomes an error of the driver."""
     try:
         await driver.open()
         await driver.ping()
     except (Unreachable, UsageError, TimeoutError, asyncio.CancelledError, KeyboardInterrupt):
         raise
-    except BaseException as error:  # also SystemExit: a robot's library wants to end the program
+    except BaseException as error:  # also SystemExit: a robot's library tries to end the program
         reason = f"the driver has failed: {type(error).__name__}: {error}"
         raise Unreachable(reason) from error
 

@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM in a live run: they end it in its event loop, where the robot can be made safe."""
+"""Ctrl-C and SIGTERM in a live run: they end it in its event loop and make the robot safe."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from time import monotonic
 from types import FrameType
 
 BLOCKED_S = 1.0
-"""How long the event loop may take to heed a signal; after that the next signal breaks it off."""
+"""How long the event loop may take to handle a signal; after that the next one aborts it."""
 
 
 @contextmanager
 def heeding_signals(stop: Callable[[], object]) -> Iterator[None]:
     """Let the first signal call ``stop`` in the running event loop, if this is the main thread.
 
-    A driver that blocks keeps the loop from that. A second signal breaks it off.
+    A driver that blocks keeps the loop from doing so. A second signal aborts it.
 
     Raises:
-        KeyboardInterrupt: the loop was broken off; the message says where it was.
+        KeyboardInterrupt: the loop was aborted; the message says where it was.
     """
     running = asyncio.get_running_loop()
     stops = False
@@ -30,7 +30,7 @@ def heeding_signals(stop: Callable[[], object]) -> Iterator[None]:
     def heed() -> None:
         nonlocal stops, unheeded
         unheeded = None
-        if not stops:  # once: what makes the robot safe then is not to be stopped
+        if not stops:  # once: making the robot safe must not be interrupted
             stops = True
             stop()
 
@@ -56,7 +56,7 @@ def heeding_signals(stop: Callable[[], object]) -> Iterator[None]:
 
 
 def _told(frame: FrameType | None) -> str:
-    """What to say of the code that blocks: the innermost that is not of the standard library."""
+    """The location of the blocking code: the innermost frame outside the standard library."""
     library = (sysconfig.get_path("stdlib"), "<")
     while frame is not None and frame.f_code.co_filename.startswith(library):
         frame = frame.f_back

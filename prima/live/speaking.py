@@ -1,4 +1,4 @@
-"""What the user says, as drivers tell it: when they begin and fall silent, and what was heard."""
+"""The user's speech as reported by drivers: when they begin and fall silent, and what was heard."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ class UserSpeech:
         self._began: int | None = None
         """When they began to speak."""
         self._over = False
-        """Whether they have spoken since the ear listened last."""
+        """Whether they have spoken since the ear last listened."""
         self._cut = False
-        """Whether what they are saying has taken too long, and is over for the run."""
+        """Whether their utterance has taken too long and is over for the run."""
 
     def begins(self, now: int) -> None:
         """The user begins to speak."""
@@ -30,7 +30,7 @@ class UserSpeech:
             self._conductor.ear.speech_ends()
 
     def heard(self, now: int, heard: Heard) -> list[Inbound]:
-        """What a recogniser has heard, for the session; nothing of what was cut off."""
+        """What a recogniser has heard, for the session; nothing if the utterance was cut off."""
         if self._cut:
             self._cut = False
             return []
@@ -41,19 +41,19 @@ class UserSpeech:
         return [Heard(heard.text, {**passed, **heard.data}, now - began)]
 
     def listen_on(self, now: int) -> None:
-        """Let the ear listen on after what the user has said."""
+        """Let the ear keep listening after an utterance of the user."""
         if self._over:
             self._over = False
             self._conductor.ear.listen_on(now)
 
     @property
     def too_long(self) -> int | None:
-        """When the user will have spoken for longer than the question lets them."""
+        """When the user will have spoken for longer than the question allows."""
         longest = self._conductor.longest_answer() if self._began is not None else 0
         return self._began + longest if self._began is not None and longest else None
 
     def cut_off(self, now: int) -> list[Inbound]:
-        """End an answer that takes too long (VoiceXML 2.0, 6.3.2); what follows of it is not heard."""
+        """End an answer that takes too long (VoiceXML 2.0, 6.3.2); the rest of it is ignored."""
         over = self.too_long
         if over is None or over > now:
             return []

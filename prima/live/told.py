@@ -1,4 +1,4 @@
-"""What a robot's messages mean, by the ``senses`` of its document."""
+"""Interprets a robot's messages by the ``senses`` of its document."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ Actor = Literal["user", "environment", "robot"]
 
 
 class Teller:
-    """Makes news of messages; what has not changed is not told again."""
+    """Turns messages into news; unchanged values are not reported again."""
 
     def __init__(self) -> None:
         self._waiting: dict[int, tuple[Senses, Json]] = {}
         """The newest values of sensors."""
         self._news: list[News] = []
         self._last: dict[int, Json] = {}
-        """What was told of each ``senses`` last, or whether its event held."""
+        """The latest report of each ``senses``, or whether its event held."""
 
     def take(self, senses: Senses, message: Json) -> None:
         """Take a message."""
@@ -40,7 +40,7 @@ class Teller:
                 self._waiting[id(senses)] = (senses, value)
 
     def drain(self) -> list[News]:
-        """All news since the last time."""
+        """All news since the last call."""
         news, self._news = self._news, []
         waiting, self._waiting = self._waiting, {}
         for senses, value in waiting.values():
@@ -50,7 +50,7 @@ class Teller:
         return news
 
     def _begins(self, senses: Senses, value: Json) -> bool:
-        """Whether an event happens: at each message, or when its value comes to hold."""
+        """Whether an event happens: at each message, or when its value begins to match."""
         holds = senses.holds(value)
         if not senses.when:
             return True
@@ -83,7 +83,7 @@ def _flat(name: str, value: Json) -> Iterator[tuple[str, Json]]:
 
 
 def _human(senses: Senses, value: Json) -> Sees:
-    """Whether the user is seen: by a value, a list that is not empty, or a message that tells."""
+    """Whether the user is seen: by a value, a non-empty list, or a message that says so."""
     if not isinstance(value, dict):
         return Sees(senses.holds(value) if senses.when else bool(value))
     visible = bool(value.get("visible", True))
@@ -110,7 +110,7 @@ def pose(value: Json) -> At | None:
 
 
 def _heard(message: Json, value: Json) -> list[News]:
-    """What a recogniser has heard: a text, or texts each with its confidence, the best first."""
+    """What a recogniser has heard: a text, or texts with their confidence, the best first."""
     if isinstance(value, list):
         return _ranked(value)
     text = "" if value is None else str(value).strip()
@@ -120,7 +120,7 @@ def _heard(message: Json, value: Json) -> list[News]:
 
 
 def _ranked(value: list[Json]) -> list[News]:
-    """What was heard: texts, each with its confidence behind it, the best first."""
+    """What was heard: texts, each followed by its confidence, the best first."""
     pairs: list[dict[str, Json]] = [
         {"text": str(text).strip(), "confidence": _share(sure)}
         for text, sure in zip(value[::2], value[1::2], strict=False)

@@ -1,4 +1,4 @@
-"""A live run from its documents to its end: what ``prima live`` does."""
+"""A live run from its documents to its end, as for ``prima live``."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ from prima.sim.services import Web
 from prima.transcript.record import LONGEST
 
 FOREVER_MS = round(LONGEST * 1000)
-"""How long a run may last on a robot: nobody ends it but its applications, or people."""
+"""How long a run may last on a robot: only its applications or people end it."""
 Sink = Callable[[list[Record]], object]
 
 
 @dataclass(slots=True)
 class LiveSettings:
-    """How a live run goes."""
+    """The options of a live run."""
 
     policy: str | None = None
     bound: int | None = None
@@ -51,11 +51,11 @@ class LiveSettings:
     isolate: str = "ea"
     speed: float = 1.0
     until: int | None = None
-    """When it ends at the latest (ms)."""
+    """Its latest end (ms)."""
     sync: bool = False
-    """Whether each instant is on the disk before it is carried out."""
+    """Whether each instant is flushed to the disk before it is carried out."""
     late: int | None = LATE_MS
-    """How late (ms) an instant may be before that is told."""
+    """How late (ms) an instant may be before that is reported."""
     redact: bool = False
     """Whether what users say is left out of journal and rows."""
     drivers: tuple[str, ...] = ()
@@ -74,14 +74,14 @@ class Visit:
     loaded: Loaded
     journal: Journal | None = None
     missed: list[Record] = field(default_factory=list)
-    """Records that the last instant of a broken journal lacks; none for a new run."""
+    """Records missing from the last instant of a broken journal; empty for a new run."""
     resumed: bool = False
     latest: int = 0
-    """How late (ms) the latest of its instants was."""
+    """The maximum lateness (ms) of its instants."""
     stopped: bool = False
-    """Whether somebody has ended it from outside."""
+    """Whether it was ended from outside."""
     before: list[Record] = field(default_factory=list)
-    """What the journal has already of a run that goes on, times in s."""
+    """The records that the journal of a resumed run already has, times in s."""
     _stop: Callable[[], object] = lambda: None
 
     def stop(self) -> None:
@@ -93,8 +93,8 @@ class Visit:
         """Carry it out to its end.
 
         Args:
-            sink: is given the records of each instant, times in ms, before it is carried out.
-            warn: is told what an operator should know.
+            sink: called with the records of each instant, times in ms, before it is carried out.
+            warn: called with messages for the operator.
 
         Raises:
             Unreachable: a robot cannot be reached.
@@ -122,7 +122,7 @@ class Visit:
                 self.journal.close()
 
     def run_anywhere(self, sink: Sink, warn: Callable[[str], None]) -> None:
-        """The same, also where an event loop runs already, as in a notebook: in a thread.
+        """The same in a thread, which also works inside a running event loop, such as a notebook's.
 
         Raises:
             KeyboardInterrupt: Ctrl-C came meanwhile; the run has ended.
@@ -161,7 +161,7 @@ class Visit:
             finally:
                 self.latest = shell.latest
                 if not (shell.opened or self.resumed) and self.journal is not None:
-                    self.journal.discard()  # nothing has happened: the command may be given again
+                    self.journal.discard()  # nothing has happened: the command can be repeated
 
 
 def begin(chosen: Chosen, settings: LiveSettings, output: str | None) -> Visit:
@@ -197,7 +197,7 @@ def begin(chosen: Chosen, settings: LiveSettings, output: str | None) -> Visit:
 
 
 def in_simulation(loaded: Loaded, policy: Policy, settings: LiveSettings) -> Loop:
-    """A scenario, which is run as in a rehearsal but by the clock."""
+    """A scenario, run as in a rehearsal but by the clock."""
     given = settings.bound, settings.web, settings.isolate, settings.patience
     return Rehearsal(loaded.cast, policy, *given)
 
@@ -227,7 +227,7 @@ def on_robot(
 
 
 def record_beside(loop: Loop, journal: Journal | None, settings: LiveSettings) -> None:
-    """Let drivers keep what they record beside the journal, if anything of it is to be kept."""
+    """Let drivers store recordings beside the journal, if they are to be kept."""
     kept = journal is not None and not settings.redact and os.path.isfile(journal.path)
     recordings = Recordings(journal.path if journal is not None and kept else None)
     if isinstance(loop.devices, LiveDevices):
@@ -239,7 +239,7 @@ def make_drivers(robot: Profile, site: Map, files: Iterable[str]) -> list[Driver
     """The drivers of a robot's document.
 
     Raises:
-        UsageError: the document names none, or one that is not there.
+        UsageError: the document names none, or one that does not exist.
     """
     if not robot.drivers:
         hint = 'Write <driver kind="..."/> in it, as docs/live.md shows.'

@@ -1,4 +1,4 @@
-"""What drivers tell, as records can hold it: a journal stays readable whatever a driver says."""
+"""Drivers' reports in a form that records can hold: a journal stays readable whatever they say."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from prima.messages import Data, Heard, Json, Narrated, Occurred, Sensed
 
 OCCURRED = frozenset(get_args(get_type_hints(Occurred)["actor"])) - {"mediator"}
 NARRATED = frozenset(get_args(get_type_hints(Narrated)["actor"]))
-"""Who may bring an event about, and who may do what a reader is told of."""
+"""The actors that may cause an event, and those of a note for the reader."""
 
 
 WRONG = (TypeError, ValueError, OverflowError, RecursionError)
-"""What it raises of something that no record can hold."""
+"""The exceptions raised for something that no record can hold."""
 
 
 def well_formed(told: Report | News) -> Report | News | None:
-    """What a driver tells, as records can hold it.
+    """A driver's report in a form that records can hold.
 
-    A measurement that is NaN or infinite says nothing: it becomes None. A pose that has one is
-    not told at all.
+    A measurement that is NaN or infinite becomes None. A pose that contains one is not reported
+    at all.
 
     Raises:
         TypeError, ValueError, OverflowError, RecursionError: no record can hold it.
@@ -77,7 +77,7 @@ def _data(value: Any) -> Data:
 def _text(value: Any) -> str:
     if not isinstance(value, str):
         raise TypeError(f"its texts and names must be str, not {type(value).__name__}")
-    value.encode()  # half a letter is none
+    value.encode()  # half a letter is invalid
     return value
 
 

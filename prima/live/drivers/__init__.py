@@ -1,4 +1,4 @@
-"""The drivers: a package each, found by its kind. Those of others come by entry points."""
+"""The drivers: one package for each kind. Third-party drivers come by entry points."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ GROUP = "prima.drivers"
 
 
 def kinds() -> list[str]:
-    """The kinds of drivers that are there."""
+    """The kinds of drivers that are available."""
     own = {path.parent.name for path in Path(__file__).parent.glob("*/__init__.py")}
     return sorted(own | {point.name for point in entry_points(group=GROUP)})
 
@@ -50,7 +50,7 @@ def driver_class(kind: str, defined: Sequence[type[Driver]] = ()) -> type[Driver
 
 
 def drivers_in(file: str) -> list[type[Driver]]:
-    """The drivers that a Python file defines; it is run, and may import what is beside it.
+    """The drivers that a Python file defines; the file is run, and may import its neighbours.
 
     Raises:
         UsageError: there are none, or it cannot be run.

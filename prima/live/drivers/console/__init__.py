@@ -1,4 +1,4 @@
-"""A terminal in the place of voice and ear: what the robot says is printed, what the user says typed."""
+"""A terminal instead of voice and ear: the robot's words are printed, the user's are typed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from prima.messages import Heard
 from prima.sim.map import Map
 
 TYPED_MS = 100
-"""How long typed words take to be said, so that the robot can stop asking before it hears them."""
+"""How long saying typed words takes, so that the robot can stop asking before it hears them."""
 TICK_S = 0.02
 FASTEST = 1000.0
 
@@ -41,9 +41,9 @@ class ConsoleSaying(NamedTuple):
 class ConsoleDriver(Driver):
     """Speaker, speech recognition and human detection by standard error and standard input.
 
-    A text lasts as long as the robot's voice takes for it, or ``option`` ``speed`` times as
-    short. Where it has the device human-detection, the user is seen from the start, unless
-    ``user`` is ``false``. ``stdin`` ``false`` leaves standard input alone.
+    A text lasts as long as the robot's voice takes for it, divided by ``option`` ``speed``.
+    If it has the device human-detection, the user is seen from the start, unless ``user`` is
+    ``false``. With ``stdin`` ``false`` standard input is not read.
     """
 
     kind = "console"
@@ -81,7 +81,7 @@ class ConsoleDriver(Driver):
 
     @property
     def _sees(self) -> bool:
-        """Whether it is its own business where the user is."""
+        """Whether this driver reports where the user is."""
         return "human-detection" in self.settings.devices
 
     def start(self, goal: Begin) -> None:
@@ -126,7 +126,7 @@ class ConsoleDriver(Driver):
         return min([*(one.ends for one in self._saying.values()), *heard], default=None)
 
     def sample(self, now: int) -> None:
-        """Tell what has been said by now."""
+        """Report what has been said by now."""
         for key in [key for key, one in self._saying.items() if one.ends <= now]:
             del self._saying[key]
             self.tell(Done(key))

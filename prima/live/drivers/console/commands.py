@@ -1,4 +1,4 @@
-"""What an operator types besides what the user says: the commands of ``prima talk`` that a robot knows."""
+"""What an operator types besides the user's words: the commands of ``prima talk`` for a robot."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from prima.language.values import BadValue, read_value
 from prima.messages import Emergency, Occurred, Sensed
 
 NEAR_M = 1.0
-"""How far in front of the robot the user stands."""
+"""How far in front of the robot the user is."""
 HERE = Sees(True, NEAR_M, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
 class ConsoleCommand:
-    """A command: how it is written, what it does, and what it tells the run."""
+    """A command: its syntax, what it does, and what it reports to the run."""
 
     usage: str
     help: str
     tells: Callable[[str], News] | None = None
-    """Of what follows the name; None where nothing is told."""
+    """Parses what follows the name; None if nothing is reported."""
 
 
 @dataclass(frozen=True, slots=True)
 class Typed:
-    """A line: words of the user, news, or a command of another kind, with what follows it."""
+    """A line: the user's words, news, or a command of another kind with its arguments."""
 
     said: str = ""
     news: News | None = None
@@ -63,7 +63,7 @@ def _message(rest: str) -> News:
 
 
 def _alone(news: News) -> Callable[[str], News]:
-    """A command with nothing behind its name."""
+    """A command without arguments."""
 
     def tell(rest: str) -> News:
         if rest:
@@ -96,7 +96,7 @@ def read_typed(text: str) -> Typed:
     """Read a line that is not empty.
 
     Raises:
-        UsageError: it is no line; the message says what to write.
+        UsageError: it is invalid; the message says what to write.
     """
     check_line(text)
     text = " ".join(text.split())
@@ -122,12 +122,12 @@ def _duration(text: str) -> int:
 
 
 def waits(rest: str) -> int | None:
-    """How long (ms) a ``/wait`` lasts; None for until a question listens."""
+    """How long (ms) a ``/wait`` lasts; None: until a question listens."""
     return _duration(rest) if rest else None
 
 
 def help_text() -> str:
-    """What the commands do."""
+    """A description of the commands."""
     wide = max(len(one.usage) for one in COMMANDS.values())
     lines = [f"{one.usage:<{wide}}  {one.help}" for one in COMMANDS.values()]
     return "\n".join([f"{'TEXT':<{wide}}  the user says it", *lines])

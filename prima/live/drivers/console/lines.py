@@ -11,16 +11,16 @@ from prima.devices.lines import line_text
 
 CHUNK = 4096
 LONGEST = 16_000
-"""Bytes of a line that are kept; such a line is refused anyway."""
+"""Bytes of a line that are kept; a line of this length is rejected anyway."""
 AHEAD = 100
-"""Lines that are read before they are asked for."""
+"""Lines that are read ahead."""
 
 
 class LineSource:
-    """Gives the lines of a terminal, a pipe or a file until its end.
+    """Reads the lines of a terminal, a pipe or a file until its end.
 
-    A thread reads, for no other way serves all three. It waits for input for ever, so it keeps
-    nobody from ending the program.
+    A thread reads, as no other way serves all three. It may wait for input for ever, so it does
+    not keep the program from ending.
 
     Args:
         source: the file descriptor.
@@ -41,7 +41,7 @@ class LineSource:
         return line
 
     def close(self) -> None:
-        """Read no more, once the thread has got what it waits for."""
+        """Stop reading once the thread has received its current input."""
         self._closed = True
         self._room.release()
 
@@ -71,5 +71,5 @@ def _lines(source: int) -> Iterator[str | None]:
 def _piece(source: int) -> bytes:
     try:
         return os.read(source, CHUNK)
-    except OSError:  # a terminal that is gone
+    except OSError:  # a terminal that has been closed
         return b""

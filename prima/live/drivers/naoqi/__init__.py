@@ -22,7 +22,7 @@ ADDRESS: Final = re.compile(r"tcps?://(?:[\w.-]+|\[[0-9a-fA-F:.]+\])(?::(?P<port
 SAFE_S: Final = 2.0
 """How long to wait until goals have stopped in an emergency."""
 SHARE: Final = 0.9
-"""How much of the time to open may be spent before it is told that nobody answers."""
+"""The share of the opening time after which a missing answer is reported."""
 MEMORY: Final = "ALMemory"
 LANGUAGES: Final = {
     "de": "German",
@@ -42,8 +42,8 @@ LANGUAGES: Final = {
 class NaoqiDriver(MappedDriver):
     """A robot with NAOqi. Its address is that of its service directory: ``tcp://nao.local:9559``.
 
-    ``by`` names a service and its method, as ``ALTextToSpeech.say``; the values of ``set`` are its
-    arguments in their order. ``senses`` name events of ALMemory.
+    ``by`` names a service and its method, such as ``ALTextToSpeech.say``; the values of ``set`` are
+    its arguments in order. ``senses`` name events of ALMemory.
     """
 
     kind = "naoqi"
@@ -57,7 +57,7 @@ class NaoqiDriver(MappedDriver):
     # The connection -------------------------------------------------------------------------
 
     async def open(self) -> None:
-        """Connect with the robot's service directory, and see that all services are there."""
+        """Connect with the robot's service directory, and check that all services exist."""
         try:
             import qi
         except ImportError as error:
@@ -119,12 +119,12 @@ class NaoqiDriver(MappedDriver):
             self._links.append((told, link))
 
     def _gone(self, session: Any, *_: object) -> None:
-        """The connection has been lost; in a thread of qi."""
+        """The connection has been lost; called in a thread of qi."""
         if self._loop is not None and session is self._session and not self._loop.is_closed():
             self._loop.call_soon_threadsafe(self.lose, "the connection with the robot is lost")
 
     def lose(self, reason: str) -> None:
-        """Give up what has not been answered."""
+        """Give up calls that have not been answered."""
         super().lose(reason)
         for future in list(self._pending):
             if not future.done():
@@ -147,7 +147,7 @@ class NaoqiDriver(MappedDriver):
             await asyncio.wait([asyncio.ensure_future(closing)], timeout=SAFE_S)
 
     async def close(self) -> None:
-        """Cancel what still runs, and leave."""
+        """Cancel running goals, and disconnect."""
         await self.end_goals(SAFE_S)
         await self._leave()
 
@@ -159,7 +159,7 @@ class NaoqiDriver(MappedDriver):
         return super().values(goal) | {"language": LANGUAGES.get(primary, "English")}
 
     async def perform(self, goal: Begin) -> Data:
-        """Call a method; it is done when the method returns, or after the Command's time."""
+        """Call a method; the goal is done when it returns, or after the Command's time."""
         does = self.does(goal)
         if does is None and goal.kind == LISTEN:
             await self.hear(goal)
@@ -181,7 +181,7 @@ class NaoqiDriver(MappedDriver):
         return {}
 
     def _goes_on(self, goal: Begin, does: Does) -> bool:
-        """Whether what its method began goes on after that, until it is stopped."""
+        """Whether what its method began continues until it is stopped."""
         return bool(does.stop) and ("time" in goal.command.args or goal.kind == LISTEN)
 
     async def _end(
@@ -200,7 +200,7 @@ class NaoqiDriver(MappedDriver):
         try:
             await self._call(does.stop, [])[0]
         except (Refused, Unreachable):
-            pass  # what it should stop goes on, and is waited for
+            pass  # what it should stop continues, and is waited for
 
     def stand(self) -> None:
         """Do what ``stop-moving`` does."""
@@ -208,7 +208,7 @@ class NaoqiDriver(MappedDriver):
             self._call(does.by, [])[0].add_done_callback(_heed)
 
     async def safe(self) -> None:
-        """Call all that stops something; over a link that seems to be lost, too."""
+        """Call all stopping methods, even over a link that seems to be lost."""
         if self._session is None:
             return
         named = {does.stop for does in self.settings.does if does.stop}
@@ -227,7 +227,7 @@ class NaoqiDriver(MappedDriver):
     def _call(
         self, name: str, arguments: list[Json]
     ) -> tuple[asyncio.Future[Any], Callable[[], object]]:
-        """Call a method; gives its answer, and what cancels it."""
+        """Call a method; returns its answer, and a function that cancels it."""
         if self.gone:
             raise Unreachable("there is no connection")
         return self._ask_method(name, arguments)
@@ -273,7 +273,7 @@ def _heed(future: asyncio.Future[Any]) -> None:
 
 
 def _said(error: object) -> str:
-    """What the robot says of an error: the first line of it."""
+    """The robot's error message: its first line."""
     lines = (line.strip().removeprefix("RuntimeError: ") for line in str(error).splitlines())
     return next((line for line in lines if line), "the robot has refused it")
 

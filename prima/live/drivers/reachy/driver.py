@@ -1,4 +1,4 @@
-"""What Reachy Mini does for each Command: moves of its daemon, one after the other."""
+"""How Reachy Mini carries out Commands: as moves of its daemon, one after the other."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ from prima.sim.map import Map
 NEEDS = ("httpx", "websockets")
 INSTALL = "pip install 'prima[reachy]'"
 QUICKEST_S = 0.2
-"""How long a movement takes at least."""
+"""The minimum duration of a movement."""
 SETTLE_S = 1.0
 """How long parts may take to come to rest after a move."""
 SENSE_S = 0.2
-"""How often the daemon is asked what its sensors say."""
+"""How often the daemon is asked for its sensor values."""
 STATES = ("/api/state/", "/api/media/tracking/")
-"""What the daemon tells of itself: the beginnings of its addresses."""
+"""The prefixes of addresses at which the daemon reports its state."""
 SAFE_S = 2.0
 """How long it may take to stop everything."""
 GOTO = "goto"
-"""What ``by`` is where the document itself has the steps of a movement."""
+"""The value of ``by`` if the document itself specifies the steps of a movement."""
 
 
 class ReachyDriver(TaskDriver):
     """Turns the body, moves the head, and makes gestures with head and antennas.
 
-    The daemon plays one move at a time, so that what begins while another one plays begins
+    The daemon plays one move at a time, so a goal that begins while a move plays starts
     after it.
     """
 
@@ -53,7 +53,7 @@ class ReachyDriver(TaskDriver):
         super().__init__(settings, profile, site)
         self._link: ReachyLink | None = None
         self._sent: HeadPose | None = None
-        """Where all parts were sent last; None where that was not reached."""
+        """Where all parts were last sent; None if that was not reached."""
         self._sensing: asyncio.Task[None] | None = None
         self._address = address_of(settings)
         self._stands = stands(settings, site)
@@ -63,7 +63,7 @@ class ReachyDriver(TaskDriver):
         """Connect to the daemon, and wake the robot up if its motors are off.
 
         Raises:
-            Unreachable: it is not there, or a library is missing.
+            Unreachable: it does not answer, or a library is missing.
         """
         missing = [name for name in NEEDS if find_spec(name) is None]
         if missing:
@@ -82,10 +82,10 @@ class ReachyDriver(TaskDriver):
             raise
 
     async def _sense(self, link: ReachyLink, teller: Teller) -> None:
-        """Ask the daemon for what its sensors say now, and tell what has changed.
+        """Ask the daemon for its sensor values, and report changes.
 
         Raises:
-            Unusable: the daemon has no such thing to say.
+            Unusable: the daemon has no such value.
         """
         answers: dict[str, Any] = {}
         for senses in self.settings.senses:
@@ -94,13 +94,13 @@ class ReachyDriver(TaskDriver):
                     answers[senses.by] = await link.ask("GET", senses.by)
             except Refused as error:
                 raise Unusable(f'<senses by="{senses.by}">: {error}') from None
-            if answers[senses.by] is not None:  # it has no such sensor, or nothing to say yet
+            if answers[senses.by] is not None:  # it has no such sensor, or no value yet
                 teller.take(senses, answers[senses.by])
         for news in teller.drain():
             self.tell(news)
 
     async def _sense_on(self, link: ReachyLink, teller: Teller) -> None:
-        """Ask again and again, for as long as the daemon answers."""
+        """Ask repeatedly as long as the daemon answers."""
         while True:
             await asyncio.sleep(SENSE_S)
             try:
@@ -132,7 +132,7 @@ class ReachyDriver(TaskDriver):
         if link is None:
             raise Unreachable("Reachy Mini is not connected.")
         if goal.kind == "stop-moving":
-            return {}  # what has moved the body was cancelled before
+            return {}  # earlier movements of the body have been cancelled
         does = self.does(goal)
         async with link.playing:
             sent, self._sent = self._sent, None  # unless the end is reached
@@ -160,7 +160,7 @@ class ReachyDriver(TaskDriver):
         return at
 
     def _steps(self, goal: Begin, does: Does | None, at: HeadPose) -> list[Step]:
-        """The movements that a Command is made of."""
+        """The movements that make up a Command."""
         direction = self._direction(goal)
         if does is None:
             if goal.kind not in WAYS:
@@ -172,7 +172,7 @@ class ReachyDriver(TaskDriver):
         return [read_step(name, one) for name, one in does.filled(values).items()]
 
     def _direction(self, goal: Begin) -> float | None:
-        """Where a goal leads (degrees to the left of where the body is at 0), if it says so."""
+        """The direction of a goal (degrees to the left of the body's 0), if it has one."""
         args = goal.command.args
         if "heading" in args:
             return wrapped(number(goal, "heading") - self._stands.heading)
@@ -191,13 +191,13 @@ class ReachyDriver(TaskDriver):
         return read_pose(await link.ask("GET", "/api/state/full"))
 
     def _tell_direction(self, at: HeadPose) -> None:
-        """Tell where the robot looks, if its document says where it stands."""
+        """Report where the robot looks, if its document says where it stands."""
         here = self._stands
         if "at" in self.settings.options:
             self.tell(At(here.x, here.y, wrapped(here.heading + at.body)))
 
     async def _settle(self, link: ReachyLink, to: HeadPose, changed: set[str]) -> None:
-        """Wait for parts to be where they were sent: the daemon calls any move completed."""
+        """Wait for parts to be where they were sent: the daemon reports any move as completed."""
         end = asyncio.get_running_loop().time() + SETTLE_S
         while True:
             now = await self._look(link)
@@ -233,7 +233,7 @@ class ReachyDriver(TaskDriver):
                 if self._link is not None:
                     await self._link.stop_all()
         except (Unreachable, Refused, TimeoutError):
-            pass  # nobody is there to be stopped
+            pass  # there is nothing to stop
 
     async def ping(self) -> None:
         """Ask the daemon whether its robot runs.

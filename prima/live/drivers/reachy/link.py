@@ -16,19 +16,19 @@ if TYPE_CHECKING:
 
 PORT = 8000
 ADDRESS = f"http://127.0.0.1:{PORT}"
-"""Where the daemon is, unless the robot's document says otherwise."""
+"""The daemon's address, unless the robot's document says otherwise."""
 ENDS = {"move_completed", "move_failed", "move_cancelled"}
 ANSWER_S = 2.0
 """How long the daemon may take to answer a request."""
 CLOSE_S = 0.5
-"""How long a daemon may take to say good-bye."""
+"""How long a daemon may take to close the connection."""
 UPDATES = "/api/move/ws/updates"
 
 
 class ReachyLink:
     """One connection with a daemon, which plays one move at a time.
 
-    The daemon would play two moves at once, and each would pull the parts of the other back.
+    The daemon would play two moves at once, and each would undo the other's movements.
 
     Args:
         address: the daemon's URL.
@@ -42,11 +42,11 @@ class ReachyLink:
         self._socket: ClientConnection | None = None
         self._watching: asyncio.Task[None] | None = None
         self._ended: dict[str, tuple[str, str]] = {}
-        """How moves have ended since the one that plays was asked for."""
+        """How moves have ended since the current one was requested."""
         self._news = asyncio.Event()
         self._gone = ""
         self.playing = asyncio.Lock()
-        """Held by who lets the robot move."""
+        """Held while the robot moves."""
 
     async def connect(self) -> None:
         """Connect to the daemon.
@@ -56,7 +56,7 @@ class ReachyLink:
         """
         import httpx
 
-        # A connection for each request: the daemon drops those that rest, and after errors.
+        # A connection for each request: the daemon drops idle ones, and those after errors.
         once = httpx.Limits(max_keepalive_connections=0)
         self._client = httpx.AsyncClient(
             base_url=self.address, timeout=ANSWER_S, limits=once, trust_env=False
@@ -96,7 +96,7 @@ class ReachyLink:
             )
 
     async def ask(self, method: str, path: str, body: object = None) -> Any:
-        """Send a request, and give the answer.
+        """Send a request, and return the answer.
 
         Raises:
             Refused: the daemon does not do it.
@@ -107,7 +107,7 @@ class ReachyLink:
         if self._client is None:
             raise Unreachable("There is no connection with Reachy Mini.")
         try:
-            async with asyncio.timeout(ANSWER_S):  # those of httpx are for each part of a request
+            async with asyncio.timeout(ANSWER_S):  # httpx's are for each part of a request
                 answer = await self._client.request(method, path, json=body)
         except (httpx.HTTPError, TimeoutError) as error:
             reason = str(error) or "it takes too long"
@@ -127,7 +127,7 @@ class ReachyLink:
         return told
 
     async def play(self, path: str, body: object = None) -> None:
-        """Let the robot make a move, to its end; stop it where this is cancelled.
+        """Let the robot make a move to its end; stop it if this is cancelled.
 
         The lock :attr:`playing` has to be held.
 
@@ -140,7 +140,7 @@ class ReachyLink:
         try:
             how, details = await self._end(_uuid(await asyncio.shield(asked)))
         except asyncio.CancelledError:
-            await self._stop(_uuid(await asked))  # it may play although nobody has heard of it yet
+            await self._stop(_uuid(await asked))  # it may play although it was not reported
             raise
         if how == "move_failed":
             raise Refused(f"Reachy Mini has failed at {path}: {details}.")
@@ -162,7 +162,7 @@ class ReachyLink:
             pass  # it has just ended
 
     async def stop_all(self) -> None:
-        """Stop all that moves the robot, whoever has asked for it.
+        """Stop all moves of the robot, whoever requested them.
 
         Raises:
             Unreachable: the daemon is gone.
@@ -183,7 +183,7 @@ class ReachyLink:
         self._lost(self._gone)
 
     def _hear(self, message: str | bytes) -> None:
-        """Note that a move has ended. One that nobody waits for is not kept."""
+        """Note that a move has ended. It is dropped if nothing waits for it."""
         try:
             event = json.loads(message)
             how, uuid = event["type"], event["uuid"]
@@ -194,7 +194,7 @@ class ReachyLink:
             self._news.set()
 
     async def close(self) -> None:
-        """Give the connection back; nobody is told."""
+        """Close the connection without reporting it."""
         if self._watching is not None:
             self._watching.cancel()
             await asyncio.gather(self._watching, return_exceptions=True)
@@ -206,7 +206,7 @@ class ReachyLink:
 
 
 def read_address(written: str) -> str:
-    """The URL of a daemon, of which the scheme and the port may be missing.
+    """The URL of a daemon; scheme and port may be omitted.
 
     Raises:
         ValueError: it is none.
@@ -224,7 +224,7 @@ def read_address(written: str) -> str:
 
 
 def _uuid(move: Any) -> str:
-    """The name of a move in what the daemon tells.
+    """The name of a move in the daemon's answer.
 
     Raises:
         Refused: there is none.

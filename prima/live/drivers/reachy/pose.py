@@ -1,4 +1,4 @@
-"""Where the parts of Reachy Mini are: in PRIMA's units, and as its daemon has it."""
+"""Where the parts of Reachy Mini are: in PRIMA's units, and in its daemon's."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ LIMITS = {
     "left": (180.0, "arm"),
     "right": (180.0, "arm"),
 }
-"""How far each part goes to either side, and the device it belongs to."""
+"""How far each part moves to either side, and the device to which it belongs."""
 FARTHEST = 175.0
 """How far (degrees) body and neck together turn the head: the daemon goes round by the front."""
 NEAR = 10.0
-"""How far (degrees, mm) a part may be from where it was sent: motors give way under load."""
+"""How far (degrees, mm) a part may be from its target: motors give way under load."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,10 +45,10 @@ class HeadPose:
     right: float = 10.0
 
     def moved(self, step: Mapping[str, float]) -> HeadPose:
-        """This pose with some parts elsewhere: where a step sends them, or ``turn`` further.
+        """This pose with some parts elsewhere: where a step sends them, or ``turn`` farther.
 
         Raises:
-            Refused: a part does not go as far.
+            Refused: a part cannot move that far.
         """
         parts = {name: value for name, value in step.items() if name in LIMITS}
         if "turn" in step:
@@ -73,12 +73,12 @@ class HeadPose:
         return pose
 
     def off(self, other: HeadPose) -> dict[str, float]:
-        """How far each part is from where another pose has it."""
+        """The distance of each part from its place in another pose."""
         mine, others = asdict(self), asdict(other)
         return {name: abs(wrapped(mine[name] - others[name])) for name in mine}
 
     def near(self, other: HeadPose) -> bool:
-        """Whether all parts are about where another pose has them."""
+        """Whether all parts are roughly where they are in another pose."""
         return max(self.off(other).values()) <= NEAR
 
     def goto(self, seconds: float) -> dict[str, Any]:
@@ -124,7 +124,7 @@ KNOWN = (*LIMITS, "turn", "time")
 
 
 def read_step(name: str, written: object) -> dict[str, float]:
-    """A step of a movement, as the robot's document has it: parts and where they go, its time (s).
+    """A step of a movement in the robot's document: parts with their targets, and its time (s).
 
     Raises:
         Refused: it is none.

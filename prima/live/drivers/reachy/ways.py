@@ -1,4 +1,4 @@
-"""How Reachy Mini does what the robot's document need not explain."""
+"""How Reachy Mini carries out Commands that the robot's document need not describe."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def _drive(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
 
 
 def _point(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
-    """Lay the antenna of the side out for a while: it points no more exactly than that."""
+    """Lay out the antenna of that side for a while: it cannot point more exactly."""
     angle = number(goal, "angle") if direction is None else wrapped(direction - at.body)
     side = "left" if angle >= 0 else "right"
     out, back = {side: OUT, "time": 0.5}, {side: getattr(HeadPose(), side), "time": 0.5}
@@ -50,5 +50,5 @@ WAYS: dict[str, Callable[[Begin, HeadPose, float | None], list[Step]]] = {
     "set-speed-and-time": _drive,
     "point-by-hand": _point,
 }
-"""What each Command is that the robot's document need not explain, by where the parts are, and
-the direction that it leads to."""
+"""The movements of each Command that the robot's document need not describe, from the pose of
+the parts and the Command's direction."""

@@ -24,19 +24,19 @@ SETUP = (
     " `source /opt/ros/DISTRIBUTION/setup.bash`, and run prima with the same version of Python."
 )
 LOOK_S = 0.05
-"""How often it is looked whether a server has come."""
+"""How often to check whether a server has appeared."""
 SHARE = 0.9
-"""How much of the time to open, and of a heartbeat, may be spent before it is told what is missing."""
+"""The share of the opening time, or of a heartbeat, after which missing servers are reported."""
 REPORT_S = 0.2
-"""How often feedback of a goal is passed on at most."""
+"""The minimum interval at which a goal's feedback is passed on."""
 JOIN_S = 2.0
 DEPTH = 10
-"""Messages that are kept of a topic."""
+"""The queue size for a topic's messages."""
 
 
 @dataclass(slots=True)
 class Clients:
-    """What a node has for the interfaces it uses."""
+    """A node's clients for the interfaces it uses."""
 
     actions: dict[RosUse, Any] = field(default_factory=dict)
     cancels: dict[RosUse, Any] = field(default_factory=dict)
@@ -50,7 +50,7 @@ class RclpyLink:
 
     Args:
         domain: the ROS domain.
-        longest: how long (s) it may take to find all that is used.
+        longest: how long (s) finding all interfaces may take.
         heartbeat: how long (s) a server may take to answer whether it is there.
     """
 
@@ -60,7 +60,7 @@ class RclpyLink:
         self._heartbeat = heartbeat
         self._clients = Clients()
         self._untyped: list[RosUse] = []
-        """Services whose types the robot has still to tell."""
+        """Services whose types the robot has yet to report."""
         self._pending: set[asyncio.Future[Any]] = set()
         self._loop = asyncio.get_running_loop()
         self._context: Any = None
@@ -71,7 +71,7 @@ class RclpyLink:
     # Connecting -----------------------------------------------------------------------------
 
     async def connect(self, uses: list[RosUse], driver: RosDriver) -> None:
-        """Make the node and its clients, and wait until all servers are there."""
+        """Make the node and its clients, and wait until all servers are available."""
         until = self._loop.time() + self._longest * SHARE
         await asyncio.to_thread(self._make_node)
         self._thread = threading.Thread(target=self._spin, name="ros2", daemon=True)
@@ -103,7 +103,7 @@ class RclpyLink:
         while self._context.ok():
             try:
                 self._executor.spin()
-            except Exception as error:  # of a callback, or because the context has ended
+            except Exception as error:  # from a callback, or because the context has ended
                 if self._context.ok():
                     self._node.get_logger().error(f"prima: {type(error).__name__}: {error}")
 
@@ -114,7 +114,7 @@ class RclpyLink:
         return f"in the domain {self._domain}, {names} {verb} not there. {remedy}"
 
     def _missing(self) -> list[RosUse]:
-        """What is not there yet."""
+        """What is not available yet."""
         clients = self._clients
         self._add_untyped()
         gone = [use for use, one in clients.actions.items() if not one.server_is_ready()]
@@ -123,7 +123,7 @@ class RclpyLink:
         return gone + self._untyped
 
     def _add_untyped(self) -> None:
-        """Add the services whose types the robot has told by now."""
+        """Add the services whose types the robot has reported by now."""
         if self._untyped:
             known = dict(self._node.get_service_names_and_types())
             found = [use for use in self._untyped if use.name in known]
@@ -163,7 +163,7 @@ class RclpyLink:
     # Using it -------------------------------------------------------------------------------
 
     async def send_goal(self, use: RosUse, values: dict[str, Json], on: Callable[[], None]) -> Sent:
-        """Send a goal to an action; gives it when it has been accepted."""
+        """Send a goal to an action; returns it once it has been accepted."""
         client = self._clients.actions[use]
         goal = fill(interface(use.type).Goal(), values)
         feedback = _seldom(partial(self._loop.call_soon_threadsafe, on))
@@ -181,7 +181,7 @@ class RclpyLink:
         return Outcome(told.status, plain(told.result))
 
     async def call(self, use: RosUse, values: dict[str, Json]) -> dict[str, Json]:
-        """Call a service; gives its answer."""
+        """Call a service; returns its answer."""
         names = {one.name: client for one, client in self._clients.services.items()}
         client = names[use.name]
         request = fill(client.srv_type.Request(), values)
@@ -194,7 +194,7 @@ class RclpyLink:
         self._do(partial(self._clients.topics[use].publish, message))
 
     async def ping(self) -> None:
-        """Ask all actions to cancel a goal that does not exist: what lives answers."""
+        """Ask all actions to cancel a goal that does not exist: live servers answer."""
         from action_msgs.srv import CancelGoal
 
         async def ask(use: RosUse, client: Any) -> None:
@@ -231,7 +231,7 @@ class RclpyLink:
         return future
 
     def _settle(self, future: asyncio.Future[Any], give: Callable[[], Any]) -> None:
-        """Let a future have a result, or the error of getting it; in any thread."""
+        """Resolve a future with a result or the error of getting it, from any thread."""
         try:
             settle = partial(future.set_result, give())
         except BaseException as error:
@@ -246,7 +246,7 @@ class RclpyLink:
         return await future
 
     async def _answer(self, ask: Callable[[], Any]) -> Any:
-        """Ask something of the robot in the node's thread, and wait for the answer."""
+        """Send a request to the robot in the node's thread, and wait for the answer."""
         future = self._future()
 
         def begin() -> None:
@@ -261,14 +261,14 @@ class RclpyLink:
         return await future
 
     def fail(self, reason: str) -> None:
-        """Give up what has not been answered."""
+        """Give up requests that have not been answered."""
         for future in list(self._pending):
             if not future.done():
                 future.set_exception(Unreachable(reason))
                 future.exception()
 
     async def close(self) -> None:
-        """Take the node out of the network, and end its thread."""
+        """Remove the node from the network, and end its thread."""
         await asyncio.to_thread(self._end_node)
 
     def _end_node(self) -> None:
@@ -287,7 +287,7 @@ def _fail(error: BaseException) -> None:
 
 
 def _seldom(pass_on: Callable[[], object]) -> Callable[[Any], None]:
-    """Feedback as it is passed on: not all of it."""
+    """Throttles feedback."""
     last = 0.0
 
     def take(_: Any) -> None:
@@ -301,10 +301,10 @@ def _seldom(pass_on: Callable[[], object]) -> Callable[[Any], None]:
 
 
 def _check_fields(driver: RosDriver) -> None:
-    """See that the messages have the fields that the robot's document sets.
+    """Check that the messages have the fields that the robot's document sets.
 
     Raises:
-        UsageError: they have not.
+        UsageError: they do not.
         Unreachable: their types are not installed.
     """
     for does in driver.settings.does:

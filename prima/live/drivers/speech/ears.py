@@ -1,6 +1,6 @@
-"""Recognisers: one that hears only what listens now, and one that hears any words. English both.
+"""Recognisers: one limited to what listens now, and one for any words. Both are for English.
 
-They take as long as they take: they are called in a thread of their own, one at a time.
+They may take long, so they are called in a separate thread, one at a time.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from prima.messages import Hypothesis
 
 LOUDEST = 32768.0
 MOST_PHRASES = 300
-"""Phrases of a question that what is heard is compared with."""
+"""The maximum number of a question's phrases that are compared with what is heard."""
 Takes = Sequence[Answers]
 
 
 class GrammarEar:
-    """PocketSphinx with a grammar made from what listens."""
+    """PocketSphinx with a grammar made from what is listening."""
 
     def __init__(self, pronouncing: Pronouncing) -> None:
         from pocketsphinx import Decoder
@@ -43,7 +43,7 @@ class GrammarEar:
         self._grammar = grammar
 
     def _knows(self, word: str) -> bool:
-        """Whether a word is in the dictionary, or can be put there."""
+        """Whether a word is in the dictionary, or can be added to it."""
         if self._decoder.lookup_word(word):
             return True
         sounds = self._pronouncing.sounds(word)
@@ -52,7 +52,7 @@ class GrammarEar:
         return bool(sounds)
 
     def hear(self, sound: bytes) -> str:
-        """The words of what listens that are nearest to a sound; none if nothing listens."""
+        """The accepted words that are nearest to a sound; empty if nothing listens."""
         if not self._grammar:
             return ""
         self._decoder.start_utt()
@@ -63,7 +63,7 @@ class GrammarEar:
 
 
 class OpenEar:
-    """Moonshine, with the smallest English model, which is in its package."""
+    """Moonshine with the smallest English model, which comes with its package."""
 
     def __init__(self) -> None:
         from moonshine_voice import ModelArch, Transcriber, get_model_path
@@ -71,23 +71,23 @@ class OpenEar:
         self._transcriber: Any = Transcriber(str(get_model_path("tiny-en")), ModelArch.TINY)
 
     def hear(self, sound: bytes) -> str:
-        """The words of a sound; none if there are none."""
+        """The words of a sound, if any."""
         samples = [sample / LOUDEST for sample in array("h", sound)]
         heard = self._transcriber.transcribe_without_streaming(samples)
         return " ".join(line.text.strip() for line in heard.lines).strip()
 
     def close(self) -> None:
-        """Give back its memory."""
+        """Release its memory."""
         self._transcriber.close()
 
 
 class Ears:
-    """The recognisers that are chosen.
+    """The selected recognisers.
 
     Args:
         which: ``grammar``, ``open`` or ``both``.
-        cutoff: how alike a phrase must be to what the open one has heard.
-        pronouncing: says how words sound that the dictionary lacks.
+        cutoff: the minimum similarity of a phrase to what the open one has heard.
+        pronouncing: gives the pronunciation of words that the dictionary lacks.
     """
 
     def __init__(self, which: str, cutoff: float, pronouncing: Pronouncing) -> None:
@@ -104,7 +104,7 @@ class Ears:
             self._grammar.listen_for(takes)
 
     def hear(self, sound: bytes) -> list[Hypothesis]:
-        """What was said, the likeliest first; nothing if it was no words."""
+        """The hypotheses, likeliest first; empty if no words were said."""
         said = self._open.hear(sound) if self._open is not None else ""
         if self._open is not None and not said:
             return []
@@ -112,6 +112,6 @@ class Ears:
         return hypotheses(said, fits, self._phrases, self._cutoff)
 
     def close(self) -> None:
-        """Give back their memory."""
+        """Release their memory."""
         if self._open is not None:
             self._open.close()

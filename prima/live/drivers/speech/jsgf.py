@@ -1,4 +1,4 @@
-"""What listens now, as a grammar in JSGF for a recogniser that hears nothing else."""
+"""What listens now, as a JSGF grammar for a recogniser limited to it."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from prima.grammar.model import Sequence as Row
 from prima.grammar.text import wide
 
 DEEP = 40
-"""Parts inside each other that are written; a rule within itself is left out."""
+"""The maximum depth of nested parts; recursive rules are omitted."""
 MOST = 50_000
-"""Characters that a grammar may have."""
+"""Maximum length of a grammar in characters."""
 APART = re.compile(r"[^\w']+")
 SPOKEN = re.compile(r"[a-z][a-z']*")
-"""A word of which a recogniser can be told how it sounds."""
+"""A word that can be added to a recogniser's dictionary."""
 NUMBERS = [
     "zero",
     "one",
@@ -61,18 +61,18 @@ TYPES |= {
     "phone": f"{TYPES['digits']} [ extension {TYPES['digits']} ]",
     "currency": f"{TYPES['number']} [ dollar | dollars ] [ and ] [ {TYPES['number']} [ cent | cents ] ]",
 }
-"""The built-in types that are a few words. Dates, times and texts are for an open recogniser."""
+"""The built-in types with few words. Dates, times and texts need an open recogniser."""
 
 
 class TooLarge(Exception):
-    """A grammar has too much in it."""
+    """A grammar is too large."""
 
 
 def jsgf(takes: Sequence[Answers], known: Callable[[str], bool]) -> str:
-    """A grammar of all that listens; empty if it takes nothing that can be written.
+    """A grammar of everything that listens; empty if nothing of it can be expressed.
 
     Args:
-        takes: what the questions and links that listen take.
+        takes: what the listening questions and links accept.
         known: whether the recogniser knows a word.
     """
     try:
@@ -99,15 +99,15 @@ def _answers(answers: Answers, known: Callable[[str], bool]) -> Iterator[str]:
 
 
 def spelt(text: str) -> list[str]:
-    """Words as a dictionary has them: small letters, with apostrophes, which tell I'll from ill."""
+    """Words in dictionary form: lower case, with apostrophes, which distinguish I'll from ill."""
     plain = wide(text).lower().replace("\u2019", "'")
     return [word for word in (one.strip("'") for one in APART.split(plain)) if word]
 
 
 class Writer:
-    """Writes parts of grammars; what cannot be said is left out.
+    """Writes parts of grammars; what cannot be said is omitted.
 
-    A part that is said by silence is empty text, one that can never be said is None.
+    A part that matches silence is empty text; one that can never match is None.
     """
 
     def __init__(self, known: Callable[[str], bool]) -> None:
@@ -145,7 +145,7 @@ class Writer:
         return ""  # a tag
 
     def _rule(self, rule: Rule | None, inside: tuple[Rule, ...]) -> str | None:
-        """A rule's body; None for one that is not there, in itself, or too deep."""
+        """A rule's body; None if the rule does not exist, is recursive, or is too deep."""
         if rule is None or rule in inside or len(inside) > DEEP:
             return None
         return self.part(rule.body, (*inside, rule))

@@ -1,4 +1,4 @@
-"""What was heard, as phrases of what listens now: hypotheses with their confidence."""
+"""Matches what was heard with phrases of what listens now: hypotheses with their confidence."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from prima.grammar.text import fold
 from prima.messages import Hypothesis
 
 MOST = 5
-"""Hypotheses that are told."""
+"""Maximum number of hypotheses."""
 LONGEST = 400
-"""Letters that are compared."""
+"""The number of letters that are compared."""
 SURE, HEARD, ALONE = 0.99, 0.9, 0.6
-"""How sure it is of words that both recognisers have heard, the open one, the grammar's alone."""
+"""The confidence in words that both recognisers, the open one, or only the grammar's have heard."""
 EASIER = 0.2
-"""How much less like what was said a phrase may be that the grammar's recogniser has heard."""
+"""How much less similar a phrase may be if the grammar's recogniser has heard it."""
 AGREED = 0.5
-"""By how much of what it lacks a phrase is surer when both recognisers have heard it."""
+"""The share of the missing confidence that a phrase gains if both recognisers have heard it."""
 
 
 def likeness(one: str, other: str) -> float:
-    """How alike two texts sound, as far as their letters tell: 0 to 1."""
+    """The similarity of two texts by their letters, from 0 to 1."""
     one, other = (fold(text).replace(" ", "")[:LONGEST] for text in (one, other))
     return SequenceMatcher(None, one, other, autojunk=False).ratio() if one and other else 0.0
 
@@ -29,14 +29,14 @@ def likeness(one: str, other: str) -> float:
 def hypotheses(said: str, fits: str, phrases: Iterable[str], cutoff: float) -> list[Hypothesis]:
     """What an utterance may have been, the likeliest first.
 
-    What the open recogniser has heard comes first: it may be just what a question takes. Phrases
-    follow that are like it, for the question that takes them only.
+    What the open recogniser has heard comes first: a question may accept just that. Similar
+    phrases follow, for a question that accepts only those.
 
     Args:
-        said: what the open recogniser has heard; empty if there is none.
-        fits: what the recogniser of the grammar has heard, which hears nothing else.
-        phrases: what listens, as far as it can be told.
-        cutoff: how alike a phrase must be to what was said (0 to 1).
+        said: what the open recogniser has heard; empty if there is no such recogniser.
+        fits: what the recogniser limited to the grammar has heard.
+        phrases: what listens, as far as known.
+        cutoff: the minimum similarity of a phrase to what was said (0 to 1).
     """
     if not said:
         return [Hypothesis(fits, ALONE)] if fits else []

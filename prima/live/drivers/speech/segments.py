@@ -8,20 +8,20 @@ from collections.abc import Callable
 from prima.live.drivers.speech.sound import CHUNK_S
 
 LIKELY, UNLIKELY = 0.5, 0.35
-"""How likely a chunk is speech when speech begins at the latest, and goes on at least."""
+"""The probabilities of speech at which an utterance begins, and below which it pauses."""
 ONSET = 3
-"""Chunks of speech with which it begins: a click is none."""
+"""The number of chunks of speech that begin an utterance: a click does not."""
 BEFORE_S = 0.5
-"""How much sound before that belongs to it."""
+"""How much of the preceding sound belongs to it."""
 LONGEST_S = 20.0
-"""Longer speech is taken as it is by then."""
+"""Longer speech is cut off here."""
 
 
 class Segments:
-    """Cuts what is heard into utterances.
+    """Divides the sound into utterances.
 
     Args:
-        likely: how likely a chunk is speech (0 to 1).
+        likely: returns the probability that a chunk is speech (0 to 1).
         silence: seconds of silence that end an utterance.
     """
 
@@ -30,21 +30,21 @@ class Segments:
         self._before: deque[bytes] = deque(maxlen=round(BEFORE_S / CHUNK_S))
         self._said: list[bytes] = []
         self._run = 0
-        """Chunks of speech so far, or once it has begun, of silence."""
+        """Chunks of speech so far or, once it has begun, of silence."""
         self.cut = False
-        """Whether the utterance that has ended last was cut off."""
+        """Whether the latest finished utterance was cut off."""
         self._usual = silence
         self.bound()
 
     def bound(self, silence: float = 0, longest: float = LONGEST_S) -> None:
-        """Set when an utterance is over, for what is said from now on.
+        """Set when utterances end from now on.
 
         Args:
             silence: seconds of silence; 0 for the usual ones.
             longest: seconds of speech at most.
         """
         self.silence = max(round((silence or self._usual) / CHUNK_S), 1)
-        """Chunks of silence that end it; they are at its end."""
+        """Chunks of silence that end it and are part of it."""
         self._longest = max(round(longest / CHUNK_S), 1)
         self.reset()
 
@@ -54,7 +54,7 @@ class Segments:
         return bool(self._said)
 
     def reset(self) -> None:
-        """Forget what was heard."""
+        """Drop what was heard."""
         self._before.clear()
         self._said.clear()
         self._run = 0

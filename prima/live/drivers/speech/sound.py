@@ -16,7 +16,7 @@ from prima.live.driver import Unreachable, Unusable
 RATE = 16_000
 """Samples a second."""
 CHUNK = 1024
-"""Bytes that are heard at once: 32 ms, as much as the detector of speech takes."""
+"""Bytes in a chunk: 32 ms, the size that the speech detector takes."""
 CHUNK_S = CHUNK / 2 / RATE
 BEEP_HZ, BEEP_MS, BEEP_LOUD = 880, 500, 6000
 Hear = Callable[[bytes], None]
@@ -38,32 +38,32 @@ class Sound(Protocol):
     """A microphone and a loudspeaker."""
 
     heard: int
-    """How many bytes of the latest sound have been played."""
+    """The number of bytes of the latest sound that have been played."""
 
     def open(self, hear: Hear, lost: Callable[[str], None]) -> None:
         """Begin to listen.
 
         Args:
-            hear: is given each :data:`CHUNK` of sound, in any thread.
-            lost: is told why no sound comes any more, in any thread.
+            hear: called with each :data:`CHUNK` of sound, in any thread.
+            lost: called with the reason when no more sound comes, in any thread.
 
         Raises:
             Unreachable: there is no such device.
         """
 
     async def play(self, sound: bytes) -> None:
-        """Play a sound to its end; it falls silent at once when this is cancelled."""
+        """Play a sound to its end; it stops at once if this is cancelled."""
 
     def close(self) -> None:
         """Give back the devices."""
 
 
 class Pipes:
-    """A loudspeaker and a microphone in memory, for users who are synthetic."""
+    """A loudspeaker and a microphone in memory, for synthetic users."""
 
     def __init__(self) -> None:
         self.played: Hear = lambda _: None
-        """Is given each chunk that the robot plays, when it is played."""
+        """Called with each chunk that the robot plays, when it is played."""
         self.heard = 0
         self._hear: Hear = lambda _: None
         self._left = b""
@@ -97,7 +97,7 @@ class SoundCard:
     """The machine's microphone and loudspeaker.
 
     Args:
-        source: the microphone's name or number; empty for the usual one.
+        source: the microphone's name or number; empty for the default.
         sink: the loudspeaker's.
     """
 
@@ -164,12 +164,12 @@ class SoundCard:
         """Give back the devices."""
         streams, self._streams = self._streams, []
         for stream in streams:
-            with suppress(Exception):  # it is gone already
+            with suppress(Exception):  # it is already gone
                 stream.close(ignore_errors=True)
 
 
 def _lacking(name: str, device: int | str | None, error: Exception) -> str:
-    """What to do where a microphone or a loudspeaker is missing."""
+    """What to do if a microphone or a loudspeaker is missing."""
     which = (
         f'the {name} "{device}" cannot be opened' if device is not None else f"there is no {name}"
     )

@@ -1,4 +1,4 @@
-"""How words sound that a recogniser's dictionary lacks, such as names: by the English voice's rules."""
+"""The pronunciation of words that a recogniser's dictionary lacks, by the English voice's rules."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ SOUNDS = {
     "p": "P", "s": "S", "t": "T", "T": "T", "v": "V", "w": "W", "z": "Z", "ɡ": "G", "g": "G",
     "ŋ": "NG", "ð": "DH", "θ": "TH", "ʃ": "SH", "ʒ": "ZH", "ʤ": "JH", "ʧ": "CH", "ɹ": "R", "ɾ": "T",
 }  # fmt: skip
-"""Signs of the voice's alphabet as ARPABET, which the recogniser's dictionary is written in."""
+"""The voice's phonetic alphabet in ARPABET, which the recogniser's dictionary uses."""
 SILENT = frozenset("ˈˌː. ")
 
 
 class Pronouncing:
-    """Gives the sounds of English words; loads what it needs when it is first asked."""
+    """Gives the pronunciation of English words; loads what it needs when first used."""
 
     def __init__(self) -> None:
         self._rules: Callable[[str], Any] | None = None
 
     def sounds(self, word: str) -> str:
-        """The sounds of a word in ARPABET; empty where they cannot be told."""
+        """The pronunciation of a word in ARPABET; empty if unknown."""
         if self._rules is None:
             from hibari.g2p import G2P
 
@@ -33,7 +33,7 @@ class Pronouncing:
 
 
 def arpabet(signs: str) -> str:
-    """Signs of the voice's alphabet in ARPABET; empty if one is not known."""
+    """Symbols of the voice's alphabet in ARPABET; empty if one is unknown."""
     made: list[str] = []
     for sign in signs:
         if sign in SILENT:

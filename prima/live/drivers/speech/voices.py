@@ -12,10 +12,10 @@ from prima.live.driver import Refused
 from prima.live.drivers.speech.sound import RATE
 
 LONGEST_S = 30
-"""How long another program may take to make the sound of a text."""
+"""How long an external program may take to synthesise a text."""
 LOUDEST = 32767
 Voice = Callable[[str, str], bytes]
-"""Text and language tag to sound."""
+"""Converts a text with its language tag to sound."""
 
 
 def resampled(samples: Any, rate: int) -> bytes:
@@ -34,7 +34,7 @@ def resampled(samples: Any, rate: int) -> bytes:
 
 
 def hibari() -> Voice:
-    """The English voice; one and the same sound for one text."""
+    """The English voice; it is deterministic."""
     from hibari import SAMPLE_RATE, Hibari
 
     speaker = Hibari()
@@ -77,7 +77,7 @@ def espeak() -> Voice:
 def _read_wave(data: bytes) -> bytes:
     import numpy
 
-    # The lengths in the header are those of a file, and not known when a program writes to a pipe.
+    # The lengths in the header are unknown when a program writes to a pipe.
     rate = int.from_bytes(data[24:28], "little")
     samples = numpy.frombuffer(data[44:], "<i2", (len(data) - 44) // 2)
     return resampled(samples / LOUDEST, rate)
@@ -88,16 +88,16 @@ MADE: Mapping[str, Callable[[], Voice]] = {
     "open-jtalk": open_jtalk,
     "espeak": espeak,
 }
-"""The voices by their names."""
+"""The voices by name."""
 LANGUAGES = {"en": "hibari", "ja": "open-jtalk"}
 """Languages with a voice of their own."""
 
 
 class Voices:
-    """Makes the sound of texts; each voice is loaded when it is first needed.
+    """Synthesises texts; each voice is loaded when it is first needed.
 
     Args:
-        name: the voice of all texts; empty for one that fits a text's language.
+        name: the voice for all texts; empty to choose by a text's language.
     """
 
     def __init__(self, name: str = "") -> None:
@@ -105,10 +105,10 @@ class Voices:
         self._made: dict[str, Voice] = {}
 
     def prepare(self, languages: Iterable[str]) -> None:
-        """Load the voices of some languages now; one that is missing is missed when it speaks."""
+        """Load the voices of some languages now; a missing one is reported when it should speak."""
         for lang in languages:
             with suppress(Refused):
-                self.say("a", lang)  # what it needs is loaded by that
+                self.say("a", lang)  # this loads what it needs
 
     def say(self, text: str, lang: str) -> bytes:
         """The sound of a text.
