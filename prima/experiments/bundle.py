@@ -1,4 +1,4 @@
-"""Bundles: a sweep with all that it was made from, in one archive (RO-Crate 1.1).
+"""Bundles: a sweep with everything it was made from, in one archive (RO-Crate 1.1).
 
 The archive has the table, the folder beside it, every file that the runs have read, a study file
 and ``ro-crate-metadata.json``, which says what each of them is. Unpacked, the study gives the same
@@ -40,7 +40,7 @@ TYPES = {
 
 
 def write_bundle(path: str, out: Output) -> int:
-    """Write the archive of a table that was made.
+    """Write the archive of a finished table.
 
     Args:
         path: the archive.
@@ -65,7 +65,7 @@ def write_bundle(path: str, out: Output) -> int:
 
 
 def check_bundle(path: str, out: Output) -> None:
-    """Look before the first run whether a bundle can be made.
+    """Check before the first run whether a bundle can be made.
 
     Args:
         path: the archive.
@@ -118,7 +118,7 @@ def _below_study(folder: str, name: str) -> str:
 
 
 def _toml(value: Json) -> str:
-    """A text, number or list in TOML: their JSON is TOML, but for what ends no line there."""
+    """A text, number or list in TOML: its JSON, with DEL escaped, which TOML does not allow."""
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
@@ -145,7 +145,7 @@ def _relative(path: Path, here: Path) -> str:
 
 
 def _files(out: Output) -> dict[str, bytes]:
-    """What an archive holds beside its study and its metadata."""
+    """The contents of an archive other than its study and its metadata."""
     found = _read(out)
     for path in (out.path, *sorted(out.folder.rglob("*"))):
         if path.is_file() and not path.is_symlink():  # a sweep makes no links
@@ -154,7 +154,7 @@ def _files(out: Output) -> dict[str, bytes]:
 
 
 def _metadata(files: dict[str, bytes], out: Output) -> str:
-    """The description of the archive, as RO-Crate 1.1 has it."""
+    """The description of the archive according to RO-Crate 1.1."""
     table, transcripts = out.path.name, f"{out.folder.name}/orders/"
     parts = [{"@id": name} for name in files]
     made_of = [one for one in parts if not one["@id"].startswith(f"{out.folder.name}/")]

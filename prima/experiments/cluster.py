@@ -1,4 +1,4 @@
-"""Runs on a cluster by Dask (https://distributed.dask.org), or else on this machine."""
+"""Runs on a Dask cluster (https://distributed.dask.org), or else on this machine."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ if TYPE_CHECKING:
 SECONDS = 10
 """How long a scheduler and its first worker may take to answer."""
 AT_ONCE = 8
-"""Runs of one task, as a task takes about a millisecond of the scheduler."""
+"""Runs per task: a task costs the scheduler about a millisecond."""
 TRIES = 5
-"""How often workers are asked what they are, where one of them ends meanwhile."""
+"""How often workers are checked again if one of them ends meanwhile."""
 AHEAD = 8
-"""Tasks for each worker that are sent ahead."""
+"""Tasks sent ahead for each worker."""
 ADDRESS = re.compile(r"(tcp|tls|ws|wss)://[^\s/:]+(:\d{1,5})?")
 PATIENCE = 300.0
-"""Seconds that a scheduler may be without any worker, before it is given up."""
+"""Seconds without any worker after which a scheduler is given up."""
 PATIENCE_SETTING = "PRIMA_CLUSTER_PATIENCE"
-"""The environment variable that gives another number."""
+"""The environment variable that overrides it."""
 MOST_PATIENCE = 86_400.0
 FIRST_TOLD, TOLD_EVERY = 5.0, 60.0
-"""After how many seconds without a worker it is told, and how often again."""
+"""The interval (s) at which a missing worker is reported."""
 DIED = 1
-"""The code of a run of which the worker died each time; Dask tells no signal."""
+"""The exit code of a run whose worker died each time; Dask does not report the signal."""
 
 
 def pool_of(address: str | None, workers: int | None) -> Pool:
@@ -78,7 +78,7 @@ def cluster(address: str) -> Pool:
 
 
 def size_of(address: str | None, workers: int | None) -> int:
-    """How many processes the same pool has.
+    """The number of processes of the same pool.
 
     Raises:
         UsageError: as for :func:`pool_of`, or nobody answers.
@@ -98,7 +98,7 @@ def _staff(address: str, stage: Making[Result]) -> Iterator[Runs[Result]]:
     """Connect, send the content of all runs to all workers, and make runs there.
 
     Raises:
-        RunError: the scheduler, or all of its workers, go meanwhile.
+        RunError: the scheduler, or all of its workers, are lost meanwhile.
         UsageError: nobody answers, the workers are of another version, or there is too much
             to send.
     """
@@ -107,7 +107,7 @@ def _staff(address: str, stage: Making[Result]) -> Iterator[Runs[Result]]:
     client = _connected(address)
     try:
         _check_soon(client, address)
-        # A task, as a worker that dies with data which no task makes would end them all.
+        # A task, since the death of a worker with data that no task makes would end them all.
         sent = client.submit(_given, stage, pure=False)
         yield lambda variants: _runs(client, sent, variants)
     finally:
@@ -130,11 +130,11 @@ def _connected(address: str) -> Client:
 
 
 def _check_soon(client: Client, address: str) -> None:
-    """Check the workers; again, if one of them ends meanwhile.
+    """Check the workers, and check again if one of them ends meanwhile.
 
     Raises:
-        RunError: none stays, or the scheduler goes.
-        UsageError: one is of another kind.
+        RunError: no worker is left, or the scheduler is lost.
+        UsageError: one has another version or several threads.
     """
     for _ in range(TRIES):
         try:
@@ -146,10 +146,10 @@ def _check_soon(client: Client, address: str) -> None:
 
 
 def _check(client: Client, address: str) -> None:
-    """See that all workers are of this version, and make one run at once.
+    """Check that all workers have this version and make one run at a time.
 
     Raises:
-        UsageError: they are not.
+        UsageError: they do not.
     """
     here = [__version__, list(sys.version_info[:2])]
     try:
@@ -169,14 +169,14 @@ def _check(client: Client, address: str) -> None:
 
 
 def _versions() -> list[Any]:
-    """What a worker is."""
+    """A worker's versions and threads."""
     return [__version__, list(sys.version_info[:2])]
 
 
 def _runs(
     client: Client, sent: Future, variants: Iterable[Variant]
 ) -> Iterator[tuple[Variant, Any]]:
-    """Results in the order of the variants; of a task whose workers died, one by one."""
+    """Results in the order of the variants; a task whose workers died is repeated run by run."""
     from distributed import CancelledError
 
     try:
@@ -219,14 +219,14 @@ def _one_by_one(
 
 
 def _result(client: Client, task: Future) -> Any:
-    """The result of a task, for which there has to be a worker.
+    """The result of a task, once there is a worker for it.
 
     Raises:
         RunError: there has been none for too long.
     """
     limit, since = _patience(), monotonic()
     tell_at = since + FIRST_TOLD
-    while True:  # also what is done may be lost with its worker, and has to be done again
+    while True:  # finished results may also be lost with their worker, and have to be made again
         with suppress(TimeoutError):
             return task.result(timeout=1)
         now = monotonic()
@@ -246,7 +246,7 @@ def _result(client: Client, task: Future) -> Any:
 
 
 def _patience() -> float:
-    """How long there may be no worker (s).
+    """How long (s) there may be no worker.
 
     Raises:
         UsageError: the setting is no number above 0.
@@ -262,10 +262,10 @@ def _patience() -> float:
 
 
 def _given(stage: Making[Result]) -> Making[Result]:
-    """Hold the content of all runs; on a worker."""
+    """Hold the content of all runs; called on a worker."""
     return stage
 
 
 def _work(stage: Making[Result], lot: Sequence[Variant]) -> list[Result]:
-    """Make the runs of a task; on a worker."""
+    """Make the runs of a task; called on a worker."""
     return [stage.run(one) for one in lot]

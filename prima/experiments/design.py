@@ -11,17 +11,17 @@ from prima.language.distributions import share
 
 DESIGNS = ("full", "random", "lhs")
 MOST_RUNS = 100_000_000
-"""Runs of one sweep."""
+"""Maximum number of runs of a sweep."""
 MOST_POINTS = 10_000_000
-"""Values of a Latin hypercube, which is made at once."""
+"""Maximum number of values of a Latin hypercube, which is made in one go."""
 
 
 class Design:
     """Values of factors, run by run.
 
-    ``full`` combines all levels, with each seed; what is drawn depends on the seed and the
-    factor alone, so that the same user meets every other level. ``random`` and ``lhs`` (Latin
-    hypercube) draw all factors, the levels of lists too, for a number of runs.
+    ``full`` combines all levels, with each seed; random values depend only on the seed and the
+    factor, so that the same user meets every other level. ``random`` and ``lhs`` (Latin
+    hypercube) draw all factors, including the levels of lists, for a number of runs.
     """
 
     def __init__(self, kind: str, factors: Sequence[Factor], seeds: int, runs: int | None) -> None:
@@ -29,12 +29,12 @@ class Design:
 
         Args:
             kind: one of DESIGNS.
-            factors: what is varied.
-            seeds: for ``full``, the runs of each combination; else where drawing begins.
+            factors: the factors to vary.
+            seeds: for ``full``, the number of runs of each combination; else the first seed.
             runs: for ``random`` and ``lhs``, how many.
 
         Raises:
-            UsageError: these do not go together, or are too many.
+            UsageError: these cannot be combined, or are too many.
         """
         self.kind = kind
         self.factors = factors
@@ -87,9 +87,9 @@ class Design:
 
 
 def _check_count(runs: int) -> None:
-    """Refuse more runs than a sweep may have."""
+    """Reject more runs than a sweep may have."""
     if runs > MOST_RUNS:
-        these = f"{runs:,}" if runs < 10**20 else "far too many"  # a text has no more digits
+        these = f"{runs:,}" if runs < 10**20 else "far too many"  # too long for text
         message = f"These are {these} runs; a sweep has at most {MOST_RUNS:,}."
         raise UsageError(f"{message} Take fewer levels or seeds, or --design lhs --runs 10000.")
 

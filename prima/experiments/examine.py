@@ -1,4 +1,4 @@
-"""Runs looked at closely: when something happened, and what is wrong."""
+"""Examines runs: when something happened, and what is wrong."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from prima.invariants import callers, check
 from prima.loading import Loaded
 
 OUTSIDE = ("user", "environment")
-"""Actors whose records tell what a scenario makes happen."""
+"""Actors whose records are events of a scenario."""
 EXCLUSIVE = "invariant 1 "
-"""No device has two tasks: what the policy none does not keep."""
+"""No device has two tasks: the invariant that the policy none does not keep."""
 
 
 class Finding(NamedTuple):
@@ -23,23 +23,23 @@ class Finding(NamedTuple):
 
     kind: str
     where: str
-    """What is the same in all runs that have it."""
+    """The part that is the same in all runs with this finding."""
     text: str
 
 
 @dataclass(slots=True)
 class Seen(Made):
-    """What came of a run, and what an exploration needs of it."""
+    """The result of a run, with the data that an exploration needs."""
 
     found: list[Finding] = field(default_factory=list)
     times: list[int] = field(default_factory=list)
     """The time of each record (ms)."""
     outside: list[int] = field(default_factory=list)
-    """The places, among these, of records of what the scenario makes happen."""
+    """The indices, among these, of records of the scenario's events."""
 
 
 class Examiner(Stage):
-    """Makes runs and looks at them closely."""
+    """Makes and examines runs."""
 
     def _run(self, variant: Variant) -> Seen:
         loaded = self.loaded(variant)

@@ -1,4 +1,4 @@
-"""Explorations: every order of events to which shifts of some of them lead (docs/experiments.md)."""
+"""Explorations: all orders of events that shifts of some of them lead to (docs/experiments.md)."""
 
 from __future__ import annotations
 
@@ -33,22 +33,22 @@ Found = TypeVar("Found")
 
 
 class Enough(Exception):
-    """As many runs were made as there may be."""
+    """The maximum number of runs has been made."""
 
 
 @dataclass(frozen=True)
 class ExplorationPlan:
-    """What an exploration is to do."""
+    """The settings of an exploration."""
 
     scenario: str
     moves: tuple[str, ...] = ()
-    """Paths of times; all of the scenario's events if there is none."""
+    """Paths of times; all of the scenario's events if empty."""
     within: int = 5_000
-    """By how much each may be moved (ms)."""
+    """How far each may be moved (ms)."""
     depth: int = 2
-    """How many may be moved at once."""
+    """The maximum number of events moved at once."""
     step: int = 0
-    """A grid (ms) whose points are tried besides; 0 for none."""
+    """A grid (ms) whose points are also tried; 0 for none."""
     most: int = 20_000
     """Runs at most."""
     policy: str = ""
@@ -57,7 +57,7 @@ class ExplorationPlan:
 
 @dataclass(slots=True)
 class FoundOrder:
-    """An order of events: its signature, the smallest shift that brings it, and its runs."""
+    """An order of events: its signature, the smallest shift that leads to it, and its runs."""
 
     signature: str
     point: Point
@@ -66,7 +66,7 @@ class FoundOrder:
 
 @dataclass(slots=True)
 class FoundProblem:
-    """A finding, and the smallest shift that brings it."""
+    """A finding, and the smallest shift that leads to it."""
 
     finding: Finding
     point: Point
@@ -74,14 +74,14 @@ class FoundProblem:
 
 
 class Exploration:
-    """All runs of one exploration, made as its searches ask for them."""
+    """All runs of one exploration, made as its searches request them."""
 
     def __init__(self, plan: ExplorationPlan) -> None:
         """Plan it.
 
         Raises:
             DocumentError: the scenario has errors.
-            UsageError: what is to be moved cannot be.
+            UsageError: the times cannot be moved.
         """
         self.plan = plan
         if not 1 <= plan.depth <= MOST_DEPTH:
@@ -109,7 +109,7 @@ class Exploration:
         """All orders, the smallest shifts first."""
         self.problems: list[FoundProblem] = []
         self.complete = False
-        """Whether all runs were made that the plan asks for."""
+        """Whether all runs of the plan were made."""
         self.most: int | None = plan.most
         self.kept: dict[Point, Seen] = {}
         """Runs of an earlier, interrupted exploration."""
@@ -128,7 +128,7 @@ class Exploration:
         return Variant(0, 0, self.plan.policy, 0, values)
 
     def explore(self, pool: Pool) -> Iterator[int]:
-        """Make all runs; gives their number after each lot.
+        """Make all runs; yields their number after each batch.
 
         Raises:
             UsageError: a policy is unknown.
@@ -167,7 +167,7 @@ class Exploration:
             raise UsageError(f"{self.plan.scenario}: it cannot be run: {seen.failures}")
 
     def _from(self, point: Point, exact: bool) -> Iterator[EventLine]:
-        """The lines along events that have not been moved."""
+        """The lines along the events that have not been moved."""
         for which, time in enumerate(self.base):
             if point[which] != time:
                 continue
@@ -178,7 +178,7 @@ class Exploration:
             yield EventLine(point, which, low, high, self.plan.step, exact)
 
     def _next(self, line: EventLine, found: list[LinePiece]) -> Iterator[Point]:
-        """Where to go on: one point of each piece, and those of the grid."""
+        """The points from which to continue: one of each piece, and those of the grid."""
         home = self.base[line.which]
         times = [one.nearest(home) for one in found]
         if self.plan.step:
@@ -191,7 +191,7 @@ class Exploration:
     def _together(
         self, searches: dict[Any, Search[Found]], found: dict[Any, Found]
     ) -> Iterator[int]:
-        """Let searches go on together, so that their runs are made at once."""
+        """Advance searches together, so that their runs are made at once."""
         asking: dict[Any, list[Point]] = {name: [] for name in searches}
         while asking:
             yield from self._make(point for points in asking.values() for point in points)
@@ -205,10 +205,10 @@ class Exploration:
                     del asking[name]
 
     def _make(self, points: Iterable[Point]) -> Iterator[int]:
-        """Make the runs that have not been made.
+        """Make the runs that have not been made yet.
 
         Raises:
-            Enough: there may be no more.
+            Enough: the maximum number of runs has been made.
         """
         wanted = [one for one in dict.fromkeys(points) if one not in self.seen]
         for point in [one for one in wanted if one in self.kept]:
@@ -227,7 +227,7 @@ class Exploration:
     # Results -------------------------------------------------------------------
 
     def settle(self) -> None:
-        """Take orders and problems from the runs made so far; shifts are as small as were tried."""
+        """Collect orders and problems from the runs made so far, with the smallest shifts tried."""
         self.orders = self._orders()
         self.problems = self._problems()
 
@@ -257,7 +257,7 @@ class Exploration:
         self.orders.sort(key=lambda one: (*shift(self.base, one.point), one.point))
 
     def findings(self, seen: Seen) -> list[Finding]:
-        """What is wrong with a run, beside a base that ends."""
+        """The findings of a run, including that it does not end although the base run does."""
         found = list(seen.found)
         if seen.ended == "until" and self.seen[self.base].ended not in ("until", ""):
             found.append(
@@ -287,14 +287,14 @@ class Exploration:
         return sorted(self.seen, key=lambda point: (*shift(self.base, point), point))
 
     def key(self) -> dict[str, Any]:
-        """What determines all runs: for resuming."""
+        """Everything that determines the runs, for resuming."""
         plan = asdict(self.plan)
         runs = {name: plan[name] for name in ("scenario", "policy", "isolate")}
         moves = [one.path for one in self.targets]
         return {"prima": __version__, **runs, "moves": moves, "files": self.stage.digests()}
 
     def boundaries(self, which: int) -> list[LinePiece]:
-        """The pieces of one event's times, the others being as written."""
+        """The pieces of one event's times, with the others as written."""
         times = {
             point[which]: seen.order
             for point, seen in self.seen.items()

@@ -1,4 +1,4 @@
-"""What an exploration found, as text, JSON and files."""
+"""The results of an exploration as text, JSON and files."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Explored:
         return made
 
     def difference(self, order: FoundOrder) -> str:
-        """The first row that is another than in the run as written."""
+        """The first row that differs from the run as written."""
         base = self._rows[self.exploration.seen[self.exploration.base].order]
         for row, same in zip(self._rows[order.signature], base, strict=False):
             if row.key != same.key:
@@ -68,7 +68,7 @@ class Explored:
         return ", ".join(told) or "as written"
 
     def data(self) -> dict[str, Json]:
-        """All of it, for JSON; times in seconds."""
+        """All results for JSON; times in seconds."""
         one = self.exploration
         return {
             "prima": __version__,
@@ -115,7 +115,7 @@ class Explored:
         return f"{number}-{problem.finding.kind}"
 
     def text(self) -> Iterator[str]:
-        """All of it, line by line."""
+        """All results, line by line."""
         one = self.exploration
         wide = max(len(self.moved(order.point)) for order in one.orders)
         yield f"{'order':12}  {'runs':>6}  {'smallest shift':{wide}}  first difference"
@@ -139,7 +139,7 @@ class Explored:
         yield self.summary()
 
     def summary(self) -> str:
-        """How much was tried, and what was found."""
+        """How much was tried, and how much was found."""
         one = self.exploration
         found = f"{counted(len(one.orders), 'order')}, {counted(len(one.problems), 'problem')}"
         runs = counted(len(one.seen), "run")
@@ -165,10 +165,10 @@ class ExplorationFolder:
 
     @contextmanager
     def keeping(self, resume: bool) -> Iterator[int]:
-        """Keep runs as they are made; gives the number of those kept before.
+        """Keep runs as they are made; returns the number of those kept before.
 
         Raises:
-            UsageError: nothing can be written, or there is another exploration to be resumed.
+            UsageError: nothing can be written, or the file to be resumed is of another exploration.
         """
         one = self.exploration
         try:
@@ -190,7 +190,7 @@ class ExplorationFolder:
             raise UsageError(f"{self.path}: cannot be written: {error.strerror}.") from None
 
     def _earlier(self, file: Path) -> list[tuple[Point, Seen]]:
-        """The runs of an earlier exploration; a line cut in two is left out."""
+        """The runs of an earlier exploration; an incomplete line is omitted."""
         with file.open(encoding="utf-8", errors="replace") as stream:
             if _read(stream.readline()) != self.exploration.key():
                 message = f"{self.path}: it is of another exploration, version or scenario"
@@ -224,9 +224,9 @@ class ExplorationFolder:
 def carried_out(
     exploration: Exploration, pool: Pool, output: str | Path | None, resume: bool
 ) -> Iterator[int]:
-    """Make all runs, and write what was found into a folder, if one is named.
+    """Make all runs, and write the results into a folder, if one is named.
 
-    Gives the number of runs whenever one is made; first, of those kept from before.
+    Yields the number of runs whenever one is made; first, of those kept from before.
 
     Raises:
         UsageError: a policy is unknown, or a file cannot be written or resumed.
@@ -256,7 +256,7 @@ def _read(line: str) -> Any:
 
 
 def _run(data: Any, moves: int) -> tuple[Point, Seen] | None:
-    """A kept run; None if it is not whole."""
+    """A kept run; None if it is incomplete."""
     try:
         point = tuple(int(one) for one in data.pop("at"))
         seen = Seen(**{**data, "found": [Finding(*one) for one in data["found"]]})

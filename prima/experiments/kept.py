@@ -13,9 +13,9 @@ from prima.markup.limits import LIMITS
 from prima.voicexml.recordings import length_ms
 
 MOST_SENT = 64_000_000
-"""Bytes of documents that are sent to a cluster."""
+"""Maximum size of the documents sent to a cluster (bytes)."""
 MOST_FILES = 1_000
-"""Files of the folders of VoiceXML applications that are sent to a cluster."""
+"""Maximum number of files from folders of VoiceXML applications sent to a cluster."""
 
 
 class Kept:
@@ -37,7 +37,7 @@ class Kept:
         return self.texts[path]
 
     def head(self, path: Path) -> tuple[bytes, int] | None:
-        """The first bytes of a file and its size as they were first."""
+        """The first bytes of a file and its size, as they were first read."""
         if path not in self.heads:
             try:
                 self.heads[path] = read_head(path)
@@ -46,9 +46,9 @@ class Kept:
         return self.heads[path]
 
     def keep(self, folder: str) -> None:
-        """Keep all files of a folder; of sounds only their heads.
+        """Keep all files of a folder; for sounds only their headers.
 
-        A link that leads out of the folder is none of its files: an application may not read it.
+        A link that leads out of the folder is skipped: an application may not read it.
 
         Raises:
             UsageError: they are too many or too large.
@@ -68,7 +68,7 @@ class Kept:
 
     @contextmanager
     def beside(self, files: Mapping[Path, bytes]) -> Iterator[None]:
-        """Let files that are still to be written count as if they were there."""
+        """Treat files that are yet to be written as if they existed."""
         added = {path.absolute(): data for path, data in files.items()}
         self.texts |= added
         try:
@@ -78,5 +78,5 @@ class Kept:
                 del self.texts[path]
 
     def contents(self) -> GivenFiles:
-        """What was read, for another process."""
+        """The files that were read, for another process."""
         return GivenFiles(self.texts, self.heads, self.folder)

@@ -1,4 +1,4 @@
-"""Factors of an experiment: what is varied, and its levels or distribution.
+"""Factors of an experiment: the value to vary, and its levels or distribution.
 
 Levels are written as in ``prima sweep --vary touch=0s..20s/200ms``:
 
@@ -21,13 +21,13 @@ from prima.language.values import read_value
 from prima.sim.paths import ScenarioValue
 
 MOST_LEVELS = 100_000
-"""Levels of a factor."""
+"""Maximum number of levels of a factor."""
 SPLIT = re.compile(r"(?<!\\)\|")
 
 
 @dataclass(frozen=True)
 class Factor:
-    """What is varied: levels one after the other, or values drawn from a distribution."""
+    """A value to vary: by levels one after the other, or by draws from a distribution."""
 
     path: str
     kind: str
@@ -37,14 +37,14 @@ class Factor:
     """The value (ms for times) below which a share of all values lies, if they are drawn."""
 
     def drawn(self, share: float) -> str:
-        """The value at a share, from 0 to 1, of all values."""
+        """The quantile at a share, from 0 to 1."""
         if self.quantile is None:
             return self.levels[min(int(share * len(self.levels)), len(self.levels) - 1)]
         return written(self.kind, self.quantile(share))
 
 
 def cell(kind: str, text: str) -> str | float | int | None:
-    """A level as a table has it: times in seconds, None where nothing is written."""
+    """A level as in a table: times in seconds, None if the value is absent."""
     if kind not in MEASURED:
         return text
     if not text:
@@ -60,10 +60,10 @@ def read_factor(target: ScenarioValue, text: str, folder: str = "") -> Factor:
     Args:
         target: the value, of a scenario.
         text: its levels, as written.
-        folder: where files of values are.
+        folder: the folder for files of values.
 
     Raises:
-        UsageError: they are malformed, or none, or out of range.
+        UsageError: they are malformed, empty or out of range.
     """
     return _Levels(target, folder).read(text)
 
@@ -97,12 +97,12 @@ class _Levels:
         return Factor(path, kind, self.checked(levels))
 
     def count(self, levels: int) -> None:
-        """Refuse more levels than a factor may have."""
+        """Reject more levels than a factor may have."""
         if levels > MOST_LEVELS:
             raise self.wrong(f"It has {levels:,} levels; at most {MOST_LEVELS:,} can be run.")
 
     def checked(self, levels: Sequence[str]) -> tuple[str, ...]:
-        """Levels of which none is twice, none is of another kind, and none is left out in vain."""
+        """The levels, checked: no duplicates, one kind, empty only if the attribute is optional."""
         attribute = self.target.attribute
         seen: dict[float | str, str] = {}
         for level in levels:
@@ -122,7 +122,7 @@ class _Levels:
         """A number, or a time in ms; 0 for a text.
 
         Raises:
-            UsageError: it is not of the factor's kind, or out of range.
+            UsageError: it does not have the factor's kind, or is out of range.
         """
         attribute = self.target.attribute
         try:

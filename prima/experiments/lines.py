@@ -1,7 +1,7 @@
-"""Searches that ask for runs and are given them: along one moved time, and for the smallest shift.
+"""Searches over runs: along one moved time, and for the smallest shift.
 
-A search is a generator: it yields the points that it wants to know, and is sent what came of
-each. A point has the time (ms) of each moved event, in their order.
+A search is a generator: it yields the points that it needs, and is sent the result of
+each. A point has the time (ms) of each moved event, in order.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from typing import NamedTuple, TypeVar
 from prima.experiments.examine import Seen
 
 MOST_EFFECTS = 4
-"""Moments in which one event shows, that are moved to the instants of a run."""
+"""Maximum number of effects of one event that are moved to the instants of a run."""
 MOST_ROUNDS = 100
-"""Lots of runs that one search asks for."""
+"""Maximum number of batches of runs that one search requests."""
 
 Point = tuple[int, ...]
 Results = Mapping[Point, Seen]
@@ -25,7 +25,7 @@ Search = Generator[list[Point], Results, Found]
 
 
 class LinePiece(NamedTuple):
-    """Times of one event, the first and last (ms) of neighbours with one order."""
+    """Times of one event, from first to last (ms), that lead to the same order."""
 
     first: int
     last: int
@@ -38,26 +38,26 @@ class LinePiece(NamedTuple):
 
 @dataclass(frozen=True)
 class EventLine:
-    """All times of one event, the others being where they are."""
+    """All times of one event, with the others fixed."""
 
     origin: Point
     which: int
     low: int
     high: int
     step: int = 0
-    """Of a grid (ms) that is tried besides; 0 for none."""
+    """The step of a grid (ms) that is also tried; 0 for none."""
     exact: bool = True
-    """Whether boundaries are found to 1 ms."""
+    """Whether boundaries are located to 1 ms."""
 
     def at(self, time: int) -> Point:
         """The point with this time."""
         return moved(self.origin, self.which, time)
 
     def search(self) -> Search[list[LinePiece]]:
-        """Try what may matter; find the pieces.
+        """Try the times that may matter, and find the pieces.
 
-        An order can only change where the event comes just before, at or just after an instant
-        of the run; the instants of runs with other orders are tried as well.
+        An order can change only where the event comes just before, at or just after an instant
+        of the run; the instants of runs with other orders are also tried.
         """
         here = self.origin[self.which]
         beside = here + 1 if here < self.high else here - 1
@@ -101,10 +101,10 @@ def moved(point: Point, which: int, time: int) -> Point:
 
 
 def moments(seen: Seen, later: Seen, time: int, other: int) -> list[int]:
-    """When an event shows, as times (ms) of its run less the event's own time.
+    """When an event has effects, as times (ms) of its run minus the event's own time.
 
     They are found by moving it by 1 ms: up to the first record that moves, both runs are the
-    same. What the scenario makes happen afterwards, as late, shows it too.
+    same. Later events of the scenario that move equally are effects, too.
     """
     pairs = list(zip(seen.times, later.times, strict=False))
     first = next((at for at, (one, two) in enumerate(pairs) if one != two), None)
@@ -119,7 +119,7 @@ def moments(seen: Seen, later: Seen, time: int, other: int) -> list[int]:
 
 
 def _gaps(known: Mapping[int, Seen]) -> Iterable[int]:
-    """The middles between neighbours of which the orders are others."""
+    """The midpoints between neighbours with different orders."""
     times = sorted(known)
     for one, two in pairwise(times):
         if two - one > 1 and known[one].order != known[two].order:
@@ -127,7 +127,7 @@ def _gaps(known: Mapping[int, Seen]) -> Iterable[int]:
 
 
 def pieces(orders: Mapping[int, str]) -> list[LinePiece]:
-    """Neighbours with one order, as one."""
+    """Merge neighbours with the same order."""
     made: list[LinePiece] = []
     for time in sorted(orders):
         if made and made[-1].order == orders[time]:
@@ -138,9 +138,9 @@ def pieces(orders: Mapping[int, str]) -> list[LinePiece]:
 
 
 def shrunk(base: Point, point: Point, holds: Callable[[Seen], bool]) -> Search[Point]:
-    """The smallest shift from a base with which something still holds.
+    """The smallest shift from a base for which something still holds.
 
-    Each event in turn is put back if it need not be moved, or else moved as little as holds, to
+    Each event in turn is put back if it need not be moved, or else moved by the minimum, to
     1 ms; this is repeated until nothing changes.
     """
     while True:
@@ -165,6 +165,6 @@ def shrunk(base: Point, point: Point, holds: Callable[[Seen], bool]) -> Search[P
 
 
 def shift(base: Point, point: Point) -> tuple[int, int]:
-    """How many events are moved, and by how much in all (ms)."""
+    """The number of moved events, and the total shift (ms)."""
     shifts = [abs(one - two) for one, two in zip(base, point, strict=True)]
     return sum(1 for one in shifts if one), sum(shifts)

@@ -12,24 +12,24 @@ from prima.pool import Died, cores, staff
 Result = TypeVar("Result")
 Result_co = TypeVar("Result_co", covariant=True)
 Runs = Callable[[Iterable[Variant]], Iterator[tuple[Variant, Result | Died]]]
-"""Makes a lot of runs, and gives their results in order."""
+"""Makes a batch of runs, and yields their results in order."""
 
 
 class Making(Protocol[Result_co]):
-    """Makes runs in whatever process it is sent to: a stage."""
+    """A stage: makes runs in the process to which it is sent."""
 
     def run(self, variant: Variant) -> Result_co:
         """Make a run."""
 
     def pack(self) -> None:
-        """Read all that its runs may read, before it is sent to another machine."""
+        """Read everything that its runs may read, before it is sent to another machine."""
 
 
 class Pool(Protocol):
     """Makes runs somewhere."""
 
     def __call__(self, stage: Making[Result]) -> AbstractContextManager[Runs[Result]]:
-        """Begin to work: the stage is sent once."""
+        """Start the workers: the stage is sent once."""
 
 
 def local(workers: int = 0) -> Pool:

@@ -1,4 +1,4 @@
-"""A scenario as it is written, and the values in it that a run changes."""
+"""A scenario's text, and the values in it that a run changes."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ from prima.sim.vocabulary.scenario import SCENARIO
 
 
 class Variant(NamedTuple):
-    """One run: which scenario, its policy, and the values of what is varied."""
+    """One run: its scenario, its policy, and the varied values."""
 
     number: int
     scenario: int
     policy: str
     """Empty for the scenario's own."""
     seed: int
-    """By which the run is drawn; 0 for the scenario's own."""
+    """The run's seed; 0 for the scenario's own."""
     values: tuple[str, ...]
 
 
 class ScenarioText:
-    """A scenario as it is written, and the values in it that are varied."""
+    """A scenario's text, and the values in it that are varied."""
 
     def __init__(self, path: str, data: bytes, paths: Sequence[str]) -> None:
         """Read a scenario.
 
         Raises:
             DocumentError: it has errors.
-            UsageError: a path means nothing in it.
+            UsageError: a path does not exist in it.
         """
         self.path = path
         scenario, problems = look_at_scenario(path, data)
@@ -64,7 +64,7 @@ class ScenarioText:
         """The robot's document.
 
         Raises:
-            DocumentError: it is no robot's document.
+            DocumentError: it is not a robot's document.
             UsageError: it cannot be read.
         """
         path = os.path.normpath(os.path.join(os.path.dirname(self.path), self.root.get("robot")))
@@ -74,7 +74,7 @@ class ScenarioText:
         return root
 
     def _check_apart(self) -> None:
-        """Refuse two paths of one value, and another robot beside changes of the one it replaces."""
+        """Reject two paths to one value, and another robot with changes to the one it replaces."""
         seen: dict[tuple[bool, int, str], str] = {}
         for target in self.targets:
             name = target.attribute.name if target.attribute else ""
@@ -99,12 +99,12 @@ class ScenarioText:
         return edited(self.root.source.text, [*edits, *self._seeded(variant)])
 
     def robot_text(self, variant: Variant) -> bytes | None:
-        """The robot's document of a run; None if it is as it is written."""
+        """The robot's document of a run; None if it is unchanged."""
         edits = [one.edit(value) for one, value in self._changed(variant) if one.of_robot]
         return edited(self.robot.source.text, edits) if edits else None
 
     def _seeded(self, variant: Variant) -> list[TextEdit]:
-        """The edit that lets a run be drawn by its seed, if anything is drawn."""
+        """The edit that sets a run's seed, if anything is random."""
         if not (self._drawn and variant.seed):
             return []
         return [set_attribute(self.root, "seed", str(variant.seed))]
@@ -135,11 +135,11 @@ class ScenarioText:
     def _files_from(
         self, folder: Path, varied: Mapping[tuple[int, str], str]
     ) -> Iterator[TextEdit]:
-        """Edits by which all files are named as seen from another folder.
+        """Edits that make all file names relative to another folder.
 
         Args:
             folder: the other folder.
-            varied: the files that a run has in place of those written, by element and attribute.
+            varied: the files that a run uses instead of those written, by element and attribute.
         """
         here = os.path.dirname(os.path.abspath(self.path))
         for node in self.root.walk():

@@ -26,14 +26,14 @@ from prima.language.values import read_value
 from prima.markup.toml import parse_toml
 
 MOST_BYTES = 1_000_000
-"""Size of a study file; more values are read from a file of their own (``empirical``)."""
+"""Maximum size of a study file; more values go into a separate file (``empirical``)."""
 MOST = 10**12
-"""Greatest number in a study file: runs, bounds and numbers among levels."""
+"""The greatest number in a study file: runs, bounds and numbers among levels."""
 Level = str | int | float | bool
 
 
 def _levels(given: Any) -> Any:
-    """See that there are levels; of many wrong ones the first is enough."""
+    """Check that there are levels; of several wrong ones only the first is reported."""
     several = given if isinstance(given, list) else [given]
     if not several or not all(isinstance(one, Level) for one in several):
         raise ValueError("no levels")
@@ -62,12 +62,12 @@ HOW = {
     "isolate": 'write "ea", "all" or "none"',
     "vary": 'write what is varied below [vary], as touch = "0s..20s/1s"',
 }
-"""What to write, by keys."""
+"""What to write, by key."""
 LEVELS = 'write its levels, as "0s..20s/1s" or ["Yes.", "No."]; a path with a dot in quotes'
 
 
 class Study(BaseModel):
-    """What a study file may say."""
+    """The contents of a study file."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
@@ -83,15 +83,15 @@ class Study(BaseModel):
 
 
 def question_of(scenarios: Sequence[str], vary: Mapping[str, str], **options: Any) -> SweepQuestion:
-    """What is asked by scenarios, or by a study file and what comes before what it says.
+    """The question posed by scenarios, or by a study file with overriding options.
 
     Args:
         scenarios: scenarios, or one study file (``.toml``).
         vary: levels by paths.
-        options: fields of a question; None where nothing is given.
+        options: fields of a question; None where not given.
 
     Raises:
-        UsageError: neither is named, or the file is wrong.
+        UsageError: neither is named, or the file is invalid.
     """
     if not scenarios:
         raise UsageError("Name a scenario, or a study file (.toml).")
@@ -109,7 +109,7 @@ def read_study(path: str) -> SweepQuestion:
     """Read a study file; paths in it begin at its folder.
 
     Raises:
-        UsageError: it cannot be read, or is wrong; the line is named where it is known.
+        UsageError: it cannot be read, or is invalid; the line is named if known.
     """
     text = _read(path)
     try:
@@ -166,7 +166,7 @@ def _parsed(path: str, text: str) -> dict[str, Any]:
 
 
 def levels_text(given: Level | Sequence[Level]) -> str:
-    """Levels of a list as on the command line."""
+    """A list's levels in the form of the command line."""
     if isinstance(given, str):
         return given
     if isinstance(given, int | float):
@@ -191,7 +191,7 @@ def _wrong(path: str, text: str, error: ValidationError) -> UsageError:
 
 
 def _place(path: str, text: str, key: str) -> str:
-    """Where a key is written."""
+    """The place where a key is written."""
     line = _lines(text).get(key)
     return f"{path}:{line}" if line else path
 

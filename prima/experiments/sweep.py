@@ -1,7 +1,7 @@
 """Sweeps: runs of scenarios over factors, in one tidy table (docs/experiments.md).
 
-The table grows in the order of the plan while runs are made, so what is there when a sweep is
-interrupted is its beginning, and ``resume`` goes on behind it.
+The table grows in the order of the plan while runs are made, so an interrupted sweep leaves the
+beginning of its table, and ``resume`` continues after it.
 """
 
 from __future__ import annotations
@@ -33,20 +33,20 @@ from prima.pool import Died
 from prima.version import __version__
 
 MOST_CHECKED = 2_000
-"""Levels that are tried before the first run, divided equally among scenarios and factors."""
+"""Number of levels tried before the first run, divided equally among scenarios and factors."""
 PLAN, ORDERS, ROWS = "plan.json", "orders", "rows.csv"
 """Names in the folder beside a table."""
 
 
 @dataclass(frozen=True)
 class SweepQuestion:
-    """What a sweep is to find out: scenarios, what is varied in them, how, and how often."""
+    """The question of a sweep: scenarios, what is varied in them, how, and how often."""
 
     scenarios: tuple[str, ...]
     vary: Mapping[str, str] = field(default_factory=dict)
-    """Levels by paths, as :mod:`prima.experiments.levels` has them."""
+    """Levels by path, as in :mod:`prima.experiments.levels`."""
     policies: tuple[str, ...] = ()
-    """Policies; each scenario's own if there is none."""
+    """Policies; each scenario's own if empty."""
     seeds: int = 1
     design: str = "full"
     runs: int | None = None
@@ -55,12 +55,12 @@ class SweepQuestion:
     """Rule E6's bound (ms), if not the scenario's."""
     isolate: str = "ea"
     folder: str = ""
-    """Where files of values are."""
+    """The folder for files of values."""
     places: Mapping[str, str] = field(default_factory=dict)
     """Where in a study file its paths, policies and scenarios are written."""
 
     def placed(self, error: UsageError) -> UsageError:
-        """A mistake with its place in the study file, if it is about something of it."""
+        """A mistake with its place in the study file, if it concerns something in it."""
         told = str(error)
         for name, place in self.places.items():
             if told.startswith(f"{name}: ") or f'"{name}"' in told:
@@ -69,7 +69,7 @@ class SweepQuestion:
 
 
 class Sweep:
-    """The plan of a sweep, checked: all that its runs need has been read."""
+    """The plan of a sweep, checked: everything that its runs need has been read."""
 
     def __init__(self, question: SweepQuestion) -> None:
         """Plan a sweep.
@@ -109,7 +109,7 @@ class Sweep:
                     number += 1
 
     def _factors(self) -> list[Factor]:
-        """The factors; every scenario has to have what is varied."""
+        """The factors; every scenario has to contain the varied values."""
         made = []
         for index, (path, levels) in enumerate(self.question.vary.items()):
             if path == "policy":
@@ -144,7 +144,7 @@ class Sweep:
         return policies or [""]
 
     def _check_levels(self) -> None:
-        """Try each level once, beside what is written of the others.
+        """Try each level once, with the others as written.
 
         Raises:
             UsageError: the scenario does not allow one.
@@ -184,7 +184,7 @@ class Sweep:
         return [cells.get(one.name) for one in self.columns]
 
     def key(self) -> dict[str, Json]:
-        """What determines the table: for resuming."""
+        """Everything that determines the table, for resuming."""
         question = asdict(self.question)
         del question["folder"], question["places"]
         return {
@@ -196,7 +196,7 @@ class Sweep:
         }
 
     def results(self, pool: Pool, begin: int = 0, folder: str = "") -> Iterator[list[Json]]:
-        """Make the runs from a number on; give their rows in order."""
+        """Make the runs from a number on; yield their rows in order."""
         with pool(self.stage) as runs:
             for variant, made in runs(islice(self, begin, None)):
                 yield self.row(variant, made, folder)
@@ -230,12 +230,12 @@ class Output:
         self.rows = self.folder / ROWS if self.parquet else self.path
 
     def write(self, resume: bool = False) -> Iterator[int]:
-        """Make all runs; gives the number of rows each time one is written.
+        """Make all runs; yields the number of rows each time one is written.
 
-        Whatever ends it early, the rows that were made are on the disk, the table too.
+        If it ends early for any reason, the rows made so far and the table are on the disk.
 
         Raises:
-            UsageError: something cannot be written, or there is another sweep to be resumed.
+            UsageError: something cannot be written, or the table to be resumed is of another sweep.
             RunError: no process can be started.
         """
         try:
@@ -266,7 +266,7 @@ class Output:
                 yield number
 
     def _earlier(self) -> int:
-        """The number of rows that an earlier sweep has left; a last one cut in two is removed.
+        """The number of rows that an earlier sweep has left; an incomplete last one is removed.
 
         Raises:
             UsageError: it was another sweep.
@@ -288,7 +288,7 @@ class Output:
         return self._whole_rows()
 
     def _whole_rows(self) -> int:
-        """The number of rows; what comes after the last whole one is cut off."""
+        """The number of rows; anything after the last complete one is cut off."""
         end = 0
         with self.rows.open("rb+") as stream:
             for data in stream:
@@ -330,7 +330,7 @@ class Output:
 
 
 def estimate(sweep: Sweep, workers: int, runs: int = 10) -> str:
-    """How long a sweep takes and how large its table is, from a few runs all over the plan."""
+    """Estimates a sweep's duration and the size of its table, from a few runs across the plan."""
     from time import perf_counter
 
     every = max(len(sweep) // runs, 1)

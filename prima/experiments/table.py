@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from pyarrow.parquet import ParquetFile
 
 BATCH = 10_000
-"""Rows that are converted at once."""
+"""The number of rows converted at once."""
 BATCH_READ = 100_000
-"""Rows that are read at once."""
+"""The number of rows read at once."""
 TYPES = {"duration": "number", "number": "number", "integer": "integer"}
 """Types of columns by kinds of values; others are strings."""
 
@@ -84,7 +84,7 @@ MEANINGS = {
 
 
 def columns(factors: Sequence[Factor]) -> list[Column]:
-    """The columns of a table; a factor of the scenario that HEAD has, as its seed, is there once."""
+    """The columns of a table; a factor that is also in HEAD, such as the seed, occurs once."""
     varied = [
         Column(
             one.path,
@@ -124,7 +124,7 @@ def dictionary(path: str, made: Iterable[Column]) -> str:
 
 
 def line(cells: Iterable[Json]) -> str:
-    """A row of CSV (RFC 4180); None is an empty cell, and no text a spreadsheet's formula."""
+    """A row of CSV (RFC 4180); None is an empty cell, and no text can be a spreadsheet formula."""
     made = io.StringIO()
     row = [harmless(one) if isinstance(one, str) else one for one in cells]
     csv.writer(made, lineterminator="\r\n").writerow(["" if one is None else one for one in row])
@@ -220,19 +220,18 @@ def _batches(
 
 
 def parquet_columns(path: Path, rows: int, columns: int, size: int) -> dict[str, list[Any]]:
-    """The columns of a Parquet file, as values of Python.
+    """The columns of a Parquet file, as Python values.
 
     Args:
         path: the file's.
         rows: how many it may have.
         columns: how many it may have.
-        size: how many bytes it may have when nothing in it is compressed, but that equal texts
-            count once.
+        size: how many bytes it may have uncompressed, where equal texts count once.
 
     Raises:
         UsageError: pyarrow is not installed.
         OSError: it cannot be opened.
-        ValueError: it is no such file, or has more than it may.
+        ValueError: it is not such a file, or exceeds a limit.
     """
     arrow = pyarrow_module()
     from pyarrow.parquet import ParquetFile
@@ -254,7 +253,7 @@ def parquet_columns(path: Path, rows: int, columns: int, size: int) -> dict[str,
 
 
 def _cells(file: ParquetFile, names: Sequence[str], size: int) -> dict[str, list[Any]]:
-    """The cells of an open file, piece by piece: a small file may hold very much.
+    """The cells of an open file, piece by piece: a small file may expand to very much data.
 
     Raises:
         ValueError: it holds more than ``size`` bytes, or two columns of one name.

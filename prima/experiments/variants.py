@@ -33,9 +33,9 @@ from prima.transcript.criteria import Criteria
 from prima.transcript.row import Row
 
 MOST_LOADED = 64
-"""Combinations of documents, worlds and robots that are kept loaded."""
+"""Maximum number of combinations of documents, worlds and robots kept loaded."""
 MOST_MESSAGE = 1_000
-"""Characters of a run's messages."""
+"""Maximum length of a run's messages (characters)."""
 CRITERIA = [one.name for one in fields(Criteria) if one.name != "delays"]
 
 
@@ -55,7 +55,7 @@ class Made:
 
 @dataclass(frozen=True, slots=True)
 class ExperimentSettings:
-    """What holds for all runs of an experiment."""
+    """Options of all runs of an experiment."""
 
     bound: int | None = None
     patience: int | None = None
@@ -64,7 +64,7 @@ class ExperimentSettings:
 
 
 class Stage:
-    """Scenarios with all that they name, and what of them is varied; it makes runs."""
+    """Scenarios with all files that they name, and the values to vary; makes runs."""
 
     def __init__(
         self,
@@ -83,7 +83,7 @@ class Stage:
 
         Raises:
             DocumentError: one has errors.
-            UsageError: one cannot be read, or a path means nothing in it.
+            UsageError: one cannot be read, or a path does not exist in it.
         """
         made = cls([(name, read_file(name)) for name in names], paths, settings)
         for index in range(len(names)):
@@ -103,7 +103,7 @@ class Stage:
         """Read the folders of all VoiceXML applications, as a run may name any of their files.
 
         Raises:
-            UsageError: they hold too much.
+            UsageError: they are too large.
         """
         assert isinstance(self.files, Kept)
         for loaded in self._cast.values():
@@ -122,7 +122,7 @@ class Stage:
         return {}
 
     def targets(self, scenario: int) -> list[ScenarioValue]:
-        """What is varied in a scenario."""
+        """The values that are varied in a scenario."""
         return self.scripts[scenario].targets
 
     def digests(self) -> list[str]:
@@ -132,7 +132,7 @@ class Stage:
         return sorted({hashlib.sha256(data).hexdigest() for data in contents})
 
     def problems(self, variant: Variant) -> list[Problem]:
-        """What is wrong with a variant before it runs."""
+        """The error of a variant before it runs, if any."""
         from prima.sim.rehearsal import check_cast
 
         try:
@@ -141,10 +141,10 @@ class Stage:
             return [one for one in error.problems if one.severity == "error"]
 
     def loaded(self, variant: Variant) -> Loaded:
-        """A scenario with its values, and all that it names.
+        """A scenario with its values, and all files that it names.
 
         Raises:
-            DocumentError: they do not go together.
+            DocumentError: they do not fit together.
         """
         script = self.scripts[variant.scenario]
         data = script.text(variant)
@@ -160,7 +160,7 @@ class Stage:
         return loaded if robot is None else with_robot(loaded, robot)
 
     def run(self, variant: Variant) -> Made:
-        """Make a run; whatever goes wrong is in its result."""
+        """Make a run; errors are in its result."""
         for name, number in self.settings.limits.items():
             setattr(LIMITS, name, number)
         try:
@@ -257,7 +257,7 @@ def failed_expectations(loaded: Loaded, transcript: api.Transcript) -> list[Fail
 
 
 def signature(rows: Sequence[Row]) -> str:
-    """The order of a run as 12 hexadecimal digits: equal if all rows are, but for their times."""
+    """The order of a run as 12 hexadecimal digits: equal if all rows are equal except for times."""
     text = "\n".join("\t".join(row.key) for row in rows)
     return hashlib.sha256(text.encode("utf-8", "replace")).hexdigest()[:12]
 
