@@ -1,43 +1,44 @@
-"""What must hold in every run, recomputed from a transcript's records alone.
+"""Invariants of every run, recomputed from a transcript's records alone.
 
-Nothing of the mediator is used here: working memory, trees, floor, engagement
-and reactions are built again from requests, starts, ends, cancellations,
-failures, events and windows, by the numbered rules of the mediation. What the
-mediator says about its own view (``floor``, ``suspend``, ``resume``, ``hold``,
-``decision``, ``stop``, ``stream-end``) is not believed: it is a claim that is
-compared with what was built. So are the extensions' ``held``, ``interrupt`` and
+No code of the mediator is used here: working memory, trees, floor, engagement
+and reactions are rebuilt from requests, starts, ends, cancellations,
+failures, events and windows, by the numbered rules of the mediation. The
+mediator's records of its own view (``floor``, ``suspend``, ``resume``, ``hold``,
+``decision``, ``stop``, ``stream-end``) are not trusted: they are claims that are
+compared with the rebuilt state. So are the extensions' ``held``, ``interrupt`` and
 ``inserted``, the rules of ``start``, ``decision`` and ``floor``, and the outcomes of ``floor``
 and ``cancel``.
 
-Believed is that a state was left of which nothing was there any more, if its application asks for
-nothing afterwards and does not end. Believed are the rule and outcome of ``unload``, and that an application has ended on its own:
-where that cancels nothing by E2, nothing else tells it, so a dropped ``unload`` is found only if
-something is cancelled, or the application was taken out of the robot. The rule of ``cancel`` is
-held to what justifies it, and where two rules do either is taken. An AB that
-follows one that failed (E1), or is in an interrupted unit (X2), may be told as linked or waiting
-when it is cancelled. Under a baseline policy a decision's
-rule is believed, and its start is held to it.
+The following is trusted: that a state was left of which nothing remained, if its application
+requests nothing afterwards and does not end; the rule and outcome of ``unload``; and that an
+application has ended on its own: if that cancels nothing by E2, no other record shows it, so a
+missing ``unload`` is found only if something is cancelled, or the application was removed from
+the robot. The rule of ``cancel`` has to be justified; where two rules apply, either is accepted.
+An AB that follows one that failed (E1), or is in an interrupted unit (X2), may be recorded as
+linked or waiting when it is cancelled. Under a baseline policy a decision's rule is trusted, and
+its start has to agree with it.
 
-Each file is a family of rules and stands on those before it: ``model``,
+Each file is a family of rules and builds on those before it: ``model``,
 ``table`` (Table 4.2), ``memory``, ``channel`` (K, C5), ``turn`` (X7), ``floor`` (F, C2),
-``extensions`` (X), ``late`` (X8, X10), ``streams`` (C, O1), ``patience`` (E6), ``selection`` (S), ``endings`` (O2, O3,
-E, U5), ``leaving`` (O3), ``telling`` (what records say of themselves), ``starts``, ``checker``.
+``extensions`` (X), ``late`` (X8, X10), ``streams`` (C, O1), ``patience`` (E6), ``selection`` (S),
+``endings`` (O2, O3, E, U5), ``leaving`` (O3), ``telling`` (fields common to records), ``starts``,
+``checker``.
 
-The extensions relax some invariants, and each is held to what it relaxes:
+The extensions relax some invariants, and each may do no more than that:
 
-- X1, X4, X9: an AB that the mediator put in starts before the one that it was put in
-  for (4), counts as its reaction's start (6), and is there only for a reason (11);
-- X2: only an AB marked so is interrupted, only for a reaction that starts in that
+- X1, X4, X9: an AB that the mediator inserted starts before the one for which it was
+  inserted (4), counts as its reaction's start (6), and is there only for a reason (11);
+- X2: only a restartable AB is interrupted, only for a reaction that starts in that
   instant (2), and it starts again from its beginning (3); a reaction that finds
   nothing else in its way does not wait (6);
-- X3: a held stream is open, so it keeps channel and floor (5, 7); it is held only as
-  long as was asked for, and no shorter (10);
+- X3: a held stream is open, so it keeps channel and floor (5, 7); it is held
+  exactly as long as requested (10);
 - X5: one free and one faithful motion share devices (1); a loop that only carries
-  what holds the floor may start beside it (7);
-- X8: a reaction that has a time goes when that is over, and a question may be answered before
-  it is asked (3, 16); X10: no other application's question takes a late answer (16);
+  the floor's stream may start beside it (7);
+- X8: a reaction with a time limit is deleted once that is over, and a question may
+  be answered before it is asked (3, 16); X10: no other application's question takes a late answer (16);
 - X9: the words are said once after each break in which others have spoken (11, 16);
-- X7: what an asker says to an answer starts though another has the floor (5), and before
+- X7: the asker's response to an answer starts though another has the floor (5), and before
   reactions (6); nobody speaks before it (16).
 """
 
@@ -65,19 +66,19 @@ def check(
 ) -> list[str]:
     """Violations of all invariants but 8 and 9 in a run; of 1 to 5 under a baseline policy.
 
-    10: a held stream is held as long as was asked for (X3). 11: what the mediator puts in
-    itself has a reason, and takes the place of what it is put in for (X1, X4). 12: of all
-    that could start, what S2 puts first starts first. 13: what the records say of floor,
-    suspensions, decisions and reasons to wait is so. 14: who moves and is not moved on is
-    stopped (F5). 15: requests are as Table 4.2, O1, C3, C5 and U5 have them. 16: who has just
-    answered hears the asker first (X7), and who hears a topic again its words (X9); no reaction waits
-    beyond its time (X8), and nobody else takes a late answer (X10).
+    10: a held stream is held as long as requested (X3). 11: what the mediator itself inserts
+    has a reason, and takes the place of the AB for which it is inserted (X1, X4). 12: of all
+    ABs that could start, the first by S2 starts first. 13: the records on floor, suspensions,
+    decisions and reasons to wait are true. 14: a body that moves without a next loop is
+    stopped (F5). 15: requests agree with Table 4.2, O1, C3, C5 and U5. 16: a user who has just
+    answered hears the asker first (X7), and one who hears a topic again hears its words (X9); no
+    reaction waits beyond its time (X8), and no other question takes a late answer (X10).
 
-    ``declared`` are the applications in the order of their declaration (S2f), where neither
-    the records nor the order of loading tells it; ``patience`` is E6's bound (ms), where they do
-    not tell it. ``calling`` are those that have subdialogs, or are VoiceXML:
-    a state of theirs need not have been left before another asks for something. Under ``none`` invariant 1 is expected to
-    fail: nothing keeps devices apart.
+    ``declared`` are the applications in the order of their declaration (S2f), if neither
+    the records nor the order of loading shows it; ``patience`` is E6's bound (ms), if the records
+    do not show it. ``calling`` are those that have subdialogs, or are VoiceXML: their states need
+    not have been left before another one makes a request. Under ``none`` invariant 1 is expected
+    to fail: nothing keeps devices apart.
     """
     checker = Checker(records, policy, declared, calling)
     if patience is not None:
@@ -86,7 +87,7 @@ def check(
 
 
 def callers(documents: Iterable[AnyDocument]) -> set[str]:
-    """Applications of which a state may go on while another asks: for ``calling``."""
+    """Applications whose states may go on while another makes requests: for ``calling``."""
     return {
         one.id
         for one in documents

@@ -1,4 +1,4 @@
-"""The channel (K1), and events: who is sensed, and what is reacted to (C5, E5)."""
+"""The channel (K1), and events: sensing the user, and the causes of reactions (C5, E5)."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ PATIENCE = 20_000
 
 
 class Channel(Memory):
-    """Events as they come in, and what K1 makes of them."""
+    """Inbound events, and their consequences for K1."""
 
     def note_event(self, record: Record) -> None:
-        """An event: of the user or not (K1), and what may name it as its cause (C5)."""
+        """An event: whether the user caused it (K1), and whether it may be a cause (C5)."""
         self.note_serial(record)
         name = record["event"]
         if name in ("human.found", "human.lost"):
@@ -24,7 +24,7 @@ class Channel(Memory):
             self.sensed_at = self.now
 
     def note_serial(self, record: Record) -> None:
-        """What a reaction may name as its cause; every event has a number of its own."""
+        """Note an event that reactions may name as their cause; event numbers are unique."""
         serial = record.get("serial")
         if serial is None:
             return
@@ -33,18 +33,18 @@ class Channel(Memory):
         self.serials[serial] = self.now
 
     def note_emergency(self, record: Record) -> None:
-        """E5: the record has the number that reactions to it name."""
+        """E5: the record has the number that reactions to it refer to."""
         self.halted = record["outcome"] == "pressed"
         self.released = self.released or not self.halted
         if not self.halted and not (record.get("data") or {}).get("resume", True):
             for tree in self.trees.values():
-                tree.hold = None  # X3 holds none that the operator does not resume
+                tree.hold = None  # X3 does not hold streams that the operator does not resume
         if record.get("serial") is None:
             self.report(15, "E5", f"the emergency stop is {record['outcome']} without a number")
         self.note_serial(record)
 
     def caused_rightly(self, ab: AB, record: Record) -> None:
-        """C5: a reaction names an event of this very instant; what is none names nothing."""
+        """C5: a reaction names an event of this instant; other requests name none."""
         cause = record.get("cause")
         if bool(record.get("reactive")) != (cause is not None):
             self.report(15, "C5", f"{ab.name} has the cause {cause}, reactive or not")
@@ -55,16 +55,16 @@ class Channel(Memory):
 
     @property
     def lapses_at(self) -> int:
-        """When streams come to engage nobody, if nobody is sensed until then."""
+        """When streams cease to engage the user, if the user is not sensed until then."""
         return self.sensed_at + PATIENCE
 
     @property
     def sensed(self) -> bool:
-        """K1: whether the user was seen, heard or felt not long ago."""
+        """K1: whether the user was seen, heard or felt recently."""
         return self.in_view or self.now < self.lapses_at
 
     def refused_by_channel(self, ab: AB) -> Tree | None:
-        """K1: the stream that engages the user, so that what leaves them waits."""
+        """K1: the stream that engages the user, so that ABs that leave the user wait."""
         if ab.leaves:
             for tree in self.trees.values():
                 if self.keeps_user(tree, ab):
@@ -72,7 +72,7 @@ class Channel(Memory):
         return None
 
     def keeps_user(self, tree: Tree, ab: AB) -> bool:
-        """K1: whether a stream engages the user whom another application's AB would leave."""
+        """K1: whether a stream engages the user when another application's AB would leave them."""
         return tree.app != ab.app and tree.open and tree.engages(self.sensed)
 
     def channel_kept(self, ab: AB, shown: str) -> None:

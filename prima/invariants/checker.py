@@ -1,4 +1,4 @@
-"""The checker: it goes through the records of one run, and asks every family of rules."""
+"""The checker goes through the records of one run and applies every family of rules."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Checker(Starts):
         self.note_end(record)
 
     def _until(self, time: int) -> None:
-        """Go on to the next instant that is recorded, past the moment in which K1 may lapse."""
+        """Advance to the next recorded instant, past the moment in which K1 may lapse."""
         self.pass_time(time)
         lapse = self.lapses_at
         if self.now < lapse < time and not self.in_view and not self.halted:
@@ -77,11 +77,11 @@ class Checker(Starts):
             self.apps.setdefault(record["app"], len(self.apps))
             self.gone_apps.discard(record["app"])
             self.loaded.add(record["app"])
-            self.left = {one for one in self.left if one[0] != record["app"]}  # it counts anew
+            self.left = {one for one in self.left if one[0] != record["app"]}  # it is counted anew
             self.asked.pop(record["app"], None)
 
     def _former(self, name: str) -> None:
-        """What still runs of an application that is loaded again is of another one (E2)."""
+        """ABs still running when an application is loaded again belong to its former run (E2)."""
         self.latest.pop(name, None)
         former = f"{name}, unloaded"
         known: list[Tree | AB] = [*self.trees.values(), *self.abs.values()]
@@ -152,14 +152,14 @@ class Checker(Starts):
             self.latest[app] = ab
 
     def _waits_from_now(self, ab: AB) -> None:
-        """C3: what is asked for in a window counts as following what has just ended (S2c)."""
+        """C3: requests in a window count as following the AB that has just ended (S2c)."""
         window = self.window_of(ab.app)
         self.wait(ab)
         if window is not None and not ab.inserted:
             ab.followed_at = self.now
 
     def _asked_rightly(self, ab: AB, record: Record, new: bool) -> None:
-        """What a request may say: its type's row, its stream, its cause, its unit's devices."""
+        """Check a request: its type's row, its stream, its cause, its unit's devices."""
         for text in [] if ab.inserted else contradictions(record):
             self.report(15, "K2", f"{ab.name} is {ab.command}, but {text}")
         if ab.unit is not None and not ab.devices <= ab.unit.devices:
@@ -173,7 +173,7 @@ class Checker(Starts):
             self.placed_rightly(ab, new)
 
     def _may_ask(self, record: Record) -> None:
-        """O3, E2, X6: nothing of a state that was left, or of an application that has ended."""
+        """O3, E2, X6: states that were left and applications that have ended make no requests."""
         name, app = record["behavior"], record["app"]
         if (app, record.get("state")) in self.left and record.get("unit") not in self.nested:
             self.report(3, "O3", f"{name} is requested, but its state was left")
@@ -183,7 +183,7 @@ class Checker(Starts):
             self.report(3, "X6", f"{name} is requested, but the robot lacks {record['command']}")
 
     def _made(self, record: Record, tree: Tree) -> AB:
-        """The AB that a request asks for."""
+        """The AB of a request."""
         cause = record.get("cause") if record.get("reactive") else None
         unit = self.abs.get(base(record["unit"])) if record.get("unit") else None
         return AB(
@@ -215,7 +215,7 @@ class Checker(Starts):
         )
 
     def _parents(self, record: Record) -> set[str]:
-        """U3: the ABs that a request follows and that are still there."""
+        """U3: the ABs that a request follows and that are still in memory."""
         parents = record.get("parents") or ([record["parent"]] if record.get("parent") else [])
         names = {base(parent) for parent in parents}
         unknown = [parent for parent in names if parent not in self.abs]
@@ -259,7 +259,7 @@ class Checker(Starts):
                 self.seen.add(ab.name)
 
     def _told_rightly(self) -> None:
-        """What the mediator says of an instant that is over."""
+        """Check the mediator's records of a finished instant."""
         if self.decision is not None:
             self.report(13, "S2", f"{self.decision['winner']} is selected, but does not start")
         self.floor_told_rightly()

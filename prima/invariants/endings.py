@@ -1,4 +1,4 @@
-"""Ends: who may end what (invariants 2 and 3), by O2, O3, U5 and E1 to E5."""
+"""Ends: what may end ABs (invariants 2 and 3), by O2, O3, U5 and E1 to E5."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from prima.invariants.late import Late
 from prima.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Cut, Record, Tree, base
 
 Fault = tuple[int | None, str, str]
-"""The invariant that a cancellation violates, by default that of its AB's phase; a rule; a text."""
+"""The invariant that a cancellation violates, by default that of its AB's phase, a rule, a text."""
 
 
 def _shown(cut: Cut) -> str:
@@ -16,10 +16,10 @@ def _shown(cut: Cut) -> str:
 
 
 class Endings(Late):
-    """What becomes of ABs that run, and why others are taken out."""
+    """How running ABs end, and why others are removed."""
 
     def maybe_silence(self, urgent: AB) -> None:
-        """O2: what runs on other devices finishes unheard, and nothing is recorded of that."""
+        """O2: ABs that run on other devices finish without a notice, which is not recorded."""
         for tree in self.trees.values():
             devices = self.tree_devices.get(tree.name, frozenset()).union(
                 *(ab.devices for ab in tree.members.values() if ab is not urgent)
@@ -50,7 +50,7 @@ class Endings(Late):
         self.remove(ab)
 
     def note_over(self, record: Record) -> None:
-        """E2: the run is over as all applications have ended, and what they still did."""
+        """E2: the run is over once all applications and the ABs that they left have ended."""
         if record["outcome"] == "over":
             for ab in self.running.values():
                 self.report(2, "E2", f"{ab.shown} still runs as the run ends")
@@ -76,19 +76,19 @@ class Endings(Late):
         if record["rule"] == "U5":
             for inner in self.running.values():
                 inner.silent = inner.silent or inner is ab or inner.inside(ab)
-            return  # a unit out of time ends when the Command of it that runs has
+            return  # a unit out of time ends when its running Command has
         self._loop_over(ab)
-        if not ab.inserted:  # what it was put in for goes on without it
+        if not ab.inserted:  # the AB that it was inserted for goes on without it
             self.failed.append(ab)
         self.remove(ab)
 
     def _loop_over(self, ab: AB) -> None:
-        """F5: a loop is over, and nothing moves the robot on unless something starts now."""
+        """F5: a loop is over: the robot moves on only if something starts now."""
         if ab.moves and ab.unit is None:
             self.halting[ab.name] = ab
 
     def note_cancel(self, record: Record) -> None:
-        """An AB is taken out of working memory."""
+        """An AB is removed from working memory."""
         ab = self.abs.get(base(record["behavior"]))
         if ab is None or ab.phase == GONE:
             self.report(3, "O2", f"{record['behavior']} is cancelled, but it is not there")
@@ -101,7 +101,7 @@ class Endings(Late):
 
     def _cancelled(self, ab: AB, record: Record) -> None:
         was, rule = ab.phase, record["rule"]
-        # What is taken out at once, a failed tree or a unit, may be told as it was before.
+        # ABs of a tree or unit removed together may be recorded with their former state.
         lately = was == WAITING and self.now in (ab.followed_at, ab.freed_at)
         behind = rule in ("E1", "X2") and lately
         if record["outcome"] not in ((was, LINKED) if behind else (was,)):
@@ -111,19 +111,19 @@ class Endings(Late):
             self._loop_over(ab)
         late = self.reaction_of(ab) if rule == "X8" else None
         waited = [one for one in ab.tree.members.values() if ab.name in one.parents]
-        self.remove(ab, ended=was == RUNNING)  # what ran has ended, cut short as it is
+        self.remove(ab, ended=was == RUNNING)  # what ran has ended, even if cut short
         if rule == "X8":
             self.comes_too_late(ab, was, late, waited)
 
     def _wanted(self, tree: Tree) -> frozenset[str]:
-        """The devices a tree wanted when the first of it was taken out, and has asked for since."""
+        """The devices that a tree wanted when its first AB was removed, and has requested since."""
         there = [one.devices for one in tree.members.values()]
         devices = self.tree_devices.get(tree.name, frozenset()).union(*there)
         self.tree_devices[tree.name] = devices
         return devices
 
     def _halted(self, ab: AB) -> None:
-        """E5: the emergency stop ends an AB, which waits from here on."""
+        """E5: the emergency stop ends an AB, which then waits."""
         if ab.phase == RUNNING:
             self._loop_over(ab)
         else:
@@ -133,7 +133,7 @@ class Endings(Late):
         self.wait(ab)
 
     def justified(self, cut: Cut) -> None:
-        """Invariants 2 and 3: why an AB was taken out of working memory."""
+        """Invariants 2 and 3: why an AB was removed from working memory."""
         reasons: dict[str, Callable[[Cut], Iterator[Fault]]] = {
             "O2": self._for_something_urgent,
             "O3": self._as_state_was_left,
@@ -144,7 +144,7 @@ class Endings(Late):
             "E5": self._in_emergency,
         }
         if cut.rule == "X8":
-            return  # looked at when it was cancelled
+            return  # checked when it was cancelled
         number = 2 if cut.was == RUNNING else 3
         if cut.rule not in reasons:
             text = f"{_shown(cut)} by a rule that cancels nothing"
@@ -154,11 +154,11 @@ class Endings(Late):
             self.report(only or number, rule, f"{_shown(cut)}{text}")
 
     def _units_cut(self, cut: Cut) -> list[AB]:
-        """Units that are cancelled with it: what is in them goes with them."""
+        """Units that are cancelled with it, along with their contents."""
         return [other.ab for other in self.cuts if cut.ab.inside(other.ab)]
 
     def _for_something_urgent(self, cut: Cut) -> Iterator[Fault]:
-        """O2: something wanted now needs a device of it, or of its tree where it did not run."""
+        """O2: a Command with ``now`` needs a device of it, or of its tree if it did not run."""
         devices = cut.tree_devices
         if cut.was == RUNNING:
             devices = cut.ab.devices.union(*(unit.devices for unit in self._units_cut(cut)))
@@ -167,7 +167,7 @@ class Endings(Late):
             yield None, "O2", " without a Command wanted now"
 
     def _only_listens(self, cut: Cut) -> Iterator[Fault]:
-        """O3, E2: what runs goes on, unless it listens or its unit is cancelled."""
+        """O3, E2: running ABs go on, unless they listen or their unit is cancelled."""
         if cut.was == RUNNING and not cut.ab.listening and not self._units_cut(cut):
             yield 2, "O3", ": it does not listen"
 
@@ -201,7 +201,7 @@ class Endings(Late):
             yield None, "E5", " without an emergency"
 
     def _given_up(self, cut: Cut) -> bool:
-        """O3: its state is left in this instant; of what ran, it or its application was left before."""
+        """O3: its state is left in this instant or, if it ran, it or its application before."""
         ab = cut.ab
         if cut.was == RUNNING:
             return self.is_given_up(ab)

@@ -9,7 +9,7 @@ from prima.invariants.floor import FloorRules
 from prima.invariants.model import AB, LINKED, RUNNING, WAITING, Record, Tree, base, ms
 
 RESTORING = ("set-position", "set-position-and-direction", "set-direction", "face-human")
-"""What X1 may put in, and the head's Command."""
+"""The Commands that X1 may insert, and the head's Command."""
 GOING = (
     "set-position",
     "set-position-and-direction",
@@ -17,16 +17,16 @@ GOING = (
     "set-speed-and-time",
     "tracking-human",
 )
-"""What changes where the robot stands, so that it relies on no place itself."""
+"""Commands that change the robot's place, and so do not rely on it."""
 FAR = 0.5
-"""Metres from its place at which a stream is not where it was (X1)."""
+"""The distance (m) from its place at which a stream counts as moved (X1)."""
 
 
 class Extensions(FloorRules):
-    """Each extension is held to what it relaxes; its records are claims to be justified."""
+    """Each extension may do only what it relaxes; its records are claims to be justified."""
 
     def put_in(self, ab: AB, before: AB | None, record: Record) -> None:
-        """X1, X4, X9: the mediator itself puts an AB in before another."""
+        """X1, X4, X9: the mediator itself inserts an AB before another."""
         rule, shown = ab.inserted, f"{ab.name} is put in"
         if rule not in ("X1", "X4", "X9") or rule.lower() not in self.extensions:
             self.report(11, rule, f"{shown} by a rule that is not on")
@@ -47,12 +47,12 @@ class Extensions(FloorRules):
             self._goes_first(ab.tree)
 
     def _goes_first(self, tree: Tree) -> None:
-        """X1, X9: all that waits in a stream waits for what is put in."""
+        """X1, X9: all ABs that wait in a stream wait for the inserted one."""
         for other in [one for one in self.waiting.values() if one.tree is tree]:
             self.join_first(other)
 
     def _takes_place(self, ab: AB, before: AB) -> None:
-        """What is put in takes the other's place in the order of S2, with its flag."""
+        """An inserted AB takes the other's place in the order of S2, with its reactive flag."""
         rule, shown = ab.inserted, f"{ab.name} is put in"
         first = before.phase == WAITING
         if not first and not before.parents & ab.parents:
@@ -65,7 +65,7 @@ class Extensions(FloorRules):
         ab.followed_at = before.followed_at
 
     def _restores(self, ab: AB, record: Record) -> None:
-        """X1: only what a suspended stream relies on is restored."""
+        """X1: only state that a suspended stream relies on is restored."""
         if not ab.tree.suspended:
             self.report(11, "X1", f"{ab.name} is put in, but {ab.tree.name} was not suspended")
         if record["command"] not in (*RESTORING, "move-head"):
@@ -75,7 +75,7 @@ class Extensions(FloorRules):
                 self.report(11, "X1", f"{ab.name} restores what {other.shown} restores already")
 
     def _says_so(self, ab: AB, before: AB, record: Record) -> None:
-        """X9: its stream's words, once after others have spoken into its pause."""
+        """X9: the stream's words are said once after others have spoken into its pause."""
         tree = ab.tree
         if not tree.words_due or record.get("text") != tree.words or ab.command != "speak":
             self.report(11, "X9", f"{ab.name} is put in, but {tree.name} has not to say it")
@@ -90,7 +90,7 @@ class Extensions(FloorRules):
             self.report(16, "X9", f"{ab.shown} resumes {ab.tree.name}, which has not said so")
 
     def note_words(self, ab: AB) -> None:
-        """X9: after a start: who speaks into the pause of which stream."""
+        """X9: after a start: note which streams' pauses it speaks into."""
         if "speaker" in ab.devices:
             for tree in self.trees.values():
                 if tree.app != ab.app and tree.suspended and tree.spoken:
@@ -99,7 +99,7 @@ class Extensions(FloorRules):
             ab.tree.words_due = False
 
     def stands_right(self, ab: AB) -> None:
-        """X1: a suspended stream goes on where the robot stood for it."""
+        """X1: a suspended stream resumes where the robot was for it."""
         place, robot = ab.tree.place, self.robot
         if (
             not ab.tree.suspended
@@ -112,7 +112,7 @@ class Extensions(FloorRules):
             self.report(11, "X1", f"{ab.shown} resumes at {robot}, but its stream was at {place}")
 
     def moved(self, ab: AB, record: Record) -> None:
-        """Take in where a Command's end, or a loop's, has brought the robot."""
+        """Note where a Command's end, or a loop's, has brought the robot."""
         data = record.get("data") or {}
         if not {"x", "y", "heading"} <= data.keys():
             return
@@ -123,7 +123,7 @@ class Extensions(FloorRules):
             ab.tree.place = self.robot
 
     def _connects(self, ab: AB, before: AB, record: Record) -> None:
-        """X4: the user is turned to once, where that was asked for, and they are not seen."""
+        """X4: the robot turns to the user once, if requested and the user is not seen."""
         if not before.connect or before.name in self.faced or self.in_view or before.starts:
             self.report(11, "X4", f"{ab.name} is put in, but {before.shown} needs no channel")
         if not (record["command"] == "face-human" and ab.devices >= before.devices):
@@ -131,7 +131,7 @@ class Extensions(FloorRules):
         self.faced.add(before.name)
 
     def note_interrupt(self, record: Record) -> None:
-        """X2: a restartable AB, and no other, gives way to a reaction that waits for it."""
+        """X2: only a restartable AB yields to a reaction that waits for it."""
         ab = self.running_one(record, "is interrupted")
         if ab is None:
             return
@@ -152,7 +152,7 @@ class Extensions(FloorRules):
         self.wait(ab)
 
     def starts_again(self, ab: AB, record: Record) -> None:
-        """X2: from its beginning, and whole."""
+        """X2: the AB restarts from its beginning, in full."""
         if not record.get("resumed"):
             self.report(3, "X2", f"{ab.shown} starts as if it had not been interrupted")
         before, now = (
@@ -164,7 +164,7 @@ class Extensions(FloorRules):
         ab.interrupted = False
 
     def interruptions(self) -> None:
-        """At the end of an instant: for what ABs were interrupted, and whether wholly."""
+        """At the end of an instant: why ABs were interrupted, and whether completely."""
         for ab, by, place in self.gave_way:
             if by.started <= place:
                 self.report(2, "X2", f"{ab.shown} is interrupted, but {by.shown} does not start")
@@ -173,7 +173,7 @@ class Extensions(FloorRules):
                 self.report(2, "X2", f"{ab.shown} runs on, but its unit {ab.unit.shown} does not")
 
     def wants_hold(self, tree: Tree, ab: AB, record: Record) -> None:
-        """X3: the latest request says how long; while one is held, requests join it."""
+        """X3: the latest request determines how long; while a stream is held, requests join it."""
         hold = None if record.get("hold") is None else ms(record["hold"])
         if hold != tree.hold or not self._says_nothing_of_holds(ab):
             tree.hold, tree.hold_state = hold, ab.state
@@ -189,10 +189,10 @@ class Extensions(FloorRules):
             self.report(10, "X3", f"{ab.name} does not join {held[0].name}, which is held for it")
 
     def _says_nothing_of_holds(self, ab: AB) -> bool:
-        """Whether its request leaves it as it is how long its stream is held.
+        """Whether its request leaves its stream's hold unchanged.
 
-        That is so of what the mediator puts in, of what is in a unit given beforehand, and of
-        a unit that spans questions: what is asked for inside says it.
+        That is so for inserted ABs, for those in a unit that was given beforehand, and for
+        a unit that spans questions: the requests inside determine it.
         """
         spans = ab.command == "iu" and ab.name not in self.groups
         return bool(ab.inserted) or spans or (ab.unit is not None and ab.unit.name in self.groups)
@@ -222,7 +222,7 @@ class Extensions(FloorRules):
             tree.joined = self.place
 
     def _begin_hold(self, tree: Tree, record: Record) -> None:
-        """X3: a stream of which nothing is left stays open, and takes the floor if it is free."""
+        """X3: a stream without ABs stays open, and takes the floor if it is free."""
         until = ms(record["data"]["until"])
         if tree.open or tree.hold is None or tree.app in self.gone_apps:
             self.report(10, "X3", f"{tree.name} is held, but nobody asks for it")
@@ -234,7 +234,7 @@ class Extensions(FloorRules):
             self.give_floor(tree, "X3")
 
     def holds_rightly(self) -> None:
-        """X3, at the end of an instant: nothing is held too long, or while it goes on."""
+        """X3, at the end of an instant: no stream is held too long, or while it goes on."""
         for tree in self.trees.values():
             if tree.until is not None and tree.until <= self.now:
                 self.report(10, "X3", f"{tree.name} is held beyond {tree.until} ms")
@@ -246,12 +246,12 @@ class Extensions(FloorRules):
                 self.report(10, "X3", f"{tree.name} is joined by nothing")
 
     def _ends_rightly(self, tree: Tree) -> None:
-        """X3: a stream ends only when nobody wants it held."""
+        """X3: a stream ends only if it need not be held."""
         if tree.hold is not None and "x3" in self.extensions and tree.app not in self.gone_apps:
             self.report(10, "X3", f"{tree.name} ends, but was to be held for {tree.hold} ms")
 
     def note_substitute(self, record: Record) -> None:
-        """X6: from here on, what the robot lacks is asked for no more."""
+        """X6: from now on, Commands that the robot lacks are not requested."""
         if "x6" not in self.extensions:
             self.report(3, "X6", f"{record['command']} is replaced, which is not on")
         self.lacking.add(record["command"])
@@ -259,7 +259,7 @@ class Extensions(FloorRules):
     def gives_way(self, ab: AB, reaction: AB) -> bool:
         """X2: whether an AB is certain to be interrupted for a reaction.
 
-        It may not be where the reaction ranks below it (S2a, S2b), or where its state
+        It may not be if the reaction ranks below it (S2a, S2b), or if its state
         was left, so that it must not start again (O3).
         """
         ab = ab.outermost
@@ -273,7 +273,7 @@ class Extensions(FloorRules):
             self.report(11, "X4", f"{ab.shown} starts, but the robot has not turned to the user")
 
     def close_trees(self) -> None:
-        """C1, F3: when everything of the instant is taken in, empty trees end."""
+        """C1, F3: once everything of the instant has been processed, empty trees end."""
         for tree in [tree for tree in self.trees.values() if not tree.open]:
             if self.begins.get((self.now, tree.name), -1) > self.place:
                 continue  # it is held from this instant on
@@ -286,7 +286,7 @@ class Extensions(FloorRules):
 
 
 def _reacts_to(by: AB | None, ab: AB) -> TypeGuard[AB]:
-    """X2: whether one is a reaction that waits for a device of the other."""
+    """X2: whether one AB is a reaction that waits for a device of the other."""
     waits = by is not None and by.phase == WAITING and by.cause is not None
     return by is not None and waits and bool(by.devices & ab.devices)
 

@@ -1,4 +1,4 @@
-"""The floor: who has it, whom it keeps waiting, and what is recorded of it (F1 to F6, C2)."""
+"""The floor: its holder, the ABs that it keeps waiting, and its records (F1 to F6, C2)."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from prima.invariants.turn import Turn
 
 
 class FloorRules(Turn):
-    """F1 to F6, with the suspensions and stops that follow from them."""
+    """Rules F1 to F6, with the suspensions and stops that follow from them."""
 
     # Who may start ----------------------------------------------------------------
 
     def carries_floor(self, ab: AB) -> bool:
-        """X5: whether what holds the floor does nothing but a motion that the AB can carry."""
+        """X5: whether the floor's stream does nothing but a motion that the AB can carry."""
         contending = self.floor[-1].contending() if self.floor else []
         return bool(contending) and all(
             ab.motion == "free" and self.composes(ab, other) and other.phase == RUNNING
@@ -22,19 +22,19 @@ class FloorRules(Turn):
         )
 
     def refused_by_floor(self, ab: AB, surely: bool = False) -> Tree | None:
-        """F2, X7: the stream that keeps the AB from starting, or that may keep it."""
+        """F2, X7: the stream that keeps, or may keep, the AB from starting."""
         return None if self.third_turn(ab) else self.kept_by_floor(ab, surely)
 
     def starts_aside(self, ab: AB) -> bool:
-        """X7: whether it starts although another has the floor, which it neither takes nor ends."""
+        """X7: whether it starts although another has the floor, without taking or ending it."""
         return self.third_turn(ab) and self.kept_by_floor(ab) is not None
 
     def kept_by_floor(self, ab: AB, surely: bool = False) -> Tree | None:
-        """F2: the stream that keeps the AB from starting, or that may keep it.
+        """F2: the stream that keeps, or may keep, the AB from starting.
 
-        "Another event" is left open by F2 where the floor's stream goes on from one
-        reaction to the next (O2, O3): another than the last is certain to be meant,
-        than an earlier one perhaps. Who reacts to an earlier one may start or wait.
+        F2 leaves "another event" open if the floor's stream goes on from one reaction to
+        the next (O2, O3): an event other than the last certainly counts, one other than an
+        earlier one perhaps. A reaction to an earlier one may start or wait.
         """
         holder = self.holder
         if holder is None or holder.app == ab.app:
@@ -49,7 +49,7 @@ class FloorRules(Turn):
         return None if self.carries_floor(ab) else holder
 
     def _contending(self, holder: Tree) -> list[AB]:
-        """F2: what of the floor's stream keeps others from starting."""
+        """F2: the ABs of the floor's stream that keep others from starting."""
         members = holder.members.values()
         if any(one.inserted and self.refused_by_channel(one) for one in members):
             # A way back that K1 keeps counts as itself, so that the two do not wait for each other.
@@ -57,7 +57,7 @@ class FloorRules(Turn):
         return holder.contending()
 
     def refused_by_topic(self, ab: AB) -> Tree | None:
-        """F6: the stream into which the AB would speak."""
+        """F6: the stream that the AB would interrupt by speaking."""
         if "speaker" not in ab.devices or ab.cause is not None or self.holder is ab.tree:
             return None
         return None if self.third_turn(ab) else self._topic_kept(ab)
@@ -69,21 +69,21 @@ class FloorRules(Turn):
         return None
 
     def kept_otherwise(self, ab: AB) -> bool:
-        """Whether F2 or F6 would keep it, but for X7."""
+        """Whether F2 or F6 would keep it waiting if not for X7."""
         if self.kept_by_floor(ab) is not None:
             return True
         speaks = "speaker" in ab.devices and self.holder is not ab.tree
         return speaks and self._topic_kept(ab) is not None
 
     def keeps_topic(self, other: AB, ab: AB) -> bool:
-        """F6: whether one that runs comes between two utterances of another application's topic."""
+        """F6: whether a running AB is between two utterances of another application's topic."""
         between = other.phase == RUNNING and not other.feedback and other.unit is None
         return between and other.app != ab.app and other.tree.spoken and self._speaks_next(other)
 
     def _speaks_next(self, ab: AB) -> bool:
-        """F6: whether something that speaks is linked behind it, without a loop between."""
+        """F6: whether a speaking AB is linked behind it, without a looping AB in between."""
         reached = [ab]
-        for before in reached:  # it grows
+        for before in reached:  # the list grows
             for child in ab.tree.members.values():
                 if child.phase != LINKED or before.name not in child.parents:
                     continue
@@ -96,7 +96,7 @@ class FloorRules(Turn):
     # Who has it -------------------------------------------------------------------
 
     def take_floor(self, ab: AB, reaction: int | None) -> None:
-        """F1: a reaction takes the floor. F3: so does what needs a device of the floor's stream."""
+        """F1: a reaction takes the floor. F3: so does an AB that needs the floor's devices."""
         tree, holder = ab.tree, self.holder
         if reaction is not None:
             tree.cause = reaction
@@ -106,12 +106,12 @@ class FloorRules(Turn):
         self.give_floor(tree, "F1" if reaction is not None else "F3")
 
     def _in_the_way(self, ab: AB, holder: Tree) -> bool:
-        """F3: whether a running or waiting AB of the floor's stream wants one of the devices."""
+        """F3: whether a running or waiting AB of the floor's stream needs one of the devices."""
         own = [other for other in holder.members.values() if other.contends]
         return any(ab.devices & other.devices for other in (*own, *holder.contending()))
 
     def give_floor(self, tree: Tree, rule: str) -> None:
-        """C2: who takes the floor suspends the others' streams; those rank alike (S2d)."""
+        """C2: the stream that takes the floor suspends others' streams, which rank alike (S2d)."""
         if self.holder is tree:
             return
         self.turned.append((tree.name, "taken", rule))
@@ -124,7 +124,7 @@ class FloorRules(Turn):
                 self.suspended_by[other.name] = tree.name
 
     def resume(self, ab: AB) -> None:
-        """C2: a suspended stream goes on. It keeps its place until the instant is over (S2d)."""
+        """C2: a suspended stream resumes. It keeps its place until the instant is over (S2d)."""
         tree = ab.tree
         if tree.suspended:
             tree.suspended = False
@@ -137,7 +137,7 @@ class FloorRules(Turn):
                 self.report(13, "C2", f"{tree.name} resumes by {ab.shown}; the records name {told}")
 
     def waits_suspended(self, ab: AB) -> None:
-        """C2: an application hears that another's keeps its suspended stream waiting."""
+        """C2: an application is notified that another's stream keeps its suspended one waiting."""
         by = ab.said[1] if ab.said is not None else ""
         other = by.replace("#", ":").partition(":")[0]
         if ab.tree.suspended and not ab.tree.waits and other not in ("", ab.app):
@@ -147,7 +147,7 @@ class FloorRules(Turn):
     # What the records say -----------------------------------------------------------
 
     def note_floor(self, record: Record) -> None:
-        """F3: a stack; only the named stream comes to its top, or leaves it."""
+        """F3: the floor is a stack; only the named stream is pushed, or removed."""
         tree, told = record["tree"], list(record.get("floor") or ())
         rest = [name for name in self.told_floor if name != tree]
         if told != (rest if record["outcome"] == "returned" else [*rest, tree]):
@@ -156,19 +156,19 @@ class FloorRules(Turn):
         self.told_turns.append((tree, record["outcome"], record["rule"]))
 
     def note_suspend(self, record: Record) -> None:
-        """A stream is said to be suspended."""
+        """A record says that a stream is suspended."""
         self.suspensions[record["tree"]] = record["by"]
 
     def note_resume(self, record: Record) -> None:
-        """A stream is said to be resumed."""
+        """A record says that a stream is resumed."""
         self.resumptions[record["tree"]] = record["behavior"]
 
     def note_stop(self, record: Record) -> None:
-        """An AB that moves the robot is said to be stopped (F5)."""
+        """A record says that an AB that moves the robot is stopped (F5)."""
         self.stops.add(base(record["behavior"]))
 
     def floor_told_rightly(self) -> None:
-        """After a start, and at an instant's end: the records tell of all, and of nothing else."""
+        """After a start, and at an instant's end: the records show all changes, and no others."""
         names = [tree.name for tree in self.floor]
         if names != self.told_floor:
             self.report(13, "F3", f"the floor is {names}; the records say {self.told_floor}")
@@ -185,9 +185,9 @@ class FloorRules(Turn):
         self.suspensions, self.suspended_by, self.resumptions = {}, {}, {}
 
     def _turns_told_rightly(self) -> None:
-        """F1, F3, X3: who took the floor and who gave it back, and by which rule.
+        """F1, F3, X3: which streams took the floor and gave it back, and by which rule.
 
-        In which order, the stack tells; that of several that end at once is open.
+        The stack shows their order; for several that end at once it is not defined.
         """
         if sorted(self.told_turns) != sorted(self.turned):
             text = f"the floor was {self.turned}; the records say {self.told_turns}"
@@ -197,7 +197,7 @@ class FloorRules(Turn):
     # Stops --------------------------------------------------------------------------
 
     def stopped_rightly(self) -> None:
-        """F5: who moved and is not moved on is stopped, and nobody else.
+        """F5: a body that moved and gets no next loop is stopped; there are no other stops.
 
         In an emergency every device goes to its safe state anyway (E5).
         """
@@ -212,5 +212,5 @@ class FloorRules(Turn):
 
     @staticmethod
     def ordered(names: Iterable[str]) -> list[str]:
-        """Names in an order that chance does not decide."""
+        """Names in a deterministic order."""
         return sorted(names)

@@ -1,4 +1,4 @@
-"""What comes too late: reactions that are given up (X8), and answers (X8, X10)."""
+"""Lateness: reactions that are given up (X8), and late answers (X8, X10)."""
 
 from __future__ import annotations
 
@@ -6,33 +6,33 @@ from prima.invariants.model import AB, WAITING, Record, ms
 from prima.invariants.selection import Selection
 
 A_MOMENT = 5
-"""Milliseconds by which a reaction that may start, and is outdone, may be older than its time."""
+"""Milliseconds by which a reaction that may start, but is outranked, may exceed its time."""
 LATE = 2000
-"""Milliseconds after a question's timeout in which the user may begin to answer it still."""
+"""Milliseconds after a question's timeout within which the user may still begin to answer."""
 
 
 class Late(Selection):
     """X8 and X10."""
 
     def hears_surely(self, ab: AB) -> None:
-        """C3: nothing can have made the mediator deaf for its end, as a unit that is left can."""
+        """C3: count an end that certainly has a notice; leaving a unit could suppress it."""
         if not (self.is_given_up(ab) or ab.silent or ab.unit):
             self.owed[ab.tree.name] += 1
 
     def hears_of(self, ab: AB) -> None:
-        """C3, O3, E2: an end opens a window, but not of what was given up before."""
+        """C3, O3, E2: an end opens a window, unless the AB was given up before."""
         if not self.is_given_up(ab):
             self.heard[ab.tree.name] += 1
 
     def reaction_of(self, ab: AB) -> AB | None:
-        """The root of the reaction that an AB is of, which has not started."""
+        """The root, not yet started, of the reaction to which an AB belongs."""
         ab = ab.outermost
         while ab.parents:
             ab = self.abs[min(ab.parents)]
         return ab if ab.phase == WAITING and ab.cause is not None else None
 
     def comes_too_late(self, ab: AB, was: str, root: AB | None, waited: list[AB]) -> None:
-        """X8: it is of a reaction whose time is over; what is left of that reacts at once."""
+        """X8: it belongs to a reaction whose time is over; the rest of that reacts at once."""
         shown = f"{ab.shown} ({was}) is given up"
         if "x8" not in self.extensions or root is None or root.fresh_until is None:
             self.report(3, "X8", f"{shown}, but is of no reaction that has a time")
@@ -44,14 +44,14 @@ class Late(Selection):
                 other.cause, other.fresh_until = root.cause, self.now
 
     def fresh(self, ab: AB) -> None:
-        """X8 at the end of an instant: no reaction waits whose time is over."""
+        """X8 at the end of an instant: no reaction waits after its time."""
         if ab.cause is None or ab.fresh_until is None or "x8" not in self.extensions:
             return
         if self.now > ab.fresh_until + A_MOMENT:
             self.report(16, "X8", f"{ab.shown} waits, but was worth it until {ab.fresh_until} ms")
 
     def answered_early(self, ab: AB, record: Record) -> None:
-        """X8, X10: a question is answered that nobody has asked yet."""
+        """X8, X10: a question is answered before it was asked."""
         self._may_be_answered(ab, record["rule"])
         self.answered_now(ab)
         self.hears_of(ab)
@@ -76,7 +76,7 @@ class Late(Selection):
             self.report(3, "X8", f"{ab.shown} is answered early, but is of no reaction that waits")
 
     def note_speech(self, record: Record) -> None:
-        """X10: whose question the user answers, if the time for that is just over."""
+        """X10: the application whose question the user answers just after its timeout."""
         if record["event"] != "speech" or record["actor"] != "user":
             return
         self.speech_at, self.speech = self.now, record.get("serial")
@@ -93,7 +93,7 @@ class Late(Selection):
         self.late_app = late
 
     def note_lapse(self, record: Record) -> None:
-        """X10: a question's time is over, or it is answered."""
+        """X10: a question has timed out or was answered."""
         ab = self.abs.get(record["behavior"])
         if ab is None or not ab.question:
             return

@@ -1,4 +1,4 @@
-"""Leaving a state (O3): what becomes of what it has asked for, and what goes on afterwards."""
+"""Leaving a state (O3): what becomes of its requests, and what goes on afterwards."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from prima.invariants.model import AB, RUNNING, Record, Tree
 
 
 class LeavingRules(Endings):
-    """O3, from the ``leave`` records. When a state is left is the application's own decision."""
+    """O3, from the ``leave`` records. The application itself decides when a state is left."""
 
     def note_leave(self, record: Record) -> None:
-        """A state is left: nothing new is asked for by it, and nothing of it starts."""
+        """A state is left: it makes no new requests, and none of its ABs starts."""
         app, state = record["app"], record["state"]
         if (app, state) in self.left:
             self.report(3, "O3", f"state {state} of {app} is left twice")
@@ -28,7 +28,7 @@ class LeavingRules(Endings):
             self.continuing[app] = going_on(mine)
 
     def asks(self, record: Record) -> None:
-        """O3: a state asks, and those before it were left, but where it may have been called."""
+        """O3: a state that makes a request has followed states that were left, unless called."""
         app, state = record["app"], record.get("state")
         if state is None:
             return
@@ -39,9 +39,9 @@ class LeavingRules(Endings):
         states.add(state)
 
     def left_at_end(self, app: str, outcome: str) -> None:
-        """O3: an application that ends leaves its state, and all that have called that.
+        """O3: an application that ends leaves its state, and all states that have called it.
 
-        One that is ended for an error or a limit may be cut off from them (E2).
+        One that is ended by an error or a limit may not reach them (E2).
         """
         if "error." in outcome or "defect" in outcome:
             return
@@ -55,14 +55,14 @@ class LeavingRules(Endings):
             self.asked[app].discard(state)
 
     def _hold_no_more(self, tree: Tree) -> None:
-        """X3: a state that is left has nothing held; what was held may be gone on with."""
+        """X3: a state that is left holds nothing; what was held may be continued."""
         if tree.until is None:
             tree.hold = None
         else:
             self.continuing[tree.app] = tree
 
     def left_rightly(self) -> None:
-        """O3 at the end of an instant: what is still there of states that were left only runs."""
+        """O3 at the end of an instant: the remaining ABs of states that were left are running."""
         for ab in self.abs_there():
             if not self.has_left(ab) or self.in_group(ab):
                 continue
@@ -83,6 +83,6 @@ class LeavingRules(Endings):
 
 
 def going_on(left: Iterable[AB]) -> Tree:
-    """O3: of several streams, the one that runs or of which an AB started last, else the latest."""
+    """O3: of several streams, the running one or the one whose AB started last, else the latest."""
     asked = sorted(left, key=lambda ab: int(ab.name.rpartition("#")[2]), reverse=True)
     return max((ab.tree for ab in asked), key=lambda tree: (tree.runs, tree.started))

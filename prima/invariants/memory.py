@@ -1,4 +1,4 @@
-"""Working memory, trees and floor, built again from what the records say has happened."""
+"""Working memory, trees and floor, rebuilt from the records."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from prima.invariants.model import (
 
 
 def in_ms(records: Iterable[Record]) -> list[Record]:
-    """Records with times in ms; transcripts, which begin with ``run``, have them in seconds."""
+    """Records with times in ms; transcripts, which begin with ``run``, use seconds."""
     made = list(records)
     if not made or made[0]["phase"] != "run":
         return made
@@ -30,7 +30,7 @@ def in_ms(records: Iterable[Record]) -> list[Record]:
 
 
 class Memory:
-    """What is known so far. The families of rules, which read it, stand on top of it."""
+    """The state so far. The families of rules build on it."""
 
     def __init__(
         self,
@@ -40,7 +40,7 @@ class Memory:
         calling: Collection[str] = (),
     ) -> None:
         self.calling = calling
-        """Applications whose states may follow others that were not left."""
+        """Applications whose states may follow ones that were not left."""
         self.records = in_ms(records)
         name, *extensions = policy.split("+")
         self.policy, _, self.first = name.partition(":")
@@ -57,25 +57,25 @@ class Memory:
         self.waiting: dict[str, AB] = {}
         self.running: dict[str, AB] = {}
         self.lapsed: tuple[str, int] | None = None
-        """Whose question was not answered in time last, and when (X10)."""
+        """The application whose question was the latest to time out, and when (X10)."""
         self.late_app = ""
-        """Who has asked what the user has just answered too late (X10)."""
+        """The application whose question the user has just answered too late (X10)."""
         self.speech: int | None = None
-        """The number of what the user said last, and when that was."""
+        """The number and time of the user's latest utterance."""
         self.speech_at = -1
         self.answered_tree: Tree | None = None
         """A stream with a question that was answered since the latest selection (X7)."""
         self.turn: AB | None = None
-        """What the asker says to an answer, while it has not started (X7)."""
+        """The asker's response to an answer, until it starts (X7)."""
         self.trees: dict[str, Tree] = {}
         self.floor: list[Tree] = []
         self.turned: list[tuple[str, str, str]] = []
-        """Which streams took the floor or gave it back since it was last compared, and by what."""
+        """Streams that took the floor or gave it back since the last comparison, with the rules."""
         self.told_turns: list[tuple[str, str, str]] = []
         self.windows: list[Tree] = []
         """Open windows, the latest last."""
         self.latest: dict[str, AB] = {}
-        """What each application has requested last, outside units (O1)."""
+        """The latest request of each application outside units (O1)."""
         self.halted = False
         self.in_view = False
         """Whether the camera sees the user (V4)."""
@@ -85,42 +85,42 @@ class Memory:
         """The time (ms)."""
         self.place = 0
         self.left: set[tuple[str, int | None]] = set()
-        """Applications, and states of theirs that they have left (O3)."""
+        """Applications, with the states that they have left (O3)."""
         self.asked: dict[str, set[int]] = {}
-        """The states of each application that have asked for something."""
+        """The states of each application that have made requests."""
         self.refused: set[str] = set()
-        """Applications of which something was refused, so that its state is not known (E3)."""
+        """Applications with a refused request, whose state is unknown (E3)."""
         self.requests: dict[str, Record] = {}
         """The request of each AB."""
         self.serials: dict[int, int] = {}
-        """The numbers of events, and when those happened."""
+        """The numbers of events, with their times."""
         self.numbered = any(one.get("serial") is not None for one in self.records)
-        """Whether events are recorded: some drivers ask for Commands without any."""
+        """Whether events are recorded: some drivers request Commands without any."""
         self.turns: dict[str, int] = {}
-        """When streams came to wait suspended, or went on: their applications may hear of it."""
+        """When streams began to wait suspended, or resumed: their applications may be notified."""
         self.told_floor: list[str] = []
         """The floor according to ``floor`` records."""
         self.extra_reactions = 0
         self.lacking: set[str] = set()
         self.seen: set[str] = set()
-        """ABs that have waited while the camera saw the user: X4 may be done with them."""
+        """ABs that have waited while the camera saw the user: X4 may be satisfied."""
         self.faced: set[str] = set()
         """ABs for which the robot turns to the user (X4)."""
         self.robot: tuple[float, float] | None = None
-        """Where the robot stands, as its devices have told."""
+        """Where the robot is, as reported by its devices."""
         self._read_ahead()
         self._new_instant()
 
     def _read_ahead(self) -> None:
-        """Note where each name occurs last, which only later records show."""
+        """Note the last occurrence of each name, which only later records show."""
         self.last: dict[str, int] = {}
         self.unit_ends: dict[str, int] = {}
         self.begins: dict[tuple[int, str], int] = {}
-        """When streams begin to be held, and the index of the record that says so."""
+        """When streams begin to be held, with the index of the record."""
         self.groups: set[str] = set()
-        """Units whose Commands are given beforehand (U4): others span questions (U5)."""
+        """Units whose Commands are given beforehand (U4); others span questions (U5)."""
         self.nested: set[str] = set()
-        """Units inside units: what is in them is requested when they start, and by nobody."""
+        """Units inside units: their contents are requested by no application, when they start."""
         for place, record in enumerate(self.records):
             if record.get("behavior") and record["phase"] != "halted":
                 self.last[base(record["behavior"])] = place
@@ -137,58 +137,58 @@ class Memory:
     def _new_instant(self) -> None:
         self.cuts: list[Cut] = []
         self.urgent: list[tuple[AB, int]] = []
-        """Commands wanted now in this instant, and their places (O2)."""
+        """Commands with ``now`` of this instant, and their indices (O2)."""
         self.failed: list[AB] = []
         self.unloaded: set[str] = set()
         self.taken_out: set[str] = set()
-        """Applications that are taken out of the robot in this instant, and whose end is untold."""
+        """Applications removed from the robot in this instant, whose end is not recorded yet."""
         self.released = False
         self.started_leaving: list[tuple[str, set[AB]]] = []
         self.started_inside: list[AB] = []
         self.tree_devices: dict[str, frozenset[str]] = {}
         self.gave_way: list[tuple[AB, AB, int]] = []
-        """X2: what was interrupted, for which reaction, and where the record is."""
+        """X2: interrupted ABs, with the reaction and the record's index."""
         self.suspensions: dict[str, str] = {}
-        """What ``suspend`` records have said since the latest start: streams, and by whom."""
+        """The ``suspend`` records since the latest start: streams, and what suspended them."""
         self.suspended_by: dict[str, str] = {}
         """The same as recomputed."""
         self.resumptions: dict[str, str] = {}
-        """Streams of which ``resume`` records have told, and by which AB."""
+        """The ``resume`` records: streams, and the AB that resumed them."""
         self.decision: Record | None = None
         """The latest decision, until its winner starts."""
         self.halting: dict[str, AB] = {}
-        """Feedback Commands that move and whose loop has ended or was cut in this instant."""
+        """Feedback Commands that move and whose loop ended or was cut in this instant."""
         self.stops: set[str] = set()
-        """Whom ``stop`` records have named in this instant (F5)."""
+        """The ABs that ``stop`` records have named in this instant (F5)."""
         self.driven = False
-        """Whether something that takes the locomotion has started in this instant."""
+        """Whether an AB that takes the locomotion has started in this instant."""
         self.ended_trees: set[str] = set()
         self.told_ends: set[str] = set()
-        """Streams that ended in this instant, and those that a record says did (C1)."""
+        """Streams that ended in this instant, and those that did so by a record (C1)."""
         self.resumed: list[Tree] = []
         self.left_now: set[tuple[str, int | None]] = set()
         self.continuing: dict[str, Tree] = {}
-        """The stream that an application goes on with, as it has left a state (O3)."""
+        """The stream that an application continues after leaving a state (O3)."""
         self.let_go: list[tuple[Tree, int | None]] = []
-        """Streams held no longer as a state was left, and which (X3)."""
+        """Streams no longer held because a state was left, and which state (X3)."""
         self.heard: Counter[str] = Counter()
-        """How many ends of each stream its application hears of, and has no window for yet (C3)."""
+        """The number of each stream's ends with a notice, but without a window so far (C3)."""
         self.owed: Counter[str] = Counter()
-        """The same of ends that it hears of for certain."""
+        """The same for ends that certainly have a notice."""
 
     def report(self, number: int, rule: str, text: str) -> None:
         """Note a violation of an invariant, with the rule behind it."""
         self.found.append(f"invariant {number} ({rule}) at {self.now / 1000:.3f} s: {text}")
 
     def wait(self, ab: AB) -> None:
-        """An AB waits from here on; what was said of an earlier wait of it says nothing."""
+        """An AB waits from now on; records of its earlier waits do not count."""
         self.running.pop(ab.name, None)
         ab.phase, ab.said = WAITING, None
         self.waiting[ab.name] = ab
         self.join_first(ab)
 
     def join_first(self, ab: AB) -> None:
-        """X1, X9: what waits in a stream waits for what is put first, but what is wanted now (O2)."""
+        """X1, X9: ABs of a stream wait for the inserted one, except those with ``now`` (O2)."""
         ways = ab.tree.put_first()
         if ways and not (ab.inserted or ab.urgent or ab.unit):
             ab.parents |= {way.name for way in ways}
@@ -196,7 +196,7 @@ class Memory:
             self.waiting.pop(ab.name)
 
     def remove(self, ab: AB, ended: bool = True) -> None:
-        """An AB leaves working memory; what waited for its end alone may start (S2c)."""
+        """An AB leaves working memory; ABs that waited only for its end may start (S2c)."""
         ab.phase = GONE
         self.waiting.pop(ab.name, None)
         self.running.pop(ab.name, None)
@@ -211,20 +211,20 @@ class Memory:
                 self.wait(other)
 
     def has_left(self, ab: AB) -> bool:
-        """O3: whether the state that has asked for it was left."""
+        """O3: whether the state that requested it was left."""
         return (ab.app, ab.state) in self.left
 
     def is_given_up(self, ab: AB) -> bool:
-        """O3, E2: whether nobody wants it any more: its state was left, or its application ended."""
+        """O3, E2: whether it is no longer wanted: its state was left, or its application ended."""
         return self.has_left(ab) or ab.app in self.gone_apps
 
     def in_group(self, ab: AB) -> bool:
-        """Whether it is part of a unit that runs, and finishes whole (U4)."""
+        """Whether it is part of a running unit, which finishes as a whole (U4)."""
         unit = ab.unit
         return unit is not None and unit.name in self.groups and unit.phase == RUNNING
 
     def running_one(self, record: Record, what: str) -> AB | None:
-        """The running AB that a record is about; a violation if it does not run."""
+        """The running AB that a record is about; a violation if it is not running."""
         ab = self.abs.get(base(record["behavior"]))
         if ab is None or ab.phase != RUNNING or ab.shown != record["behavior"]:
             phase = ab.phase if ab is not None else "unknown"
@@ -233,7 +233,7 @@ class Memory:
         return ab
 
     def composes(self, ab: AB, other: AB) -> bool:
-        """X5: a free motion carries a faithful one; both may use the same devices then."""
+        """X5: a free motion carries a faithful one, so both may use the same devices."""
         return "x5" in self.extensions and {ab.motion, other.motion} == COMPOSED
 
     def occupant(self, ab: AB) -> AB | None:

@@ -1,4 +1,4 @@
-"""What the records of a run make known: Atomic Behaviors, streams, and what happens to them."""
+"""The model of a run by its records: Atomic Behaviors, streams, and what happens to them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Record = Mapping[str, Any]
 
 
 def ms(seconds: float) -> int:
-    """Seconds in milliseconds, in which all times are compared."""
+    """Converts seconds to milliseconds, in which all times are compared."""
     return round(seconds * 1000)
 
 
@@ -19,12 +19,12 @@ BASELINES = ("fifo", "fair", "fixed", "none")
 EXTENSIONS = frozenset(("x1", "x2", "x3", "x4", "x5", "x6", "x7", "x8", "x9", "x10"))
 COMPOSED = {"free", "faithful"}
 SEEKING = ("active-sensing-human", "tracking-human")
-"""What searches or tracks, so that its stream engages whoever is away (K1)."""
+"""Commands that search or track, so that their stream engages even an absent user (K1)."""
 
 
 @dataclass(slots=True, eq=False)
 class AB:
-    """An Atomic Behavior as its records tell of it; a feedback Command is one, loops and all."""
+    """An Atomic Behavior by its records; a feedback Command is one, with all its loops."""
 
     name: str
     command: str
@@ -39,24 +39,24 @@ class AB:
     state: int | None
     unit: AB | None
     cause: int | None
-    """The event reacted to: the reactive flag, until it starts (C5)."""
+    """The event reacted to: the reactive flag, until the AB starts (C5)."""
     parents: set[str]
     requested: int
     place: int
     """The index of its request among the records."""
     urgent: bool = False
-    """Whether it is wanted now, and never linked (O2)."""
+    """Whether it is wanted ``now``, and so never linked (O2)."""
     restartable: bool = False
     motion: str = ""
     fresh_until: int | None = None
     """Until when (ms) the reaction is worth starting (X8)."""
     spans: bool = False
-    """Whether it is a unit that spans questions and states (U5), as far as X7 asks."""
+    """Whether it is a unit that spans questions and states (U5), for X7."""
     connect: bool = False
     """Whether the robot has to see the user, or turn to them, before it starts (X4)."""
     inserted: str = ""
     put_before: str = ""
-    """What it was put in before."""
+    """The AB before which it was inserted."""
     phase: str = WAITING
     loop: int = 0
     starts: int = 0
@@ -64,29 +64,29 @@ class AB:
     """The index of its latest start among the records."""
     started_at: int = -1
     reacted: int | None = None
-    """The event that it reacted to when it started last."""
+    """The event that it reacted to at its latest start."""
     followed_at: int = -1
-    """When a parent of it ended, its loop ended, or a window asked for it (S2c)."""
+    """When one of its parents or its loop ended, or a window requested it (S2c)."""
     freed_at: int = -1
-    """When the last of its parents ended or was cancelled."""
+    """When its last parent ended or was cancelled."""
     interrupted: bool = False
     """Whether it has to start again from its beginning (X2)."""
     broken: bool = False
     """Whether a loop of it was cut since it started, so that it starts afresh (U2)."""
     content: list[Record] = field(default_factory=list)
-    """What was requested inside the unit since it started from its beginning."""
+    """The requests inside the unit since it started from its beginning."""
     before: list[Record] = field(default_factory=list)
     """The same for the time before it was interrupted."""
     reacted_to: int | None = None
-    """The event that it was asked for because of."""
+    """The event that caused its request."""
     listening: bool = False
     silent: bool = False
-    """Whether O2 may have made the mediator deaf for it while it runs."""
+    """Whether O2 may have suppressed its notices while it runs."""
     said: tuple[str, str, int] | None = None
-    """Why it waits, because of whom, and since when, as its latest ``hold`` says."""
+    """Why it waits, because of what, and since when, by its latest ``hold``."""
 
     def inside(self, other: AB) -> bool:
-        """Whether this is a part of the unit ``other``, at any depth."""
+        """Whether this is part of the unit ``other``, at any depth."""
         unit = self.unit
         while unit is not None and unit is not other:
             unit = unit.unit
@@ -99,7 +99,7 @@ class AB:
 
     @property
     def contends(self) -> bool:
-        """Whether it runs or waits: what is linked, or inside what is, does neither."""
+        """Whether it runs or waits, that is, neither it nor a unit around it is linked."""
         return self.phase != LINKED and self.outermost.phase != LINKED
 
     @property
@@ -128,30 +128,30 @@ class Tree:
     cause: int | None = None
     causes: set[int] = field(default_factory=set)
     hold: int | None = None
-    """How long (ms) its latest request wants it held afterwards (X3)."""
+    """How long (ms) its latest request holds it afterwards (X3)."""
     hold_state: int | None = None
-    """The state that wants that."""
+    """The state that requested this."""
     until: int | None = None
     """Until when (ms) it is held."""
     joined: int = -1
-    """The index of the record by which a request joined it, being held."""
+    """The index of the record by which a request joined it while held."""
     requested: int = -1
     """The index of the latest request."""
     suspended: bool = False
     waits: bool = False
-    """Whether another application has kept an AB of it waiting since it was suspended."""
+    """Whether another application has kept one of its ABs waiting since it was suspended."""
     rank: int = 0
-    """The index of the start that suspended it: the later goes first (S2d)."""
+    """The index of the start that suspended it: the latest goes first (S2d)."""
     words: str = ""
-    """What is said when it resumes, by its latest request (X9)."""
+    """The words to say when it resumes, by its latest request (X9)."""
     words_due: bool = False
     """Whether another application has spoken since it was suspended (X9)."""
     place: tuple[float, float] | None = None
-    """Where the robot has gone for it, so that what follows relies on standing there (X1)."""
+    """Where the robot has gone for it: what follows relies on that place (X1)."""
 
     @property
     def open(self) -> bool:
-        """C1: something of it is in working memory, or a window is open; or it is held (X3)."""
+        """C1: whether it has an AB in working memory or an open window, or is held (X3)."""
         return bool(self.members) or self.windows > 0 or self.until is not None
 
     @property
@@ -160,18 +160,18 @@ class Tree:
         return any(ab.phase == RUNNING for ab in self.members.values())
 
     def contending(self) -> list[AB]:
-        """What runs and waits: linked ABs hold nothing back, but for what something was put in for."""
+        """The running and waiting ABs, and linked ones for which an AB was inserted."""
         return [one for ab in self.members.values() if ab.contends for one in self.meant(ab)]
 
     def meant(self, ab: AB) -> list[AB]:
-        """What an AB that was put in was put in for (X1, X4, X9), while that is there; else itself."""
+        """The ABs in memory for which an AB was inserted (X1, X4, X9); else the AB itself."""
         if not ab.inserted:
             return [ab]
         behind = [one for one in self.members.values() if ab.name in one.parents]
         return [meant for one in behind for meant in self.meant(one)] or [ab]
 
     def put_first(self) -> list[AB]:
-        """X1, X9: what is put in before all that waits in the stream."""
+        """X1, X9: the AB that is inserted before all that wait in the stream."""
         return [ab for ab in self.members.values() if ab.inserted in ("X1", "X9")]
 
     def seeks(self) -> bool:
@@ -179,9 +179,9 @@ class Tree:
         return any(ab.command in SEEKING for ab in self.contending())
 
     def engages(self, sensed: bool) -> bool:
-        """K1: from the first engaging start to the end, unless all that contends leaves.
+        """K1: from the first engaging start to the end, unless all contending ABs leave.
 
-        ``sensed``: whether somebody was seen, heard or felt not long ago.
+        ``sensed``: whether somebody was seen, heard or felt recently.
         """
         contending = self.contending()
         leaves = bool(contending) and all(ab.leaves for ab in contending)
@@ -190,7 +190,7 @@ class Tree:
 
 @dataclass(slots=True)
 class Cut:
-    """A cancellation that has to be justified by what else happens in its instant."""
+    """A cancellation that has to be justified by the other records of its instant."""
 
     ab: AB
     was: str

@@ -1,4 +1,4 @@
-"""Patience (E6): who has been kept from the speaker for too long, recomputed from the records."""
+"""Patience (E6): ABs kept from the speaker for too long, recomputed from the records."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from prima.invariants.model import AB, LINKED, WAITING, Record, base, ms
 from prima.invariants.streams import Streams
 
 SECONDS = 60
-"""How long an application may keep another from the speaker, unless the run says otherwise."""
+"""How long an application may keep another from the speaker by default."""
 
 
 class Patience(Streams):
-    """E6: how long others have kept each waiting AB from the speaker, and no rule has."""
+    """E6: how long others, and not rules, have kept each waiting AB from the speaker."""
 
     def _read_ahead(self) -> None:
         super()._read_ahead()
@@ -20,17 +20,17 @@ class Patience(Streams):
         self._kept: dict[str, int] = {}
         self._kept_now: set[str] = set()
         self._answered: dict[str, int] = {}
-        """When the user has answered a question of a stream last."""
+        """When the user last answered a question of each stream."""
         self._starving: set[str] = set()
-        """Of which it has been told."""
+        """The ABs that have been reported."""
 
     def pass_time(self, time: int) -> None:
-        """Count what goes by up to a time in which nothing changes."""
+        """Count the time that passes without changes."""
         for name in self._kept_now:
             self._kept[name] = self._kept.get(name, 0) + time - self.now
 
     def note_keepers(self) -> None:
-        """At the end of an instant: who is kept from the speaker from here on."""
+        """At the end of an instant: note which ABs are kept from the speaker from now on."""
         waiting = {ab.name: ab for ab in self.waiting.values() if ab.unit is None}
         kept = {name for name in self._kept if self.abs[name].phase in (WAITING, LINKED)}
         self._kept = {name: time for name, time in self._kept.items() if name in kept}
@@ -48,7 +48,7 @@ class Patience(Streams):
             return False
         by = ab.said[1] if ab.said is not None else ""
         if by.replace("#", ":").partition(":")[0] in ("", ab.app):
-            return False  # its own application keeps it
+            return False  # its own application keeps it waiting
         if self.kept_by_floor(ab) or self.refused_by_channel(ab):
             return False
         speaks = [
@@ -59,11 +59,11 @@ class Patience(Streams):
         return self.refused_by_topic(ab) is not None
 
     def overdue(self, ab: AB) -> bool:
-        """Whether others have kept it from the speaker for as long as they may."""
+        """Whether others have kept it from the speaker for the maximum time."""
         return self.patience > 0 and self._kept.get(ab.name, 0) >= self.patience
 
     def its_turn(self, ab: AB) -> bool:
-        """E6: whether it goes before all but reactions, as nobody has a word after an answer."""
+        """E6: whether it precedes all but reactions, since no response to an answer waits."""
         return self.overdue(ab) and not any(map(self._acknowledges, self.waiting.values()))
 
     def _acknowledges(self, ab: AB) -> bool:
@@ -72,7 +72,7 @@ class Patience(Streams):
         return ab.unit is None and just and "speaker" in ab.devices and not asks
 
     def note_answer(self, record: Record) -> None:
-        """A question that no device has ended was answered."""
+        """Note that a question was answered without a device's end."""
         ab = self.abs.get(base(record["behavior"]))
         asks = ab is not None and "speech-recognition" in ab.devices and ab.command != "iu"
         if ab is not None and asks and not record.get("inbound"):
@@ -85,7 +85,7 @@ class Patience(Streams):
             self.answered_tree = ab.tree
 
     def note_starve(self, record: Record) -> None:
-        """Who is said to starve waits; by E6 for as long as that takes."""
+        """An AB recorded as starving is waiting, and by E6 for the required time."""
         ab = self.abs.get(base(record["behavior"]))
         if ab is None or ab.name not in self.waiting:
             self.report(13, "E6", f"{record['behavior']} is said to starve, but does not wait")

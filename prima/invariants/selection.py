@@ -1,4 +1,4 @@
-"""Selection: who goes first (S2), who is held back (S3), and who need not wait (S1)."""
+"""Selection: what goes first (S2), what is held back (S3), and what need not wait (S1)."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from prima.invariants.patience import Patience
 
 RULES = ("S2a", "X7", "S2b", "E6", "S2c", "S2d", "S2e", "S2f")
 MANY = 8
-"""Of more that wait, not all need to be looked at."""
+"""If more ABs wait, not all need to be checked."""
 
 
 class Selection(Patience):
-    """S1 to S3, by the numbers that S2 compares."""
+    """Rules S1 to S3, by the numbers that S2 compares."""
 
     def active_app(self) -> str | None:
-        """S2b: whose stream is active: the floor's, else the open one that started last."""
+        """S2b: the active stream's application: the floor's, else of the open one started last."""
         if self.holder is not None:
             return self.holder.app
         begun = [tree for tree in self.trees.values() if tree.open and tree.started >= 0]
         return max(begun, key=lambda tree: tree.started).app if begun else None
 
     def key(self, ab: AB) -> tuple[Any, ...]:
-        """S2a to S2f, and the order of requests for what is equal in all of them."""
+        """S2a to S2f, then the order of requests."""
         reaction: tuple[int, int, bool] = (1, 0, False)
         if ab.cause is not None:
             reaction = (0, -ab.cause, ab.app != self.active_app())
@@ -41,7 +41,7 @@ class Selection(Patience):
         )
 
     def rule_between(self, ab: AB, other: AB) -> str:
-        """The part of S2 in which two differ first."""
+        """The first part of S2 in which two ABs differ."""
         pairs = zip(self.key(ab), self.key(other), strict=True)
         index = next((index for index, (one, two) in enumerate(pairs) if one != two), len(RULES))
         return RULES[index] if index < len(RULES) else "S2e"
@@ -51,7 +51,7 @@ class Selection(Patience):
         return self.key(ab) < self.key(other)
 
     def competing(self, ab: AB) -> list[AB]:
-        """All others that wait, outside units, and not because of it (X2); by S2."""
+        """All other ABs that wait, outside units and not because of this one (X2), sorted by S2."""
         aside = [one for one, by, _ in self.gave_way if by is ab]
         others = [
             one
@@ -66,14 +66,14 @@ class Selection(Patience):
         return kept is None and self.refused_by_turn(ab) is None
 
     def keeps_devices(self, ab: AB) -> bool:
-        """S3: whether it holds its devices back from what it outranks, while it waits."""
+        """S3: whether it holds its devices back from lower-ranked ABs while it waits."""
         return ab.cause is not None or self.overdue(ab) or self.third_turn(ab)
 
     def held_back(self, ab: AB, winner: AB | None = None, surely: bool = True) -> bool:
-        """S3: whether a reaction that outranks it wants one of its devices, and may start.
+        """S3: whether a reaction that outranks it needs one of its devices, and may start.
 
-        Where it is asked who could start in the place of a winner, that holds nothing back.
-        ``surely`` says how F2 is read for reactions to which it is open.
+        When determining what could start instead of a winner, the winner holds nothing back.
+        ``surely`` says how to read F2 for reactions for which it is open.
         """
         return any(
             other is not winner
@@ -87,7 +87,7 @@ class Selection(Patience):
         )
 
     def could_start(self, ab: AB, winner: AB, surely: bool = True) -> bool:
-        """S1: whether nothing keeps a waiting AB from starting in the place of another."""
+        """S1: whether nothing keeps a waiting AB from starting instead of another."""
         return self.kept_by_s3(ab) and not self.held_back(ab, winner, surely)
 
     def kept_by_s3(self, ab: AB) -> bool:
@@ -108,7 +108,7 @@ class Selection(Patience):
     # At a start ---------------------------------------------------------------------
 
     def allowed(self, ab: AB, shown: str) -> None:
-        """Invariants 5, 6, 7 and 12: nobody that could start in its place goes before it."""
+        """Invariants 5, 6, 7 and 12: no AB that could start instead outranks it."""
         holder = self.refused_by_floor(ab, surely=True)
         if holder is not None:
             number = 7 if ab.leaves else 5
@@ -126,10 +126,10 @@ class Selection(Patience):
                 self._passed_over(other, ab, shown)
 
     def _passed_over(self, other: AB, ab: AB, shown: str) -> None:
-        """S2, S3: what outranks the AB that starts must be unable to start in its place."""
+        """S2, S3: ABs that outrank the starting one must be unable to start instead."""
         rule = self.rule_between(other, ab)
         if self.keeps_devices(other) and other.devices & ab.devices:
-            # S3: whether or not its other devices are free, it holds this one back.
+            # S3: it holds this device back whether or not its other devices are free.
             number = 5 if other.leaves else 6
             self.report(number, "S3", f"{shown} starts before the reaction {other.shown}")
         elif self.could_start(other, ab):
@@ -137,7 +137,7 @@ class Selection(Patience):
             self.report(number, rule, f"{shown} starts before {other.shown}, which outranks it")
 
     def admitted_by(self, ab: AB) -> str:
-        """The rule by which an AB starts with which nothing competes."""
+        """The rule by which an AB without competitors starts."""
         holder = self.holder
         if self.carries_floor(ab):
             return "X5"
@@ -148,14 +148,14 @@ class Selection(Patience):
         return "S4" if self.running else "S1"
 
     def started_by(self, ab: AB, record: Record) -> None:
-        """A start says the rule of its decision; inside a unit, which is not decided, the unit's."""
+        """A start has the rule of its decision; inside a unit, without a decision, the unit's."""
         told, shown = self.decision, record["behavior"]
         if ab.unit is not None:
             expected = "U4" if ab.unit.name in self.groups else "U5"
         elif told is not None and told["winner"] == shown:
             expected = told["rule"]
         else:
-            return  # that nobody decided so is found elsewhere
+            return  # a missing decision is found elsewhere
         if record["rule"] != expected:
             self.report(13, "S1", f"{shown} starts by {expected}, not {record['rule']}")
 
@@ -184,7 +184,7 @@ class Selection(Patience):
         return bool(other.devices & ab.devices) and not self.composes(ab, other)
 
     def _losers_told_rightly(self, ab: AB, shown: str, told: Record, needed: set[str]) -> None:
-        """S2: the losers could have started; all are named, or of many as many as fit."""
+        """S2: the losers could have started; all are named, up to the limit."""
         losers, count = set(told["losers"]), told["losers_count"]
         allowed = {other.shown for other in self.competing(ab) if self.kept_by_s3(other)}
         if strangers := losers - allowed:
@@ -197,7 +197,7 @@ class Selection(Patience):
             self.report(13, "S2", f"{shown} is said to start before {count}, not {len(needed)}")
 
     def _rule_told_rightly(self, ab: AB, shown: str, rule: str, rivals: list[AB]) -> None:
-        """S2: what decided between the winner and the first that could have started, if any."""
+        """S2: the rule that decided between the winner and the first possible rival, if any."""
         if not rivals:
             expected = self.admitted_by(ab)
             if rule != expected:
@@ -238,9 +238,9 @@ class Selection(Patience):
                 self.report(6, "S1", f"the reaction {ab.shown} is late")
 
     def _reason_told(self, ab: AB) -> None:
-        """Why an AB waits is told by its latest ``hold``, which is true as long as it waits."""
+        """An AB's latest ``hold`` says why it waits, and is true as long as it does."""
         if ab.said is None:
-            if not ab.interrupted:  # the record of that says it
+            if not ab.interrupted:  # its own record says it
                 self.report(13, "S1", f"nothing says why {ab.shown} waits")
             return
         rule, by, when = ab.said
@@ -249,11 +249,11 @@ class Selection(Patience):
             self.report(13, rule, f"{ab.shown} is {still}said to wait by {rule} for {by}")
 
     def _held_by(self, ab: AB, rule: str, by: str) -> bool:
-        """Whether a reason to wait is true."""
+        """Whether a reason for a wait is true."""
         if rule == "F2":
             kept = self.refused_by_floor(ab, surely=False)
             return kept is not None and by == kept.name
-        if rule == "K1":  # another stream than the first that keeps it may be named
+        if rule == "K1":  # a stream other than the first that keeps it may be named
             tree = self.trees.get(by)
             return ab.leaves and tree is not None and self.keeps_user(tree, ab)
         other = self.abs.get(base(by))
@@ -273,11 +273,11 @@ class Selection(Patience):
         return False
 
     def _ahead(self, other: AB, ab: AB) -> bool:
-        """Baselines: whether another waiting AB may rank first and hold a device back."""
+        """Baselines: whether another waiting AB may rank first and hold back a device."""
         if other is ab or other.unit is not None or not other.devices & ab.devices:
             return False
         if self.policy == "fair":
-            return True  # whose turn it is depends on more than these two
+            return True  # the turn depends on more than these two
         if self.policy == "fixed":
             top = self.first or min(self.apps, key=self.apps.__getitem__)
             if (other.app == top) != (ab.app == top):
@@ -285,7 +285,7 @@ class Selection(Patience):
         return other.requested <= ab.requested
 
     def note_hold(self, record: Record) -> None:
-        """The mediator says why an AB waits."""
+        """A record says why an AB waits."""
         ab = self.abs.get(base(record["behavior"]))
         if ab is None or ab.phase != WAITING:
             self.report(13, "S1", f"{record['behavior']} is said to wait, but does not")

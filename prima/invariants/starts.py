@@ -1,4 +1,4 @@
-"""Starts: what may start, and what follows from that."""
+"""Starts: what may start, and the consequences."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from prima.invariants.telling import Telling
 
 
 class Starts(Telling):
-    """Each start is held to all rules that can keep an AB from it."""
+    """Checks each start against all rules that can keep an AB from starting."""
 
     def note_start(self, record: Record) -> None:
         """An AB, or a loop of it, starts."""
@@ -64,7 +64,7 @@ class Starts(Telling):
     def _run(self, ab: AB) -> None:
         self.waiting.pop(ab.name, None)
         ab.reacted = ab.cause
-        if self.third_turn(ab):  # it goes before all reactions that wait (X7)
+        if self.third_turn(ab):  # it precedes all waiting reactions (X7)
             ab.reacted = max(one.cause or 0 for one in (ab, *self.waiting.values()))
         self.turn = None if ab is self.turn else self.turn
         ab.phase = RUNNING
@@ -80,7 +80,7 @@ class Starts(Telling):
         ab.tree.engaged = ab.tree.engaged or ab.engages
 
     def _may_run(self, ab: AB, record: Record) -> None:
-        """Invariants 3 and 4: asked for, not over, not running, and its parents have ended."""
+        """Invariants 3 and 4: requested, not over, not running, and its parents have ended."""
         shown = record["behavior"]
         if ab.phase == GONE:
             self.report(3, "U1", f"{shown} starts again: it was over")
@@ -107,7 +107,7 @@ class Starts(Telling):
                 self.report(1, "S1", f"{shown} starts while {other.shown} runs on {what}")
 
     def _reaction_of(self, ab: AB, record: Record) -> int | None:
-        """The event that a starting AB reacts to. E4's bound makes a reaction of what starved."""
+        """The event that a starting AB reacts to. E4's bound makes a starving AB a reaction."""
         if ab.cause is None and record.get("reactive"):
             self.extra_reactions -= 1
             return self.extra_reactions

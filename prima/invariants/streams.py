@@ -6,7 +6,7 @@ from prima.invariants.extensions import Extensions
 from prima.invariants.model import AB, GONE, LINKED, RUNNING, WAITING, Cut, Record, Tree
 
 A_MOMENT_LATER = 1
-"""Milliseconds after a selection by which an application has heard of it."""
+"""Milliseconds after a selection within which an application is notified of it."""
 
 
 class Streams(Extensions):
@@ -27,7 +27,7 @@ class Streams(Extensions):
             self.report(15, "C3", f"a window of {tree.name} closes, which is not open")
 
     def _open_window(self, tree: Tree) -> None:
-        """C3: for an end that is heard, or as the stream waits suspended or goes on (C2)."""
+        """C3: a window opens for an end with a notice, or when a stream waits or resumes (C2)."""
         if self.windows:
             self.report(15, "C3", f"a window of {tree.name} opens within another")
         if self.owed[tree.name]:
@@ -43,7 +43,7 @@ class Streams(Extensions):
         self.windows.append(tree)
 
     def windows_told_rightly(self) -> None:
-        """C3 at the end of an instant: every window is closed, and who hears of an end had one."""
+        """C3 at the end of an instant: all windows are closed; each end with a notice had one."""
         for tree in self.windows:
             self.report(15, "C3", f"a window of {tree.name} is not closed")
         for name in self.ordered(+self.owed):
@@ -51,7 +51,7 @@ class Streams(Extensions):
                 self.report(15, "C3", f"an end of {name} is heard, but no window opens")
 
     def note_stream_end(self, record: Record) -> None:
-        """C1: nothing is lost with a stream; its end is told when it ends, and once."""
+        """C1: a stream ends without ABs; its end is recorded when it happens, and once."""
         self.told_ends.add(record["tree"])
         tree = self.trees.get(record["tree"])
         if tree is None:
@@ -70,7 +70,7 @@ class Streams(Extensions):
             self.report(13, "C1", f"the end of {name} is {ended}")
 
     def window_of(self, app: str) -> Tree | None:
-        """The window in which the application is."""
+        """The application's current window."""
         return next((tree for tree in reversed(self.windows) if tree.app == app), None)
 
     def placed_rightly(self, ab: AB, new: bool) -> None:
@@ -96,13 +96,13 @@ class Streams(Extensions):
             self._follows_rightly(ab, new)
 
     def _goes_on_here(self, ab: AB) -> bool:
-        """Whether it follows in that tree: in its own request, one wanted now, or a hold (X3)."""
+        """Whether it follows in that tree: in its own request, one with ``now``, or a hold (X3)."""
         follows = any(self.abs[name].requested == self.now for name in ab.parents)
         urgent = any(one.tree is ab.tree for one, _ in self.urgent)
         return follows or urgent or self.joined_now(ab.tree)
 
     def _urgent_placed(self, ab: AB) -> None:
-        """O2: it is never linked, and continues what it cancels, before all what ran."""
+        """O2: it is never linked, and continues what it cancels, preferably what ran."""
         if ab.parents:
             self.report(15, "O2", f"{ab.name} is wanted now, but waits for {sorted(ab.parents)}")
         cut = self._cut_for(ab)
@@ -116,19 +116,19 @@ class Streams(Extensions):
                 self._cancelled_whole(tree, ab)
 
     def _cut_for(self, urgent: AB) -> list[Cut]:
-        """O2: what was cancelled of its application since the request before it."""
+        """O2: the ABs of its application cancelled since the previous request."""
         mine = [one for one in self.abs.values() if one.app == urgent.app]
         since = max((one.place for one in mine if one.place < urgent.place), default=-1)
         cut = [one for one in self.cuts if one.rule == "O2" and one.place > since]
         return [one for one in cut if one.ab.app == urgent.app]
 
     def _ran(self, cut: Cut, urgent: AB) -> bool:
-        """O2: whether something of a tree ran when an AB of it was cancelled."""
+        """O2: whether an AB of a tree ran when one of its ABs was cancelled."""
         others = [one for one in cut.ab.tree.members.values() if one is not urgent]
         return cut.was == RUNNING or any(one.phase == RUNNING for one in others)
 
     def _cancelled_whole(self, tree: Tree, urgent: AB) -> None:
-        """O2: nothing is left of a tree that wanted one of the devices but what runs on others."""
+        """O2: a tree that wanted one of the devices only has ABs running on others left."""
         own = [ab for ab in tree.members.values() if ab is not urgent and ab.unit is None]
         before = [ab for ab in own if ab.requested < self.now]
         if not any(ab.devices & urgent.devices for ab in before):
@@ -138,7 +138,7 @@ class Streams(Extensions):
                 self.report(15, "O2", f"{ab.shown} is left, though {urgent.name} is wanted now")
 
     def _reaction_placed(self, ab: AB, new: bool) -> None:
-        """O1: a reaction is the root of a new tree, or of what it continues (O3, X3)."""
+        """O1: a reaction is the root of a new tree, or of one that it continues (O3, X3)."""
         if self._follows(ab):
             self.report(15, "O1", f"the reaction {ab.name} waits for {self._follows(ab)}")
         alike = any(
@@ -159,7 +159,7 @@ class Streams(Extensions):
         return new if on is None else on is ab.tree
 
     def _follows_rightly(self, ab: AB, new: bool) -> None:
-        """O1: it follows the latest Command of its application that is still there."""
+        """O1: it follows the latest Command of its application that is still in memory."""
         latest = self.latest.get(ab.app)
         if latest is not None and latest.command == "iu" and latest.phase != GONE:
             return  # the latest Command may be one inside, which has ended
@@ -173,18 +173,18 @@ class Streams(Extensions):
             self.report(15, "O1", f"{ab.name} does not wait for {latest.name}")
 
     def _follows(self, ab: AB) -> list[str]:
-        """What it was asked for behind: a way back is no such thing, all of a stream joins it (X1)."""
+        """The ABs that it was requested to follow; a way back, which all join, is not one (X1)."""
         return [name for name in self.ordered(ab.parents) if not self.abs[name].inserted]
 
     def _begins_par(self, ab: AB) -> bool:
-        """Whether it may be a branch beside one that was asked for in this instant."""
+        """Whether it may be a branch beside one requested in this instant."""
         return any(
             other is not ab and other.requested == self.now and other.unit is None
             for other in ab.tree.members.values()
         )
 
     def left_waiting(self) -> None:
-        """E2, at the end of an instant: nothing of an application that has ended waits."""
+        """E2, at the end of an instant: no AB of an application that has ended waits."""
         for ab in self.abs_there():
             if ab.app in self.gone_apps and ab.phase in (WAITING, LINKED) and not self.in_group(ab):
                 self.report(3, "E2", f"{ab.shown} is {ab.phase}, but {ab.app} has ended")

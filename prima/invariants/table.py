@@ -1,4 +1,4 @@
-"""Table 4.2, once more: what each type of Command occupies, and what becomes of the user."""
+"""Table 4.2, independently: the devices of each type of Command, and its effect on the user."""
 
 from __future__ import annotations
 
@@ -52,11 +52,11 @@ MADE: Mapping[str, CommandRow] = {
     "waltz": row("locomotion localization"),
     "point-by-laser": row("laser"),
 }
-"""What the makers of the robots of generated runs have added."""
+"""Commands added by the robots of generated runs."""
 
 
 def contradictions(record: Record) -> Iterable[str]:
-    """What of a request is not as the table has it. A type that is in no table is not judged."""
+    """How a request differs from the table, if it does. Types outside the table are not checked."""
     command, devices = record["command"], set(record["devices"])
     leaves = bool(record.get("leaves"))
     if (record["priority"] == "low") != leaves:

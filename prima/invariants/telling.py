@@ -1,4 +1,4 @@
-"""What each record says of itself: whose it is, of which stream and Command, by which rule."""
+"""Fields common to records: their application, stream, Command and rule."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ ALONE = {
     "held": "X3",
     "substitute": "X6",
 }
-"""What is always done by one and the same rule."""
+"""Phases that always have the same rule."""
 SAME = ("app", "tree", "command", "text", "unit")
-"""Fields that every record of an AB has as its request has them."""
+"""Fields that every record of an AB shares with its request."""
 
 
 class Telling(LeavingRules):
-    """Holds each record to the request, stream or rule that it is about."""
+    """Checks each record against the request, stream or rule that it is about."""
 
     def tells_rightly(self, record: Record) -> None:
-        """Before a record is taken in."""
+        """Check a record before it is processed."""
         phase = record["phase"]
         rule = ALONE.get(phase)
         if rule is not None and record["rule"] != rule:

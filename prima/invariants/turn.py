@@ -1,4 +1,4 @@
-"""The third turn (X7): what an asker says to an answer, recomputed from the records."""
+"""The third turn (X7): the asker's response to an answer, recomputed from the records."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from prima.invariants.model import AB, LINKED, WAITING, Record, Tree, base
 
 
 class Turn(Channel):
-    """X7: nobody speaks between a user's answer and what the asker says to it."""
+    """X7: nobody speaks between a user's answer and the asker's response."""
 
     def note_turn(self, record: Record) -> None:
-        """A question ends: with the user's answer, or otherwise."""
+        """A question ends, with the user's answer or otherwise."""
         ab = self.abs.get(base(record["behavior"]))
         asks = ab is not None and "speech-recognition" in ab.devices and ab.command != "iu"
         answered = not record.get("inbound") and record.get("outcome") == "filled"
@@ -18,7 +18,7 @@ class Turn(Channel):
             self.answered_tree = ab.tree
 
     def look_for_turn(self) -> None:
-        """When selection begins: what the asker says, if anything."""
+        """When selection begins: note the asker's response, if any."""
         if self.halted:
             return
         if self.turn is not None and self.turn.phase not in (LINKED, WAITING):
@@ -44,18 +44,18 @@ class Turn(Channel):
     def _way_to(self, ab: AB) -> list[AB]:
         """An AB and all that has to end before it may start."""
         found = [ab]
-        for one in found:  # it grows
+        for one in found:  # the list grows
             found += [
                 parent for name in sorted(one.parents) if (parent := self.abs[name]) not in found
             ]
         return found
 
     def third_turn(self, ab: AB) -> bool:
-        """X7: whether it is what the asker owes to an answer, or comes before that."""
+        """X7: whether it is the asker's response to an answer, or comes before it."""
         return self.turn is not None and ab in self._way_to(self.turn)
 
     def refused_by_turn(self, ab: AB) -> AB | None:
-        """X7: the utterance that goes before whatever else would be said."""
+        """X7: the utterance that precedes everything else to be said."""
         turn = self.turn
         if turn is None or turn.phase != LINKED or "speaker" not in ab.devices:
             return None
@@ -64,6 +64,6 @@ class Turn(Channel):
         return turn
 
     def _is_kept(self, ab: AB) -> bool:
-        """Whether an AB waits on whose devices something runs: nobody waits for that (X7)."""
+        """Whether a waiting AB's devices are occupied: nobody waits for such an AB (X7)."""
         others = (other for other in self.running.values() if other.devices & ab.devices)
         return ab.phase == WAITING and any(other.unit is None for other in others)
