@@ -1,6 +1,6 @@
 """The package's functions: load, validate, rehearse, read, replay, diff, explain.
 
-The command line does nothing that is not here. These functions open files;
+The command line does nothing beyond these functions. They open files;
 everything below them works on text and values.
 """
 

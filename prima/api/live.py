@@ -1,4 +1,4 @@
-"""Runs on a robot, and runs made again from their records."""
+"""Runs on a robot, and replays of runs from their records."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 # Modules that only some functions need are imported there, so that short commands start quickly.
 
 MOST_MORE = 1000
-"""Records that a replay makes at most beyond those of its transcript: it differs anyway."""
+"""The maximum number of records of a replay beyond those of its transcript: it differs anyway."""
 FASTEST = 1000.0
 """How many times as fast as real time a live run may go."""
 
@@ -92,7 +92,7 @@ def run_live(
 ) -> Transcript:
     """Run applications on a robot, in real time, to their end (docs/live.md).
 
-    The robot is made safe at the end, however that comes: by Ctrl-C, by an exception of ``sink``.
+    The robot is made safe at the end, even after Ctrl-C or an exception of ``sink``.
 
     Args:
         scenario: a scenario, whose robot, world and user are simulated; then without ``fas``,
@@ -102,27 +102,27 @@ def run_live(
         eas: the EAs.
         world: the site's map, and what its areas offer.
         maps: pairs ``URI=PATH`` for what VoiceXML documents name.
-        services: the document of the services that may be asked.
-        output: the path of the journal, which is not there yet.
-        resume: the journal of a run that was cut off, and goes on; then without all before it.
+        services: the document of the services that may be used.
+        output: the path of the journal, which must not exist yet.
+        resume: the journal of an interrupted run to resume; then without all arguments before it.
         policy: a policy's name, as for :func:`rehearse`.
         bound: rule E4's bound on loops of a feedback Command.
         patience: rule E6's bound (ms).
         isolate: which scripts run in a process of their own, as for :func:`rehearse`.
         speed: how many times as fast as real time it runs, for simulated robots.
         until: when it ends at the latest (ms).
-        late: how late (ms) an instant may be before ``warn`` is told; None for never.
-        sync: whether each instant is on the disk before it is carried out.
+        late: how late (ms) an instant may be before ``warn`` is called; None for never.
+        sync: whether each instant is flushed to the disk before it is carried out.
         redact: whether what users say is left out of journal and transcript.
         drivers: Python files that define drivers; they are run.
         hosts: hosts from which applications may fetch, as for :func:`rehearse`.
         sink: called with each line of the transcript before its instant is carried out.
-        warn: called with what an operator should know, as that the robot is lost.
+        warn: called with messages for the operator, such as that the robot is lost.
         keep: whether to keep the records in memory.
 
     Raises:
         DocumentError: documents have errors.
-        UsageError: what was given does not go together, or is not there.
+        UsageError: the arguments cannot be combined, or a file is missing.
         RunError: the robot cannot be reached, or the journal cannot be written.
         KeyboardInterrupt: Ctrl-C or a signal has ended the run; the journal can be resumed.
     """

@@ -57,7 +57,7 @@ def rehearse(
         visits: whether to keep the elements that applications reach in their documents.
         rows: whether to make the table's rows even if the records are not kept.
         folded: whether to fold the run for :meth:`Transcript.run` even if the records are not kept.
-        seed: what is drawn in the run depends on it alone; by default the scenario's own.
+        seed: determines all random values of the run; by default the scenario's own.
 
     Raises:
         DocumentError: documents have errors.

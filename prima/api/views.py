@@ -1,4 +1,4 @@
-"""What is said of transcripts and of codes."""
+"""Views of transcripts, and explanations of codes."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ def certify(
 
 
 def _lacks(document: AnyDocument, told: Outline, profile: Profile) -> list[str]:
-    """Commands of an application that a robot does not have the devices for."""
+    """Commands of an application for which a robot lacks the devices."""
     if not isinstance(document, Document):
         rows = profile.commands
         asked = set().union(*(part.names for part in told.parts)) - NO_COMMANDS

@@ -23,7 +23,7 @@ from prima.checks.prices.model import EndlessLoop, devices_of
 from prima.interpreter.selection import prefixes, takes
 
 ANY_EVENT = "any event"
-"""Stands for each event of an application that has too many to look at every one."""
+"""Represents each event of an application that has too many to check individually."""
 MOST_ENDLESS = 100
 """Maximum number of loops listed for one reaction to its own events."""
 
@@ -31,33 +31,33 @@ MOST_ENDLESS = 100
 def related(one: PricedReaction, other: PricedReaction) -> bool:
     """Whether two reactions may be to the same event."""
     if one.words is not None and other.words is not None and not one.words & other.words:
-        return False  # no utterance is taken by both links
+        return False  # the links share no utterance
     pairs = ((name, its) for name in one.events for its in other.events)
     return any(takes(name, its) or takes(its, name) for name, its in pairs)
 
 
 class _Other:
-    """An application for which another waits, and what all waits for it have in common."""
+    """An application for which another waits, and the data common to all waits for it."""
 
     def __init__(self, outline: Outline) -> None:
         self.outline = outline
         self.parts, self.gaps = outline.parts, outline.gaps
         self.foreign = [one for one in outline.reactions if one.often is None]
-        """The reactions to events that it does not make for itself."""
+        """The reactions to events that it does not cause itself."""
 
     @cached_property
     def size(self) -> int:
-        """How much there is to look at for each event."""
+        """The number of things to check for each event."""
         return size(self.outline) + sum(len(one.events) for one in self.outline.reactions)
 
     @cached_property
     def at_all(self) -> Busy:
-        """How long it is busy at most, whatever begins it."""
+        """The longest time for which it is busy, whatever begins it."""
         return busy_at_all(self.outline)
 
     @cached_property
     def after(self) -> list[Busy]:
-        """How long it is busy because of each event that it does not make for itself."""
+        """How long it is busy because of each event that it does not cause itself."""
         return busy_after_each(self.outline, self.foreign)
 
     @cached_property
@@ -69,7 +69,7 @@ class _Other:
 
     @cached_property
     def rounds(self) -> list[list[Gap]]:
-        """For each reaction what goes on without an end and makes its event again and again."""
+        """For each reaction, the endless activity that causes its event repeatedly."""
         raising: dict[str, dict[int, EndlessLoop]] = {}
         for number, loop in enumerate(loops(self.outline)):
             raised = {name for one in loop.states for name in self.outline.states[one].raises}
@@ -84,7 +84,7 @@ class _Other:
 def _some(
     raising: dict[str, dict[int, EndlessLoop]], reaction: PricedReaction
 ) -> Iterable[EndlessLoop]:
-    """The first loops that make the event of a reaction which the application makes for itself."""
+    """The first loops that cause the event of a reaction to one of the application's own events."""
     if reaction.often is None:
         return ()
     found: dict[int, EndlessLoop] = {}
@@ -94,7 +94,7 @@ def _some(
 
 
 def delays(own: Outline, theirs: Outline) -> list[Delay]:
-    """The waits of each reaction of ``own`` for ``theirs``; of very many, one that holds for all."""
+    """The waits of each reaction of ``own`` for ``theirs``; if there are very many, one for all."""
     other, told = _Other(theirs), [one for one in own.reactions if one.firsts]
     held = [len(one.events) * (1 + len(one.firsts) + len(one.responds)) for one in told]
     if sum(held) * other.size > MOST_COMPARED:
@@ -109,7 +109,7 @@ def delays(own: Outline, theirs: Outline) -> list[Delay]:
 
 
 def _delay(event: str, mine: list[PricedReaction], theirs: _Other) -> Delay | None:
-    """How long the first Commands about an event may wait, and its response; None for not at all."""
+    """How long the first Commands about an event, and its response, may wait; None: not at all."""
     first = _first_delay(event, mine, theirs)
     firsts = _firsts(mine)
     until = [price for one in mine for price in one.responds]
@@ -136,7 +136,7 @@ def _firsts(mine: list[PricedReaction]) -> list[Price]:
 def _about_the_same(
     event: str, mine: list[PricedReaction], theirs: _Other
 ) -> list[tuple[PricedReaction, Busy]]:
-    """The other's reactions to the same event, each with what follows from it."""
+    """The other's reactions to the same event, each with its consequences."""
     return [
         (one, busy)
         for one, busy in zip(theirs.foreign, theirs.after, strict=True)
@@ -165,8 +165,8 @@ def _first_delay(event: str, mine: list[PricedReaction], theirs: _Other) -> Dela
 def _response(first: Delay, firsts: list[Price], until: list[Price], theirs: _Other) -> Delay:
     """How long the first word or movement towards the user may wait, behind other Commands.
 
-    The reaction has the floor by then (F1): what the other has begun before goes to its end, and
-    its reactions to further events come in with all that follows from them (F2).
+    The reaction has the floor by then (F1): what the other has begun before runs to its end, and
+    its reactions to further events come in with all their consequences (F2).
     """
     needed = devices_of(until)
     delay = replace(first, unknown=list(first.unknown), endless=list(first.endless))
@@ -205,7 +205,7 @@ def _once(delay: Delay) -> Delay:
 
 
 def _add_longest(delay: Delay, theirs: _Other, needed: frozenset[str]) -> None:
-    """The longest part of the other on devices, which goes to its end (U1)."""
+    """The longest part of the other on devices, which runs to its end (U1)."""
     fitting = [part for part in theirs.parts if part.devices & needed]
     longest = worst(fitting, needed)
     if longest is None:
@@ -218,9 +218,9 @@ def _add_longest(delay: Delay, theirs: _Other, needed: frozenset[str]) -> None:
 
 
 def _add_own(delay: Delay, theirs: _Other, needed: frozenset[str] | None) -> None:
-    """Reactions of the other to events that it makes for itself: each goes first (S2b).
+    """Reactions of the other to events that it causes itself: each goes first (S2b).
 
-    Those count that begin on some devices; without these, all, as each may take the floor.
+    Only those that begin on the given devices count; by default all, as each may take the floor.
     """
     for one, again in zip(theirs.outline.reactions, theirs.rounds, strict=True):
         if needed is not None and not devices_of(one.firsts) & needed:
@@ -231,7 +231,7 @@ def _add_own(delay: Delay, theirs: _Other, needed: frozenset[str] | None) -> Non
 
 
 def _whole(firsts: list[Price], theirs: _Other, same: list[Busy]) -> Busy | None:
-    """What of the other is waited for as a whole (F2, K1, K2); None where nothing is."""
+    """The part of the other that is waited for as a whole (F2, K1, K2); None if there is none."""
     if _drives(firsts, theirs):
         return theirs.at_all
     told = [one for one in same if one.lasts]
@@ -260,7 +260,7 @@ def _wait_for_all(delay: Delay, whole: Busy, theirs: _Other) -> None:
 
 
 def _add_further(delay: Delay, theirs: _Other) -> None:
-    """All that the other does about each further event, and each that it has not done with."""
+    """Everything that the other does about each further event, and each unfinished one."""
     delay.whole = True
     delay.each = max((one.lasts for one in theirs.after), default=0)
     if any(one.endless or one.unknown for one in theirs.after):
@@ -292,7 +292,7 @@ def starving(own: Outline, theirs: Outline) -> list[Starving]:
 
 
 def _again(theirs: Outline, told: list[Starving], drives: bool) -> list[Starving]:
-    """The reactions that bring their own event again, but what was told to keep the floor."""
+    """The reactions that cause their own event again, except those found to keep the floor."""
     kept = {(one.place, one.what) for one in told if one.everything}
     return [
         Starving(gap.place, gap.reason, "F2", (), drives, True)
@@ -302,7 +302,7 @@ def _again(theirs: Outline, told: list[Starving], drives: bool) -> list[Starving
 
 
 def _parts_with_floor(theirs: Outline) -> set[Price]:
-    """What may hold the floor: parts of the states that may, and of reactions."""
+    """The parts that may hold the floor: of states that may, and of reactions."""
     floor = {part for name in _floors(theirs) for part in theirs.states[name].parts}
     return floor | {part for one in theirs.reactions for part in one.does.parts}
 

@@ -17,26 +17,26 @@ class Delay:
     devices: tuple[str, ...]
     """The devices that both need."""
     lasts: int
-    """The longest wait (ms), as far as it is known."""
+    """The longest wait (ms), as far as known."""
     what: str
     place: Place | None
     """The place of the longest part; None if only the rest causes the wait."""
     listens: bool = False
-    """Whether the user may speak in it: what they say comes on top."""
+    """Whether the user may speak in it: the time of their words is extra."""
     after: list[Place] = field(default_factory=list)
     """The other's reactions to the same event, for which it waits as a whole (F2)."""
     everything: bool = False
-    """Whether it waits for all that the other does in one go, as what drives may (K1, K2)."""
+    """Whether it waits for all that the other does in one go, as driving ABs may (K1, K2)."""
     each: int | None = 0
-    """How much longer (ms) for each other event that the other reacts to meanwhile; None where
-    that has no bound."""
+    """How much longer (ms) for each other event that the other reacts to meanwhile; None if
+    unbounded."""
     whole: bool = False
     """Whether it waits for all that the other does in one go: then it is longer, too, for each
     event whose reaction the other has begun before and not ended."""
     unknown: list[Gap] = field(default_factory=list)
     endless: list[Gap] = field(default_factory=list)
     response: Delay | None = None
-    """How long its first word or movement towards the user may wait; None where it has none."""
+    """How long its first word or movement towards the user may wait; None if it has none."""
 
     @property
     def known(self) -> bool:
@@ -54,9 +54,9 @@ class Starving:
     devices: tuple[str, ...]
     """Commands on these devices wait."""
     leaving: bool = False
-    """Whether, whatever their devices, those wait that leave the user (K1)."""
+    """Whether those that leave the user wait, whatever their devices (K1)."""
     everything: bool = False
-    """Whether, whatever their devices, all wait: it may hold the floor (F2)."""
+    """Whether all wait, whatever their devices: it may hold the floor (F2)."""
 
 
 @dataclass(slots=True)
@@ -73,7 +73,7 @@ class Certificate:
     delays: list[Delay]
     leaves: list[Price]
     others: Busy
-    """How long Commands that are no reactions wait at most, each time that the EA is busy."""
+    """How long Commands other than reactions wait at most, each time that the EA is busy."""
     holds: list[tuple[Place, int]] = field(default_factory=list)
     starves: list[Starving] = field(default_factory=list)
     gaps: list[Gap] = field(default_factory=list)
@@ -81,4 +81,4 @@ class Certificate:
     long: list[Price] = field(default_factory=list)
     """Parts of the EA that keep the speaker for longer than a run's patience, if unset (E6)."""
     lacks: dict[str, list[str]] = field(default_factory=dict)
-    """What the EA needs and a robot lacks, by robot; empty if it lacks nothing."""
+    """What the EA needs and a robot lacks, by robot; empty if nothing."""

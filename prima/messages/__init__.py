@@ -1,9 +1,9 @@
-"""The only words that applications, mediator and devices exchange.
+"""The messages that applications, mediator and devices exchange; there are no others.
 
-Applications ask (:class:`Request`, :class:`OpenUnit`, :class:`CloseUnit`,
-:class:`LeaveState`, :class:`Send`, ...), the mediator orders devices about
-(:class:`Order`), and what happens comes in as one of the :data:`Inbound` values.
-All of them are data: whoever receives one decides what it means.
+Applications make requests (:class:`Request`, :class:`OpenUnit`, :class:`CloseUnit`,
+:class:`LeaveState`, :class:`Send`, ...), the mediator gives devices orders
+(:class:`Order`), and events come in as one of the :data:`Inbound` values.
+All of them are plain data: the receiver decides what they mean.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from prima.messages.commands import Command, Data, Step
 
 @dataclass(slots=True)
 class Request:
-    """Commands sent at once (rule U3). ``run`` names them when their end is told."""
+    """Commands sent together (rule U3). ``run`` identifies them in notices of their end."""
 
     run: int
     steps: list[Step]
@@ -23,9 +23,9 @@ class Request:
     connect: bool = False
     """Whether the robot has to face the user first (rule X4)."""
     words: Command | None = None
-    """What is said first when its stream resumes after others have spoken (rule X9)."""
+    """The words to say first when its stream resumes after others have spoken (rule X9)."""
     fresh: int | None = None
-    """For how long (ms) a reaction is worth starting (rule X8)."""
+    """How long (ms) a reaction is worth starting (rule X8)."""
 
 
 @dataclass(slots=True)
@@ -45,7 +45,7 @@ class OpenUnit:
 
 @dataclass(slots=True)
 class CloseUnit:
-    """The unit is left, by whatever way."""
+    """The unit is left in any way."""
 
     unit: int
 
@@ -59,12 +59,12 @@ class LeaveState:
 
 @dataclass(slots=True)
 class Send:
-    """A message to a named service, or to a URI that something is asked of.
+    """A message to a named service, or a request to a URI.
 
-    ``data`` has the values sent as ``params``, and where an answer is waited for as a
-    :class:`Fetched` the ``method``, ``get`` or ``post``. A call to somebody else has its kind
+    ``data`` has the values sent as ``params`` and, if an answer is awaited as a
+    :class:`Fetched`, the ``method``, ``get`` or ``post``. A call to somebody else has its kind
     as ``transfer`` (``bridge``, ``blind``, ``consultation``) and ends with
-    :class:`Transferred`; ``over`` ends the one whose serial is ``call``.
+    :class:`Transferred`; ``over`` ends the call whose serial is ``call``.
     """
 
     service: str
@@ -75,7 +75,7 @@ class Send:
 
 @dataclass(slots=True)
 class Say:
-    """Something for the transcript: a log element, an error nobody handled."""
+    """Something for the transcript: a log element, an unhandled error."""
 
     level: Literal["log", "error"]
     text: str
@@ -93,14 +93,14 @@ class Quit:
 
 @dataclass(slots=True)
 class Raise:
-    """An event that the application itself has defined, for itself (C6)."""
+    """An event that the application has defined for itself (C6)."""
 
     event: str
 
 
 @dataclass(slots=True)
 class Promote:
-    """An event of the application's own counts as one to react to (C5): it gets a serial number.
+    """An event of the application's own becomes one to react to (C5): it gets a serial number.
 
     The next request whose cause is :data:`PROMOTED` reacts to it.
     """

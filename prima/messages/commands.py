@@ -1,4 +1,4 @@
-"""What applications ask the robot for."""
+"""Commands: what applications request from the robot."""
 
 from __future__ import annotations
 
@@ -9,36 +9,36 @@ from typing import Any, Final, Literal
 Json = Any
 Data = Mapping[str, Json]
 Record = dict[str, Json]
-"""One line of the transcript while it is still being made: field name to value."""
+"""A line of the transcript under construction: field names to values."""
 Fate = Literal["ended", "done", "cancelled", "expired", "failed", "interrupted", "unit-timeout"]
-"""Notices to an application about its Commands; ``expired``: part of a run came too late (X8)."""
+"""Notices to an application about its Commands; ``expired``: part of a run was too late (X8)."""
 Verb = Literal["start", "abort", "interrupt", "stop", "send"]
-"""What devices may be told to do."""
+"""The orders to devices."""
 PROMOTED = -1
-"""As a request's cause: the event that was promoted last."""
+"""As a request's cause: the latest promoted event."""
 NO_DEVICES: frozenset[str] = frozenset()
 
 
 def line_of(source: str) -> str | None:
-    """The ``FILE:LINE`` of who asked, for a record, of a place with its column; none of nothing."""
+    """The ``FILE:LINE`` of a place with its column, for a record; None if there is no place."""
     line = source.rpartition(":")[0]
     return line if line.rpartition(":")[2].isdigit() else source or None
 
 
 BEEP: Final = "[beep]"
-"""The signal before a recording, as it stands in a text."""
+"""The signal before a recording, as written in a text."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cue:
-    """Something that goes with a text besides its words, for the device that says it.
+    """Something in a text besides its words, for the device that says it.
 
-    A device may leave cues alone, and simply speak. Those of one text stand in the order in
-    which they come to pass; ``lasts`` and ``end`` enclose each other properly.
+    A device may ignore cues and simply speak. Those of one text are in the order in which they
+    occur; ``lasts`` and ``end`` are properly nested.
     """
 
     at: int
-    """How many characters of the text stand before it."""
+    """The number of characters of the text before it."""
     kind: Literal[
         "pause",
         "sentence",
@@ -69,7 +69,7 @@ class Cue:
 
 @dataclass(slots=True)
 class Command:
-    """What an application asks for (thesis 4.1, Table 4.1)."""
+    """What an application requests (thesis 4.1, Table 4.1)."""
 
     type: str
     args: dict[str, Json] = field(default_factory=dict)
@@ -78,13 +78,13 @@ class Command:
     extra: dict[str, Json] = field(default_factory=dict)
     lang: str = ""
     source: str = ""
-    """Where the document asks for it: ``FILE:LINE:COLUMN``, as all such places here."""
+    """Its place in the document: ``FILE:LINE:COLUMN``, like all such places here."""
     restartable: bool = False
-    """Whether it gives way to a reaction and starts again afterwards (rule X2)."""
+    """Whether it yields to a reaction and starts again afterwards (rule X2)."""
     cues: tuple[Cue, ...] = ()
     """Pauses, rates and marks of its text."""
     hook: Any = None
-    """What the application keeps with the Command; nobody else looks at it."""
+    """Data that the application keeps with the Command; nothing else uses it."""
 
     def cued(self, *kinds: str) -> bool:
         """Whether its text has a cue of one of these kinds."""

@@ -10,7 +10,7 @@ from prima.messages.commands import Data, Json
 
 @dataclass(slots=True)
 class Ended:
-    """A device reports the end of an AB; ``goal`` tells whether a feedback loop is done."""
+    """A device reports the end of an AB; ``goal`` says whether a feedback loop is done."""
 
     behavior: str
     goal: bool = True
@@ -19,19 +19,19 @@ class Ended:
 
 @dataclass(slots=True)
 class Listening:
-    """The question has been said: the robot now listens."""
+    """The question has been asked: the robot now listens."""
 
     behavior: str
 
 
 @dataclass(slots=True)
 class Halted:
-    """A device tells how much it had done of an AB that was interrupted (rule X2)."""
+    """A device reports how much it had done of an interrupted AB (rule X2)."""
 
     behavior: str
     data: Data = field(default_factory=dict)
-    """``done``: the part of it, 0 to 1; ``heard``: the beginning of the text that was said.
-    Of a text with marks also ``passed``, how many, and ``mark``, the name of the last."""
+    """``done``: the share of it, 0 to 1; ``heard``: the beginning of the text that was said.
+    For a text with marks also ``passed``, how many, and ``mark``, the name of the last."""
 
 
 @dataclass(slots=True)
@@ -45,7 +45,7 @@ class Failed:
 
 @dataclass(slots=True)
 class Delayed:
-    """What begins on a device was held back until the device had stopped what it did before."""
+    """An AB was held back until a device had stopped what it did before."""
 
     behavior: str
     device: str
@@ -55,7 +55,7 @@ class Delayed:
 
 @dataclass(slots=True)
 class Presence:
-    """A device is missing from now on, or there again."""
+    """A device is missing from now on, or available again."""
 
     device: str
     there: bool
@@ -63,14 +63,14 @@ class Presence:
 
 
 class Hypothesis(NamedTuple):
-    """What a recogniser takes an utterance for, and how sure it is (0 to 1)."""
+    """A recogniser's hypothesis for an utterance, with its confidence (0 to 1)."""
 
     text: str
     confidence: float = 1.0
 
 
 class Understood(NamedTuple):
-    """What an application makes of an utterance, and of which hypothesis."""
+    """An application's interpretation of an utterance, and the hypothesis used."""
 
     value: Json
     utterance: str
@@ -91,11 +91,11 @@ class Heard:
     the text, also ``size``, its bytes, and ``type``, its media type. ``toolong``: it took longer than
     the question lets it (``longest``)."""
     lasted: int = 0
-    """How long (ms) it took to say, where that is known: the user began so long ago (X10)."""
+    """How long (ms) it took to say, if known: the user began so long ago (X10)."""
 
     @property
     def hypotheses(self) -> list[Hypothesis]:
-        """What it may have been, the likeliest first; of equal ones in the order given."""
+        """The hypotheses, likeliest first; equal ones in the given order."""
         others = self.data.get("alternatives")
         told = [one for one in others if isinstance(one, dict)] if isinstance(others, list) else []
         found = [Hypothesis(self.text, _confidence(self.data))]
@@ -111,7 +111,7 @@ class Heard:
 
 
 def _confidence(data: Data) -> float:
-    """How sure a recogniser is, 0 to 1; 1 where it does not tell."""
+    """A recogniser's confidence, 0 to 1; 1 if it does not report one."""
     told = data.get("confidence")
     sure = isinstance(told, int | float) and not isinstance(told, bool) and 0 <= told <= 1
     return float(told) if sure and told is not None else 1.0
@@ -129,11 +129,11 @@ class Occurred:
 
 @dataclass(slots=True)
 class Fetched:
-    """The answer to what an application has asked a URI for (a VoiceXML document, data, ...).
+    """The answer to an application's request to a URI (a VoiceXML document, data, ...).
 
-    ``serial`` is the :class:`Send`'s. ``problem`` tells why there is no answer; ``status`` is
-    that of a host, or 0. ``body`` is text that ``charset`` makes the resource's bytes of.
-    ``host`` is whether a real host has sent it, and no service of the scenario.
+    ``serial`` is the :class:`Send`'s. ``problem`` says why there is no answer; ``status`` is
+    a host's, or 0. ``body`` is text which, encoded by ``charset``, gives the resource's bytes.
+    ``host`` is whether a real host has sent it, rather than a service of the scenario.
     """
 
     app: str
@@ -148,10 +148,10 @@ class Fetched:
 
 @dataclass(slots=True)
 class Transferred:
-    """What has become of a call that an application makes (VoiceXML 2.0, 2.3.7).
+    """The progress or end of an application's call (VoiceXML 2.0, 2.3.7).
 
-    ``serial`` is the :class:`Send`'s. ``outcome`` is ``answered``, after which another one tells
-    the call's end; how it has ended, as ``busy``; or the name of an event, as ``error.connection``.
+    ``serial`` is the :class:`Send`'s. ``outcome`` is ``answered``, after which another one reports
+    the call's end; how it ended, such as ``busy``; or an event, such as ``error.connection``.
     """
 
     app: str
@@ -169,7 +169,7 @@ class Sensed:
 
 @dataclass(slots=True)
 class Narrated:
-    """Something a reader of the transcript wants to know, and nobody else."""
+    """A note for readers of the transcript only."""
 
     actor: Literal["user", "environment"]
     text: str
@@ -185,17 +185,17 @@ class Emergency:
 
 @dataclass(slots=True)
 class ApplicationLoaded:
-    """An application starts; ``place`` is where the robot has entered, if that is why."""
+    """An application starts; ``place`` is the place that the robot has entered, if that is why."""
 
     app: str
     place: str = ""
     connection: Data = field(default_factory=dict)
-    """What is known of the user's connection: ``session.connection`` (VoiceXML 2.0, 5.1.4)."""
+    """The user's connection: ``session.connection`` (VoiceXML 2.0, 5.1.4)."""
 
 
 @dataclass(slots=True)
 class ApplicationUnloaded:
-    """An application is taken out of the robot (rule E2); ``place`` is what it has left."""
+    """An application is removed from the robot (rule E2); ``place`` is what the robot left."""
 
     app: str
     place: str = ""

@@ -1,7 +1,7 @@
 """One page of HTML that shows a run, or compares two: timeline, map, table, and why.
 
-:func:`make` is the whole interface. The page holds all that it needs: no file, network
-or library beside it. The same transcripts give the same bytes.
+:func:`make` is the whole interface. The page is self-contained: it needs no other file, no
+network and no library. The same transcripts give the same bytes.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ if TYPE_CHECKING:
     from prima.loading import Loaded
 
 MOST_ROWS = 20_000
-"""Rows of a transcript that a page shows."""
+"""Maximum number of rows of a transcript on a page."""
 
 
 def make(transcripts: Sequence[Transcript], scenarios: Sequence[Loaded | None] = ()) -> str:
-    """The page of one transcript, or of two with what differs from the first to the second.
+    """The page of one transcript, or of two with their differences.
 
     Args:
         transcripts: one or two.
-        scenarios: none, the one of all transcripts, or one for each, or None: from them come the
-            map, the user's way and the languages, by making the run again.
+        scenarios: none, one for all transcripts, or one (or None) for each: they provide the map,
+            the user's way and the languages, by making the run again.
 
     Raises:
         UsageError: too many transcripts, or too long ones; a scenario is not a transcript's.

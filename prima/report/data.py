@@ -1,4 +1,4 @@
-"""The data of a page: lists as its script reads them."""
+"""The data of a page: lists for its script."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LONGEST_NAME = 200
 def page_data(
     views: Sequence[View], difference: Difference | None, shades: dict[str, int]
 ) -> dict[str, Any]:
-    """The data of a page: its runs, the rules that they name, and what differs."""
+    """The data of a page: its runs, the rules that they name, and the differences."""
     used = set().union(*map(_rules, views))
     known = RULES | dict.fromkeys(BASELINES, "the baseline policy of that name")
     data: dict[str, Any] = {
@@ -69,7 +69,7 @@ def _run(view: View, shades: dict[str, int]) -> dict[str, Any]:
 
 
 def _row_data(view: View, row: Row) -> list[Any]:
-    """Time, who, application, what, whether an event; of what is said its language and place."""
+    """Time, who, application, what, whether an event; for speech its language and place."""
     made = [row.time, row.actor, visible(row.app[:LONGEST_NAME]), row.what, int(row.event)]
     words, lang = view.spoken.get(row.number, ("", ""))
     place = row.what.find(words) if words else -1
@@ -77,7 +77,7 @@ def _row_data(view: View, row: Row) -> list[Any]:
 
 
 def _units(words: str) -> int:
-    """How long a text is for JavaScript, which counts in UTF-16."""
+    """The length of a text in JavaScript, which counts in UTF-16."""
     return len(words.encode("utf-16-le")) // 2
 
 

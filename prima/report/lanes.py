@@ -15,12 +15,12 @@ MOST_APPS = 24
 MOST_DEVICES = 16
 """Maximum number of devices with a lane."""
 MOST_ON_FLOOR = 8
-"""Streams of the stack of the floor that are named."""
+"""Maximum number of named streams in the stack of the floor."""
 
 
 @dataclass(slots=True)
 class Bar:
-    """Something that lasts, in seconds."""
+    """Something with a duration, in seconds."""
 
     begin: float
     end: float
@@ -28,7 +28,7 @@ class Bar:
     app: str = ""
     text: str = ""
     row: int = -1
-    """The table's row that tells of it, or -1."""
+    """The table's row that shows it, or -1."""
     devices: tuple[str, ...] = ()
     cuts: list[float] = field(default_factory=list)
     """Where one loop ends and the next begins, or where a window opens or closes."""
@@ -100,7 +100,7 @@ class _Marks:
                 self._rows.setdefault(key, []).append((row.time, row.number))
 
     def row(self, name: str, begin: float) -> int:
-        """The first row of a stream or AB from then on; else its last, or the last of all."""
+        """The first row of a stream or AB from that time on; else its last, or the last of all."""
         own = self._rows.get(base(name), [])
         place = bisect_left(own, (begin, -1))
         if own:
@@ -126,7 +126,7 @@ def _behaviors(run: Run, rows: Iterable[Row]) -> list[Bar]:
 
 
 def _waits(span: StreamState | Hold, name: str, by: str) -> Bar:
-    """A stream is suspended, or an AB is held back; its text says because of what."""
+    """A bar for a suspended stream or an AB that is held back; its text says why."""
     why = f"{span.by or 'another'} ({span.rule or 'no rule'})"
     return Bar(span.begin, span.end, name, span.app, why, by=by)
 

@@ -18,7 +18,7 @@ ROOM = "prima.report"
 WHO = {"R": "robot", "U": "user", "E": "surroundings"}
 LETTERS = "AB"
 PART = 50
-"""Rows of a table's part."""
+"""The number of rows in each part of a table."""
 KINDS = {
     "moved": "comes in another order",
     "added": "is new",
@@ -31,7 +31,7 @@ KINDS = {
 
 
 def page(views: Sequence[View]) -> str:
-    """The page of one run, or of two with what differs."""
+    """The page of one run, or of two with their differences."""
     difference = compare(views[0].rows, views[1].rows) if len(views) == 2 else None
     shades = colours.colours(app for view in views for app in view.lanes.every)
     style, script = style_of(ROOM, "report.css"), part(ROOM, "report.js")
@@ -127,7 +127,7 @@ def _map(view: View, index: int, runs: int) -> str:
 
 
 def _filter(views: Sequence[View]) -> str:
-    """What chooses rows of the table: application, who, and text."""
+    """The filter for rows of the table: application, who, and text."""
     apps = dict.fromkeys(app for view in views for app in view.lanes.every)
     named = "".join(
         f'<option value="{text(app[:LONGEST_NAME])}">{text(app[:LONGEST_NAME])}</option>'
@@ -147,7 +147,7 @@ def _filter(views: Sequence[View]) -> str:
 
 
 def _what(view: View, row: Row) -> str:
-    """What a row does, with the language of what it says."""
+    """The description of a row, with the language of its speech."""
     said = view.spoken.get(row.number)
     if said is None:
         return text(row.what)
@@ -159,7 +159,7 @@ def _what(view: View, row: Row) -> str:
 
 
 def _marks(row: Row) -> str:
-    """What stands before the number in the printed table, in words."""
+    """The marks before the number in the printed table, in words."""
     made = []
     if row.star:
         made.append("<span>loops</span>")
@@ -171,7 +171,7 @@ def _marks(row: Row) -> str:
 
 
 def _who(view: View, row: Row, shades: dict[str, int]) -> str:
-    """The two cells of who does it: whose doing, and the application."""
+    """The two cells for who does it: the actor, and the application."""
     who = WHO.get(row.actor, "")
     if not row.app:  # a narrow page has only the second
         return f'<td role="cell">{who}</td><td role="cell"><span class="narrow">{who}</span></td>'
@@ -180,7 +180,7 @@ def _who(view: View, row: Row, shades: dict[str, int]) -> str:
 
 
 def _row(number: int, kind: str, label: str, cells: str) -> str:
-    """A row that can be opened. The roles stay where a style makes it no table's row."""
+    """A row that can be opened. The roles keep it a table row whatever its style."""
     return (
         f'<tr role="row" id="row-{number}" class="row {kind}"><th role="rowheader" scope="row">'
         '<button type="button" class="open" tabindex="-1" aria-expanded="false">'
@@ -189,7 +189,7 @@ def _row(number: int, kind: str, label: str, cells: str) -> str:
 
 
 def _whole_table(kind: str, caption: str, heads: Sequence[tuple[str, str]], rows: list[str]) -> str:
-    """A table whose rows stand in parts: a browser need not lay out those out of sight."""
+    """A table with rows in parts: a browser need not lay out those out of sight."""
     parts = "\n".join(
         f'<tbody role="rowgroup">{"".join(rows[place : place + PART])}</tbody>'
         for place in range(0, len(rows), PART)
@@ -204,7 +204,7 @@ def _whole_table(kind: str, caption: str, heads: Sequence[tuple[str, str]], rows
 
 
 def _table(view: View, shades: dict[str, int]) -> str:
-    """The transcript's table, whole: it can be read, searched and printed without any script."""
+    """The complete table of the transcript, readable, searchable and printable without scripts."""
     lines = [
         _row(
             row.number,

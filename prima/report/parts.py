@@ -1,4 +1,4 @@
-"""What all pages are made of: escaped text and data, styles and scripts with their hashes."""
+"""The building blocks of all pages: escaped text and data, styles and scripts with their hashes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def text(what: str) -> str:
 
 
 def json_text(data: Json | dict[str, Any]) -> str:
-    """JSON that can stand in a script element: nothing in it ends or opens one."""
+    """JSON that is safe in a script element: nothing in it ends or opens one."""
     made = json.dumps(_seen(data), ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     for letter in "<>&\u2028\u2029":
         made = made.replace(letter, f"\\u{ord(letter):04x}")
@@ -28,7 +28,7 @@ def json_text(data: Json | dict[str, Any]) -> str:
 
 
 def _seen(data: Any) -> Any:
-    """Data in which every text is one that may be shown."""
+    """Data in which every text may be shown."""
     if isinstance(data, str):
         return visible(data, "\n")
     if isinstance(data, dict):
@@ -42,7 +42,7 @@ def part(room: str, name: str) -> str:
 
 
 def style_of(room: str, name: str) -> str:
-    """A page's style: what all pages share, then its own, with the colours put in."""
+    """A page's style: the one shared by all pages, then its own, with the colours filled in."""
     style = part("prima.report", "base.css") + part(room, name)
     for name, dark in (("light", False), ("dark", True)):
         made = "".join(
@@ -59,7 +59,7 @@ def style_of(room: str, name: str) -> str:
 
 
 def policy_of(style: str, script: str) -> str:
-    """The content security policy of a page that has this style and this script, and no more."""
+    """The content security policy of a page with only this style and this script."""
     return (
         "default-src 'none'; base-uri 'none'; form-action 'none';"
         f" style-src '{_hash(style)}'; script-src '{_hash(script)}'"
@@ -67,5 +67,5 @@ def policy_of(style: str, script: str) -> str:
 
 
 def _hash(content: str) -> str:
-    """A source of the page's own, as a content security policy names it."""
+    """A source of the page itself, as named in a content security policy."""
     return "sha256-" + base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()

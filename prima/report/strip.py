@@ -11,15 +11,15 @@ from prima.transcript.row import Row
 from prima.transcript.run import Run
 
 STEPS = (1, 2, 5, 10, 30, 60, 300, 1800, 7200)
-"""Seconds from one mark of the axis to the next."""
+"""Seconds between marks of the axis."""
 TAKEN = "\0"
-"""A space within a bar, which nothing else fills."""
+"""A space within a bar, which no other text may fill."""
 LEGEND = "[...] it runs   : suspended   - waits, by the rule named   v an event"
 
 
 @dataclass
 class Axis:
-    """Where a time stands: seconds ``begin`` to ``end`` in columns after ``left``."""
+    """Maps times to columns: seconds ``begin`` to ``end`` in columns after ``left``."""
 
     begin: float
     end: float
@@ -32,13 +32,13 @@ class Axis:
         return round(min(max(share, 0.0), 1.0) * (self.columns - 1))
 
     def shows(self, bar: Bar) -> bool:
-        """Whether something of it is in the part that is shown."""
+        """Whether any of it is in the part that is shown."""
         return bar.end >= self.begin and bar.begin <= self.end
 
 
 @dataclass
 class Lane:
-    """Lines of letters; what overlaps goes to the next line."""
+    """Lines of letters; overlapping texts go to the next line."""
 
     axis: Axis
     lines: list[list[str]] = field(default_factory=list)
@@ -54,7 +54,7 @@ class Lane:
         line[at : at + len(text)] = list(text)
 
     def fill(self, at: int, text: str) -> None:
-        """Write a text into what is free of the first line."""
+        """Write a text into the free part of the first line."""
         if not self.lines:
             self.lines.append([" "] * self.axis.columns)
         line = self.lines[0]
@@ -100,7 +100,7 @@ def _of(app: str, bars: Iterable[Bar], axis: Axis) -> list[Bar]:
 
 
 def _bar(bar: Bar, axis: Axis) -> str:
-    """A bar as long as it lasts, with as much of its text as there is room for."""
+    """A bar of its length, with as much of its text as fits."""
     width = max(axis.at(bar.end) - axis.at(bar.begin), 2)
     text = visible(bar.text or bar.name).strip('"')
     shown = f"{text[: width - 2]:<{width - 2}}"
@@ -108,7 +108,7 @@ def _bar(bar: Bar, axis: Axis) -> str:
 
 
 def _events(rows: Iterable[Row], axis: Axis) -> list[str]:
-    """What the user and the surroundings do."""
+    """The events of the user and the surroundings."""
     lane = Lane(axis)
     for row in rows:
         if row.actor != "R" and axis.begin <= row.time <= axis.end:
@@ -121,7 +121,7 @@ def _events(rows: Iterable[Row], axis: Axis) -> list[str]:
 
 
 def _before(text: str) -> str:
-    """An event near the right end: its mark stands behind the words."""
+    """An event near the right end: its mark follows the words."""
     return f"{text[2:]} v"
 
 

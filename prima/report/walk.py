@@ -1,8 +1,8 @@
 """The paths of robot and user, and their map.
 
-A transcript holds only what the robot reported: its pose at each end of a motion. With the
-scenario at hand the run is made again, and the simulation tells the rest; but only where the
-same records come out of it, since else it was another run.
+A transcript holds only what the robot reported: its pose at each end of a motion. Given the
+scenario, the run is made again, and the simulation provides the rest, but only if it produces
+the same records, since otherwise it was another run.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from prima.transcript.run import Run
 
 MOST_POSES = 60_000
-"""Poses that a page holds of each of robot and user."""
+"""Maximum number of poses of robot and of user on a page."""
 MOVED = 0.03
-"""Metres from which a change of place is kept."""
+"""The smallest change of place (m) that is kept."""
 TURNED = 4.0
-"""Degrees from which a change of heading is kept."""
+"""The smallest change of heading (degrees) that is kept."""
 FARTHEST = 1e6
-"""Metres from the origin beyond which a reported place is not believed."""
+"""The distance (m) from the origin beyond which a reported place is not trusted."""
 
 Pose = tuple[float, float, float, float]
 """Time (s), x and y (m), heading (degrees)."""
@@ -44,7 +44,7 @@ class RobotWalk:
     person: list[Pose] = field(default_factory=list)
     plan: dict[str, Json] | None = None
     source: str = "reports"
-    """``run`` where the simulation tells, ``reports`` where only the transcript does."""
+    """``run`` if they come from the simulation, ``reports`` if only from the transcript."""
     camera: tuple[float, float] | None = None
     """The camera's angle (degrees) and range (m)."""
     radius: float = 0.2
@@ -70,10 +70,10 @@ def _number(value: object) -> float | None:
 
 
 def walk_of(transcript: Transcript, loaded: Loaded | None) -> RobotWalk:
-    """The ways of a transcript's run; with its scenario, also the map and the user.
+    """The paths of a transcript's run; with its scenario, also the map and the user.
 
     Raises:
-        UsageError: the scenario's files are not those that the transcript was made with.
+        UsageError: the transcript was made with other files than the scenario's.
     """
     if loaded is None:
         return RobotWalk(reported(transcript.run()))
@@ -154,10 +154,10 @@ class WalkWatch:
         self.robot: list[Pose] = []
         self.person: list[Pose] = []
         self._before: dict[str, Pose] = {}
-        """The last poses seen, kept or not: where a rest ends."""
+        """The last poses seen, kept or not: the ends of rests."""
 
     def look(self) -> None:
-        """Record the present positions."""
+        """Record the current positions."""
         world = self._world
         time = world.time / 1000
         x, y = world.position

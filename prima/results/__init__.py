@@ -1,7 +1,7 @@
 """A sweep's table as one page: distributions, intervals, tests and a map of orders.
 
-:func:`read` reads a table; :func:`make` and :func:`draw` show it. The page holds all that it
-needs. The same table gives the same bytes.
+:func:`read` reads a table; :func:`make` and :func:`draw` show it. The page is self-contained.
+The same table gives the same bytes.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def read(path: str | Path) -> Data:
     """Read a sweep's table, or the one in a folder.
 
     Raises:
-        UsageError: it is no such table, cannot be read, or a library is missing.
+        UsageError: it is not such a table, cannot be read, or a library is missing.
     """
     try:
         import scipy  # noqa: F401 (it brings numpy)
@@ -81,7 +81,7 @@ def draw(data: Data, by: Sequence[str] = ()) -> list[Figure]:
 
 
 def _chosen(data: Data, by: Sequence[str]) -> tuple[int, ...]:
-    """The factors of the map, as places among those that are varied.
+    """The factors of the map, as indices among those that are varied.
 
     Raises:
         UsageError: there is no such factor.

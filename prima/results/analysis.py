@@ -1,4 +1,4 @@
-"""What is computed of each measure: its distribution, whole and by factor, and its tests."""
+"""The analysis of each measure: its distribution, whole and by factor, and its tests."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from prima.results.statistics import (
 )
 
 MOST_LEVELS = 12
-"""Levels of a factor that are shown and compared one by one."""
+"""Maximum number of levels of a factor that are shown and compared individually."""
 RANGES = 8
-"""Ranges into which a numeric factor with more is divided."""
+"""The number of ranges into which a numeric factor with more is divided."""
 MOST_BINS = 30
 
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """A measure by a factor: a summary for each level; None where it has no value."""
+    """A measure by a factor: a summary for each level; None if it has no value."""
 
     factor: FactorColumn
     levels: Levels
@@ -43,7 +43,7 @@ class Distribution:
     whole: ValueSummary
     edges: list[float]
     counts: list[int]
-    """Runs between each two edges."""
+    """The number of runs between each two edges."""
     panels: list[Panel]
 
     @property
@@ -54,7 +54,7 @@ class Distribution:
 
 @dataclass(slots=True)
 class Analysis:
-    """All that is computed of a table."""
+    """The whole analysis of a table."""
 
     distributions: list[Distribution] = field(default_factory=list)
     constant: list[MeasureColumn] = field(default_factory=list)
@@ -64,7 +64,7 @@ class Analysis:
 
 
 def analyse(data: Data) -> Analysis:
-    """Compute all that is said of a table's measures."""
+    """Analyse a table's measures."""
     made = Analysis()
     levels = {one.name: one.levels(MOST_LEVELS, RANGES) for one in data.varied}
     for measure in data.measures:
@@ -119,8 +119,8 @@ def _tests(
 ) -> Iterator[FactorTest | Untested]:
     """The tests of a measure by a factor.
 
-    Levels are compared with each other. Numbers are, if there are more than two, also correlated:
-    that finds what goes up or down with them, even if each has few runs.
+    Levels are compared with each other. Numbers, if there are more than two, are also correlated,
+    which finds measures that go up or down with them, even if each level has few runs.
     """
     ordered = factor.numeric and len(factor.distinct) > 2
     if ordered:

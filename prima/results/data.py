@@ -19,17 +19,17 @@ from prima.results.reading import Sheet
 from prima.results.statistics import Groups, Values
 
 NOTHING = "(nothing)"
-"""The level of runs in which nothing is written for a factor."""
+"""The level of runs in which a factor has no value."""
 LONGEST = 80
-"""Letters of a level's or a column's name that are shown."""
+"""The number of letters of a level's or a column's name that are shown."""
 MOST_VALUE = 1e15
 """Largest value of a measure or a factor."""
 MOST_FACTORS = 10
-"""Factors of which figures, tests and maps are made."""
+"""Maximum number of factors in figures, tests and maps."""
 REPETITION = "seed"
 """The factor that repeats runs with other draws."""
 LINK = re.compile(r"[\w][\w .()+-]*/orders/[0-9a-f]{1,64}\.jsonl")
-"""How the path of an order's transcript looks; nothing else becomes a link."""
+"""The form of the path of an order's transcript; nothing else becomes a link."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ class FactorColumn:
 
     @cached_property
     def distinct(self) -> list[Any]:
-        """Its values: numbers in their order, words in that of the runs."""
+        """Its values: numbers in numeric order, words in the order of the runs."""
         if not self.numeric:
             return list(dict.fromkeys(self.words))
         known = self.values[~np.isnan(self.values)]
@@ -62,18 +62,18 @@ class FactorColumn:
 
     @cached_property
     def missing(self) -> int:
-        """The number of runs in which nothing is written for it."""
+        """The number of runs in which it has no value."""
         return int(np.isnan(self.values).sum()) if self.numeric else self.words.count("")
 
     @property
     def count(self) -> int:
-        """The number of its levels, nothing among them."""
+        """The number of its levels, including the missing value."""
         return len(self.distinct) + (1 if self.numeric and self.missing else 0)
 
     def levels(self, most: int, ranges: int) -> Levels:
-        """Its levels; of a numeric factor with more than ``most``, so many ranges.
+        """Its levels; for a numeric factor with more than ``most``, that many ranges.
 
-        Of words with more levels, those behind are one level.
+        For words with more levels, the rest is one level.
         """
         if not self.numeric:
             return self._worded(most)
@@ -115,7 +115,7 @@ class MeasureColumn:
 
     @property
     def unit(self) -> str:
-        """Its unit, with a space before it; nothing for a count."""
+        """Its unit, with a space before it; empty for a count."""
         return f" {shown(self.column.unit)}" if self.column.unit else ""
 
     @property
@@ -127,7 +127,7 @@ class MeasureColumn:
 
 @dataclass(frozen=True, slots=True)
 class OrderRow:
-    """An order of events: its number by how often it came, and its transcript."""
+    """An order of events: its rank by frequency, and its transcript."""
 
     number: int
     signature: str
@@ -139,13 +139,13 @@ class OrderRow:
 
     @property
     def label(self) -> str:
-        """What it is called in the map."""
+        """Its label in the map."""
         return str(self.number) if self.signature else "–"
 
 
 @dataclass
 class Data:
-    """All that a page is made from."""
+    """The data from which a page is made."""
 
     sheet: Sheet
     factors: list[FactorColumn]
@@ -171,7 +171,7 @@ def data_of(sheet: Sheet) -> Data:
     """The data of a table.
 
     Raises:
-        UsageError: a cell holds no number where there should be one.
+        UsageError: a cell does not hold a number where there should be one.
     """
     factors, measures = [], []
     try:
@@ -233,12 +233,12 @@ def _orders(sheet: Sheet) -> tuple[list[OrderRow], Groups]:
 
 
 def shown(text: str) -> str:
-    """A name as it is shown: cut, and without what would turn or hide other text."""
+    """A name as shown: cut, and without characters that would reorder or hide other text."""
     return visible(text if len(text) <= LONGEST else text[:LONGEST] + "…")
 
 
 def number(value: float) -> str:
-    """A number with four digits, or with all before its point."""
+    """A number with four digits, or with all digits before the point."""
     if value == 0 or not np.isfinite(value):
         return "0" if value == 0 else "–"
     if abs(value) >= 1000:

@@ -18,15 +18,15 @@ from prima.transcript import colours
 
 WIDTH = 720.0
 LEFT, RIGHT = 170.0, 60.0
-"""Room for the names of levels, and for the numbers of runs."""
+"""The space for the names of levels, and for the numbers of runs."""
 HEIGHT = 84.0
 """Of a histogram."""
 ROW = 19.0
 CELL = 26.0
 COLOURED = colours.NOBODY
-"""Orders that have a colour of their own: the most frequent ones."""
+"""The number of orders with a colour of their own: the most frequent ones."""
 LISTED = 12
-"""Orders that the figure of a map lists."""
+"""The number of orders that the figure of a map lists."""
 
 STYLE = """
 .bin { fill: #9cc3ea; stroke: #1c5d99; stroke-width: 0.6 }
@@ -53,7 +53,7 @@ STYLE = """
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A drawing, and what it is said to show."""
+    """A drawing with its description."""
 
     name: str
     title: str
@@ -64,7 +64,7 @@ class Figure:
 
     @property
     def file(self) -> str:
-        """Its name as that of a file."""
+        """Its name as a file name."""
         return re.sub(r"[^A-Za-z0-9_.()-]", "_", self.name).lstrip(".-")[:80] or "figure"
 
     def inline(self) -> str:
@@ -83,7 +83,7 @@ class Figure:
 
 
 class Scale:
-    """Where values stand between two places."""
+    """A scale that maps values to positions between two points."""
 
     def __init__(self, low: float, high: float, begin: float, end: float) -> None:
         self.low, self.high = low, high
@@ -94,7 +94,7 @@ class Scale:
         return self.begin + (value - self.low) / (self.high - self.low) * (self.end - self.begin)
 
     def ticks(self, least: float = 0.0) -> list[float]:
-        """At most eight round values between the ends, so far apart at least."""
+        """At most eight round values between the ends, with a minimum distance."""
         rough = max((self.high - self.low) / 5, least)
         power = 10.0 ** floor(log10(rough))
         step = next(one * power for one in (1, 2, 5, 10) if one * power >= rough)
@@ -195,7 +195,7 @@ def _middle(x: float, y: float, what: str, kind: str = "") -> str:
 
 
 def shade(place: int) -> int:
-    """The colour of an order, by its place: of those behind, that of nobody."""
+    """The colour of an order, by its rank; grey for the less frequent ones."""
     return min(place, COLOURED)
 
 

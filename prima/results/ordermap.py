@@ -10,10 +10,10 @@ from prima.results.data import Data, Levels
 from prima.results.statistics import Groups
 
 MOST_LEVELS = 40
-"""Levels of a factor that the map shows one by one."""
+"""The number of levels of a factor that the map shows individually."""
 RANGES = 20
 MOST_LINKED = 500
-"""The most frequent orders, which have links and are told apart by the page."""
+"""The number of frequent orders that have links and are distinguished by the page."""
 
 Cell = tuple[int, int, int, int]
 """The most frequent order's place, its runs, all runs, and the number of orders."""
@@ -37,7 +37,7 @@ def order_map(data: Data, rows: Levels, columns: Levels | None) -> OrderMap:
 
 
 def _cells(places: Groups, orders: Groups, count: int) -> list[Cell | None]:
-    """For each place its most frequent order; of two the one that is more frequent elsewhere."""
+    """The most frequent order of each place; of two, the one more frequent overall."""
     many = int(orders.max()) + 1
     pairs, runs = np.unique(places * many + orders, return_counts=True)
     found: list[Cell | None] = [None] * count
@@ -55,7 +55,7 @@ def _cells(places: Groups, orders: Groups, count: int) -> list[Cell | None]:
 
 
 def map_levels(data: Data) -> list[Levels]:
-    """The levels of each factor that is varied, as the map shows them."""
+    """The levels of each varied factor, as shown in the map."""
     return [one.levels(MOST_LEVELS, RANGES) for one in data.varied]
 
 

@@ -65,7 +65,7 @@ def page(data: Data, folder: Path, by: tuple[int, ...]) -> str:
 
 
 def _links(data: Data, folder: Path) -> Callable[[OrderRow], str]:
-    """Gives the address of an order's transcript, from the folder of the page."""
+    """Returns the address of an order's transcript, relative to the page's folder."""
     begin = data.sheet.path.parent
     base = os.path.realpath(folder)
 
@@ -137,7 +137,7 @@ def _tests(data: Data, analysis: Analysis) -> str:
 
 
 def _map(data: Data, by: tuple[int, ...], link: Callable[[OrderRow], str]) -> str:
-    """The map of orders with what chooses its factors."""
+    """The map of orders with the selection of its factors."""
     made = ""
     if not any(link(one) for one in data.orders[:MOST_LINKED]):
         made = (
@@ -194,7 +194,7 @@ def _made(data: Data) -> str:
 
 
 def _data(data: Data, link: Callable[[OrderRow], str]) -> dict[str, Any]:
-    """What the script draws maps of other factors from."""
+    """The data from which the script draws maps of other factors."""
     levels = map_levels(data)
     maps: dict[str, OrderMap] = {}
     for a in range(len(levels)):

@@ -1,6 +1,6 @@
 """A sweep's table as it was written, and the dictionary beside it.
 
-Nothing here trusts the files: they may be cut off, edited in a spreadsheet, or no table at all.
+The files are not trusted: they may be cut off, edited in a spreadsheet, or not tables at all.
 """
 
 from __future__ import annotations
@@ -24,27 +24,27 @@ ROLES = ("id", "factor", "outcome", "measure")
 MOST_ROWS = 1_000_000
 MOST_COLUMNS = 1_000
 MOST_BYTES = 1_000_000_000
-"""Size of a Parquet file's content, in which equal texts count once."""
+"""Maximum size of a Parquet file's content, where equal texts count once."""
 MOST_LINE = 10_000_000
-"""Length of a line of a CSV file (characters)."""
+"""Maximum length of a line of a CSV file (characters)."""
 MOST_BESIDE = 10_000_000
 """Maximum length of a dictionary or plan (characters)."""
 MOST_NAMED = 20
-"""Columns that a note lists."""
+"""The number of columns that a note lists."""
 
 
 @dataclass(slots=True)
 class Sheet:
-    """A table: the columns that are known, and their cells."""
+    """A table: its known columns, and their cells."""
 
     path: Path
     columns: list[Column]
     cells: dict[str, list[Any]]
-    """By columns: texts in a CSV file, values in a Parquet file."""
+    """By column: texts from a CSV file, values from a Parquet file."""
     plan: dict[str, Any] = field(default_factory=dict)
-    """What determined the sweep, as the file beside it says; empty if there is none."""
+    """What determined the sweep, according to the file beside it; empty if there is none."""
     cut: str = ""
-    """Why the table is not whole."""
+    """Why the table is incomplete."""
     notes: list[str] = field(default_factory=list)
 
     def __len__(self) -> int:
@@ -55,7 +55,7 @@ def read(path: str | Path) -> Sheet:
     """Read a sweep's table, or the one in a folder, or beside it.
 
     Raises:
-        UsageError: it is no such table, or cannot be read.
+        UsageError: it is not such a table, or cannot be read.
     """
     table = table_of(Path(path))
     if table.exists() and not table.is_file():
@@ -85,7 +85,7 @@ def read(path: str | Path) -> Sheet:
 
 
 def _broken_off(sheet: Sheet) -> str:
-    """Why a table is not whole whose sweep has not made all its runs."""
+    """The note that a table is incomplete because its sweep has not made all runs."""
     planned = sheet.plan.get("runs")
     if not isinstance(planned, int) or planned <= len(sheet):
         return ""
@@ -93,7 +93,7 @@ def _broken_off(sheet: Sheet) -> str:
 
 
 def table_of(path: Path) -> Path:
-    """The table that a path means: itself, the one in a folder, or the one beside it.
+    """The table denoted by a path: itself, the one in a folder, or the one beside it.
 
     Raises:
         UsageError: there is none, or more than one.
@@ -142,10 +142,10 @@ def files_of(table: Path) -> list[Path]:
 
 
 def _read_csv(path: Path) -> tuple[dict[str, list[Any]], str]:
-    """The cells of a CSV file, and why it is not whole.
+    """The cells of a CSV file, and why it is incomplete.
 
     Raises:
-        ValueError: it is no table.
+        ValueError: it is not a table.
     """
     ended = _is_ended(path)
     with path.open(encoding="utf-8-sig", newline="") as stream:
@@ -245,7 +245,7 @@ def _beside(table: Path, name: str) -> dict[str, Any] | None:
 
 
 def _columns(sheet: Sheet) -> list[Column]:
-    """What the columns are: as the dictionary says, or as their names do."""
+    """The types of the columns: from the dictionary, or from their names."""
     known = {one.name: one for one in (*HEAD, *OUTCOMES, *MEASURES)}
     known |= {name: _measure(name, meaning) for name, meaning in MEANINGS.items()}
     data = _beside(sheet.path, DICTIONARY)
@@ -273,7 +273,7 @@ def _note_missing(sheet: Sheet, what: str, names: Iterable[str], there: Containe
 
 
 def _told(data: dict[str, Any]) -> Iterator[Column]:
-    """The columns of a dictionary; what is no column is left out."""
+    """The columns of a dictionary; invalid entries are omitted."""
     fields = data.get("fields")
     for one in fields if isinstance(fields, list) else []:
         if not isinstance(one, dict) or one.get("role") not in ROLES:

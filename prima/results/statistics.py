@@ -1,7 +1,7 @@
 """The numbers of a page: summaries with intervals, tests with effect sizes, Holm's correction.
 
 Values are arrays of floats, in which NaN stands for a missing value. The same values give the
-same numbers: what is drawn is drawn with one seed.
+same numbers: random draws use a fixed seed.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ Groups = NDArray[np.int64]
 SEED = 1
 RESAMPLES = 1_000
 MOST_DISTINCT = 500
-"""Distinct values of a group up to which its interval is bootstrapped."""
+"""The maximum number of distinct values of a group whose interval is bootstrapped."""
 LEVEL = 0.95
 LEAST_GROUP = 5
-"""Runs of each level that a test needs: below, the distribution of H is too far from chi squared."""
+"""Runs per level that a test needs: with fewer, the distribution of H is far from chi squared."""
 LEAST_PAIRS = 10
 """Runs that a rank correlation needs."""
 
 
 @dataclass(frozen=True, slots=True)
 class ValueSummary:
-    """What is said of values: their mean with its interval, their spread, their quartiles."""
+    """A summary of values: their mean with its interval, their spread, their quartiles."""
 
     count: int
     missing: int
@@ -38,14 +38,14 @@ class ValueSummary:
     high: float
     """The ends of the mean's 95 % interval."""
     deviation: float
-    """The standard deviation (n - 1); 0 of a single value."""
+    """The standard deviation (n - 1); 0 for a single value."""
     least: float
     lower: float
     median: float
     upper: float
     most: float
     bootstrapped: bool
-    """Whether the interval is; else it is that of the normal distribution."""
+    """Whether the interval is bootstrapped; else it is that of the normal distribution."""
 
     @property
     def constant(self) -> bool:
@@ -74,7 +74,7 @@ class FactorTest:
 
     method: Method
     sizes: tuple[int, ...]
-    """Runs of each level; of a rank correlation the number of pairs."""
+    """Runs of each level; for a rank correlation, the number of pairs."""
     statistic: float
     p: float
     effect: float
@@ -116,9 +116,9 @@ def summary(values: Values) -> ValueSummary | None:
 def interval(known: Values) -> tuple[float, float, bool]:
     """The 95 % interval of a mean, and whether it is bootstrapped.
 
-    It is the percentile bootstrap's. Drawing values with replacement is drawing how often each
-    distinct value comes, so equal values cost nothing. Where there are too many distinct ones, the
-    normal distribution gives nearly the same.
+    It is the percentile bootstrap's. Drawing values with replacement means drawing how often each
+    distinct value occurs, so equal values cost nothing. If there are too many distinct ones, the
+    normal distribution gives nearly the same result.
     """
     distinct, counts = np.unique(known, return_counts=True)
     size = len(known)

@@ -1,4 +1,4 @@
-"""The tables of a page: what each factor, outcome, measure, test and order is, as HTML."""
+"""The tables of a page: factors, outcomes, measures, tests and orders as HTML."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from prima.results.ordermap import OrderMap
 from prima.results.statistics import MANN_WHITNEY, ValueSummary
 
 NUMBER = re.compile(r"(?:&lt; )?-?[0-9][0-9.e+-]*(?: \([0-9.]+%\))?|–")
-"""A cell of a number, or of none; a column of such stands on the right."""
+"""A cell with a number, or an empty one; columns of numbers are aligned right."""
 CLASSES = {True: ' class="n"', False: ""}
 LISTED = 50
-"""Orders, levels or rows of outcomes that a table lists."""
+"""The number of orders, levels or outcomes that a table lists."""
 Link = Callable[[OrderRow], str]
 """The address of an order's transcript from the page; empty if there is none."""
 
 
 def table(name: str, caption: str, heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table that can be copied; cells are markup, and those of numbers stand on the right."""
+    """A table that can be copied; cells are markup, and numbers are aligned right."""
     held = [list(row) for row in rows]
     right = [all(NUMBER.fullmatch(one) for one in column) for column in zip(*held, strict=True)]
     right = [place > 0 and one for place, one in enumerate(right or [False] * len(heads))]
@@ -56,7 +56,7 @@ def _cells(row: Sequence[str], right: Sequence[bool]) -> str:
 
 
 def facts(data: Data) -> list[tuple[str, str]]:
-    """What the head of the page says, as names and texts."""
+    """The content of the page's head, as names and texts."""
     sheet = data.sheet
     fine = sum(str(one) in ("0", "0.0") for one in sheet.cells["exit"])
     found = [("Runs", str(len(data))), ("Fine (exit code 0)", _share(fine, len(data)))]
@@ -70,7 +70,7 @@ def facts(data: Data) -> list[tuple[str, str]]:
 
 
 def _planned(data: Data) -> Iterable[tuple[str, str]]:
-    """What the plan beside the table says."""
+    """The content of the plan beside the table."""
     plan = data.sheet.plan
     question = plan.get("question")
     if isinstance(plan.get("prima"), str):
@@ -82,7 +82,7 @@ def _planned(data: Data) -> Iterable[tuple[str, str]]:
 
 
 def documents(data: Data) -> list[str]:
-    """The scenarios of the sweep as its plan names them, then the digests of all its documents."""
+    """The scenarios named by the sweep's plan, then the digests of all its documents."""
     plan = data.sheet.plan
     question, files = plan.get("question"), plan.get("files")
     scenarios = question.get("scenarios") if isinstance(question, dict) else None
@@ -96,7 +96,7 @@ def _share(count: int, whole: int) -> str:
 
 
 def factors(data: Data) -> str:
-    """The table of factors, those with one level too."""
+    """The table of factors, including those with one level."""
     rows = []
     for one in data.factors:
         column = one.column
@@ -207,7 +207,7 @@ def tests(analysis: Analysis) -> str:
 
 
 def untested(analysis: Analysis) -> str:
-    """The table of what is not tested, and why."""
+    """The table of measures that are not tested, and why."""
     rows = [
         [text(measure.name), text(factor.name), text(one.why)]
         for measure, factor, one in analysis.untested
@@ -231,7 +231,7 @@ def orders(data: Data, link: Link) -> str:
 
 
 def map_table(data: Data, made: OrderMap, names: Sequence[str], link: Link) -> str:
-    """The map of orders as a table; the page's script makes the same of other factors."""
+    """The map of orders as a table; the page's script makes the same for other factors."""
     columns = made.columns.names if made.columns else ["Order"]
     corner = text(" \\ ".join(names))
     head = "".join(f'<th scope="col">{text(one)}</th>' for one in columns)

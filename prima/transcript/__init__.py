@@ -1,1 +1,1 @@
-"""Transcripts: records, reading and writing, the table that people read, and diff."""
+"""Transcripts: records, reading and writing, the printed table, and diff."""

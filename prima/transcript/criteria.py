@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 @dataclass(slots=True)
 class ReactionDelay:
-    """An event, and the time (s) until an application's first Command because of it."""
+    """An event, and the time (s) until an application's first Command in reaction to it."""
 
     event: str
     serial: int
@@ -32,7 +32,7 @@ class Criteria:
     broken: int = 0
     """Streams broken other than by a reaction."""
     broken_waiting: int = 0
-    """Waits for a server into which another application came by no reaction (first pattern)."""
+    """Waits for a server broken by another application without a reaction (first pattern)."""
     unfaced: int = 0
     """Conversations begun without the channel (second pattern)."""
     left: int = 0
@@ -42,7 +42,7 @@ class Criteria:
     misanswered: int = 0
     """Questions that took what the user said just after another application's timeout (X10)."""
     wordless: int = 0
-    """Topics taken up after another application has spoken, without words that say so (X9)."""
+    """Topics resumed after another application has spoken, without words that say so (X9)."""
     reactions: int = 0
     """Events that some application reacted to; without one the times below are None."""
     reaction_mean: float | None = None
@@ -58,7 +58,7 @@ class Criteria:
 
 
 def shown_time(seconds: float | None) -> str:
-    """A time as people read it; of no reaction at all there is none."""
+    """A time as text; ``-`` if there was no reaction."""
     return "-" if seconds is None else f"{seconds:.2f}"
 
 

@@ -34,7 +34,7 @@ MARKS: dict[Kind, str] = {
 
 @dataclass(slots=True)
 class Change:
-    """One row of a diff: the rows it is about (None where there is none) and what changed."""
+    """One row of a diff: the rows compared (None if missing) and what changed."""
 
     kind: Kind
     before: Row | None
@@ -66,7 +66,7 @@ class Difference:
 
 
 def compare(before: Sequence[Row], after: Sequence[Row]) -> Difference:
-    """Align two transcripts' rows: the same behaviour, its n-th time, is the same row.
+    """Align two transcripts' rows: the n-th occurrence of the same behaviour is the same row.
 
     Of the matched rows the longest sequence that keeps its order is unmoved;
     time is O(n log n), memory linear.
@@ -138,7 +138,7 @@ def _longest_increasing(values: list[int]) -> set[int]:
 def _pair_changed(
     before: Sequence[Row], after: Sequence[Row], lost: list[int], added: list[int]
 ) -> list[tuple[int, int]]:
-    """Rows that are there in both but say something else."""
+    """Rows that are in both but differ."""
     places: dict[object, list[int]] = defaultdict(list)
     for j in reversed(added):
         row = after[j]
@@ -160,7 +160,7 @@ def _interleave(
     gone: list[int],
     pairs: list[tuple[int, int]],
 ) -> list[Change]:
-    """The second transcript's order, with what was lost put behind its predecessor."""
+    """The second transcript's order, with lost rows placed after their predecessors."""
     to, missing = dict(pairs), set(gone)
     behind: dict[int, list[int]] = defaultdict(list)
     previous = -1
@@ -212,7 +212,7 @@ def format_difference(difference: Difference, colour: bool = False) -> str:
 
 
 def remark(change: Change) -> str:
-    """In what way a row changed, in words; empty where its kind says all."""
+    """How a row changed, in words; empty if its kind says everything."""
     before = change.before
     match change.kind:
         case "moved":
@@ -258,7 +258,7 @@ _encode = json.JSONEncoder(ensure_ascii=False, separators=(",\n        ", ": "))
 
 
 def _row_json(row: Row | None) -> str:
-    """A row in lines of JSON that stand as deep as those of a change."""
+    """A row in lines of JSON, indented like those of a change."""
     if row is None:
         return "null"
     held = {name: getattr(row, name) for name in _ROW}

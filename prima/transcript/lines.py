@@ -21,14 +21,14 @@ MAX_LINE = 1_000_000
 INCOMPLETE = "the transcript is incomplete."
 """The end of the message of a transcript whose last line is cut off."""
 MAX_LINES, MAX_CHARACTERS, MAX_VALUES = 1_000_000, 400_000_000, 20_000_000
-"""Maximum number of lines, characters and values (about) of a transcript that is read: more than
+"""Maximum number of lines, characters and (roughly) values of a transcript that is read: more than
 any run writes."""
 
 
 _encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
 _orders: dict[tuple[str, ...], list[str]] = {}
-"""The fields of records in their order, by the order in which a record has come to have them:
-what records something has always the same fields."""
+"""The fields of records in their order, by the order in which they were set: the same code always
+sets the same fields."""
 
 
 def line(record: Record) -> str:
@@ -56,7 +56,7 @@ _SCALARS = frozenset({str, int, float, bool, type(None)})
 
 
 def _read_back(value: Json) -> Json:
-    """A value as JSON gives it back: a copy, of lists and dicts with names as keys."""
+    """A value as JSON would return it: a copy of lists and dicts with strings as keys."""
     kind = type(value)
     if kind in _SCALARS:
         return value
@@ -70,8 +70,8 @@ def _read_back(value: Json) -> Json:
 def read_lines(name: str, lines: Iterable[str], cut: list[str] | None = None) -> Iterator[Record]:
     """Read a transcript's records, checked against the model.
 
-    Where ``cut`` is a list, whole records before a bad line are given all the
-    same, and what is wrong with that line is put into it.
+    If ``cut`` is a list, complete records before an invalid line are still yielded,
+    and the line's error is appended to it.
 
     Raises:
         UsageError: the text is not a transcript; the line is named.
@@ -118,11 +118,11 @@ def _read(text: str, quick: Callable[[str], Record]) -> Record:
 
 @cache
 def quick_reader() -> Callable[[str], Record]:
-    """What reads a line and checks it at once, a few times as fast as one after the other.
+    """Parses and checks a line in one step, which is several times as fast as two.
 
-    It raises pydantic's ``ValidationError`` for whatever it does not take; it refuses nothing
-    of :func:`model` but escaped halves of letters and very deep values, and takes what is no
-    JSON, the numbers ``NaN`` and ``Infinity``. Times are floats.
+    It raises pydantic's ``ValidationError`` for lines that it does not accept. Of the lines that
+    :func:`model` accepts it rejects only escaped halves of letters and very deep values; it also
+    accepts ``NaN`` and ``Infinity``, which are not JSON. Times are floats.
     """
     from pydantic import TypeAdapter
     from typing_extensions import TypedDict
@@ -140,16 +140,16 @@ def quick_reader() -> Callable[[str], Record]:
 
 
 def _closely(text: str) -> Record:
-    """The record of a line that is not plainly one.
+    """The record of a line that the fast parser rejects.
 
     Raises:
-        ValueError: it is none.
-        RecursionError: it holds values inside values without end.
+        ValueError: it is not a record.
+        RecursionError: its values are nested too deeply.
     """
     record: Record = json.loads(text, parse_constant=_no_number)
     model().model_validate(record)
     if "\\ud" in text.lower():
-        json.dumps(record, ensure_ascii=False).encode()  # half a letter is none
+        json.dumps(record, ensure_ascii=False).encode()  # half a letter is invalid
     return record
 
 
@@ -158,11 +158,11 @@ def _no_number(word: str) -> None:
 
 
 class _Backward(ValueError):
-    """A record is before the one that stands above it."""
+    """A record is earlier than the one above it."""
 
 
 class _TooMuch(ValueError):
-    """A transcript holds more than is read."""
+    """A transcript exceeds the limits."""
 
 
 class _Size:
@@ -172,10 +172,10 @@ class _Size:
         self.lines = self.characters = self.values = 0
 
     def add(self, text: str) -> None:
-        """Count a line before anything is made of it.
+        """Count a line before it is processed.
 
         Raises:
-            _TooMuch: it is all together more than is read.
+            _TooMuch: the total exceeds a limit.
         """
         self.lines += 1
         self.characters += len(text)
@@ -214,7 +214,7 @@ def _why(error: Exception, text: str, invalid: type[Exception]) -> str:
 
 @cache
 def head_model() -> type[BaseModel]:
-    """What the data of a run's record are checked against before they are used."""
+    """The model against which the data of a run's record are checked."""
     from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
     class Live(BaseModel):
@@ -244,7 +244,7 @@ def head_model() -> type[BaseModel]:
 
 
 def check_head(head: Record, name: str) -> None:
-    """See that a transcript's first record says how to run it again.
+    """Check that a transcript's first record says how to run it again.
 
     Raises:
         UsageError: it does not.

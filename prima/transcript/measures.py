@@ -16,7 +16,7 @@ class Summary:
 
     seconds: float
     streams_broken: int
-    """Streams broken by no reaction, as docs/measures.md defines it."""
+    """Streams broken other than by a reaction, as docs/measures.md defines it."""
     collisions: int
     reactions: int
     """Events that some application reacted to with a Command that started."""
@@ -27,14 +27,14 @@ class Summary:
     response_mean: float | None
     response_max: float | None
     starved: int = 0
-    """Behaviours that another application has kept waiting for too long (E4, E6)."""
+    """Behaviours that another application kept waiting for too long (E4, E6)."""
 
 
 class Measure:
     """Measures during a run, without keeping records.
 
     Args:
-        observer: one that is given every record already; by default its own.
+        observer: one that already receives every record; by default its own.
     """
 
     def __init__(self, observer: Observer | None = None) -> None:

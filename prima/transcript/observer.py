@@ -11,17 +11,17 @@ from prima.transcript.perceived import AwaitedAnswer, AwaitingEvent, PerceivedSt
 from prima.transcript.record import Entry
 
 LATE_REACTION = 3.0
-"""Seconds after its event from which on a reaction is late."""
+"""A reaction is late from this many seconds after its event."""
 LATE_ANSWER = 3.0
-"""Seconds after a question's timeout in which the end of the user's words is meant for it still."""
+"""Within this many seconds after a question's timeout, words that end still answer it."""
 RESUMES = "X9"
-"""The mark of words with which a topic is taken up."""
+"""The mark of words with which a topic resumes."""
 PARTS = 1 << 80
-"""Parts of a second in which floats from a microsecond on are whole numbers."""
+"""The parts of a second in which floats from a microsecond on are integers."""
 MOST_EVENTS = 1000
-"""How many events later a reaction may still come."""
+"""The number of later events after which a reaction no longer counts."""
 MOST_STREAMS = 256
-"""How many streams, and how many waits, are looked at at once: each start looks at all of them."""
+"""Maximum number of streams, and of waits, that are tracked: each start checks all of them."""
 
 
 class Observer:
@@ -35,27 +35,27 @@ class Observer:
         self.found = Criteria()
         self._keeps_delays = delays
         self._delayed = 0
-        """The seconds of all reactions, in parts so small that the sum is exact."""
+        """The seconds of all reactions, in parts small enough for an exact sum."""
         self._responded = 0
         """The seconds until all responses, in such parts."""
         self._trees: dict[str, PerceivedStream] = {}
         self._of: dict[str, PerceivedStream] = {}
         """The streams of behaviors that have not ended."""
         self.broken_since = 0.0
-        """When another application came into the stream that was counted as broken last."""
+        """When another application entered the stream that was last counted as broken."""
         self._seen = False
         self._cut: set[str] = set()
-        """Behaviors that go on and have lost a device."""
+        """Running behaviors that have lost a device."""
         self._now = 0.0
         self._events: dict[int, AwaitingEvent] = {}
         """The latest events, by serial number."""
         self._waits: dict[tuple[str, str], AwaitedAnswer] = {}
         """Applications that wait for a service's answer, by application and service."""
         self._stolen: dict[str, bool] = {}
-        """Streams with a question that was answered, of which the next word is awaited, and
-        whether another application has spoken meanwhile."""
+        """Streams with an answered question whose next word is awaited, and whether another
+        application has spoken meanwhile."""
         self._lapsed = ("", -LATE_ANSWER - 1)
-        """Whose question was not answered in time last, and when."""
+        """The application whose question was the latest to time out, and when."""
         self._do: dict[str, Callable[[Entry], None]] = {
             "request": self._request,
             "start": self._start,
@@ -112,7 +112,7 @@ class Observer:
         tree.asks = tree.asks or record.command == "q-and-a"
 
     def _forget(self, name: str) -> None:
-        """A stream is over, or there are too many."""
+        """Drop a stream that is over, or one of too many."""
         self._stolen.pop(name, None)
         tree = self._trees.pop(name, None)
         self.found.unfaced += tree is not None and tree.unfaced
@@ -142,14 +142,14 @@ class Observer:
         tree.engaged = tree.engaged or bool(request.engages)
 
     def _talk(self, tree: PerceivedStream, record: Entry) -> None:
-        """Something is said: its application is noticed while it waits; a conversation begins."""
+        """Something is said: a waiting application is noticed, or a conversation begins."""
         for (app, _), wait in self._waits.items():
             wait.talked = wait.talked or app == tree.app
         if record.command != "active-sensing-human" and tree.faced is None:
             tree.faced = self._seen
 
     def _begin(self, tree: PerceivedStream, record: Entry, request: Entry) -> None:
-        """A behavior begins or resumes: what does it do to the others, and is it a response?"""
+        """A behavior begins or resumes: note its effects on others, and whether it responds."""
         speaks = "speaker" in request.devices
         self._come_in(tree, speaks)
         if request.leaves:
@@ -161,7 +161,7 @@ class Observer:
             self._respond(tree)
 
     def _take_turn(self, tree: PerceivedStream, record: Entry) -> None:
-        """Somebody speaks: is it who has asked what the user has answered, or another?
+        """An application speaks: note whether it asked the question that the user answered.
 
         A unit has the speaker from its start, but its parts speak.
         """
@@ -174,7 +174,7 @@ class Observer:
         self._take_up(tree, record)
 
     def _take_up(self, tree: PerceivedStream, record: Entry) -> None:
-        """Somebody speaks: do they take up their topic after others, and say so?"""
+        """An application speaks: note whether it resumes its topic after others, and says so."""
         request = tree.pending.get(record.behavior.partition(".")[0], record)
         if tree.talked_over and request.inserted != RESUMES and request.cause is None:
             self.found.wordless += 1
@@ -183,7 +183,7 @@ class Observer:
             other.talked_over = other.talked_over or (other.told and other.app != tree.app)
 
     def _over(self, record: Entry) -> None:
-        """A behavior ends; of a question: whose answer is it?"""
+        """A behavior ends; if it is a question, note whose answer it took."""
         tree = self._of.get(record.behavior)
         if tree is not None and record.command == "q-and-a":
             app, when = self._lapsed
@@ -196,9 +196,9 @@ class Observer:
         self._end(record)
 
     def _go_on(self, tree: PerceivedStream, speaks: bool) -> None:
-        """A stream does something, or speaks: has another application broken it meanwhile?
+        """A stream does something, or speaks: note whether another application has broken it.
 
-        What begins beside it at the same instant has not come in between.
+        ABs that begin beside it at the same instant do not break it.
         """
         spoken_into = speaks and tree.spoken_into
         came_in = bool(tree.broken_by) and tree.since < self._now
@@ -213,7 +213,7 @@ class Observer:
             tree.spoken = False
 
     def _react(self, tree: PerceivedStream, serial: int, event: AwaitingEvent) -> None:
-        """An application starts something because of an event: the first time counts."""
+        """An application starts something in reaction to an event: the first time counts."""
         found, app = self.found, tree.app
         if app not in event.answered:
             event.answered.add(app)
@@ -231,7 +231,7 @@ class Observer:
             found.broken_waiting += 1
 
     def _respond(self, tree: PerceivedStream) -> None:
-        """The user is spoken to or turned to: all that the stream reacts to has its response."""
+        """The user is spoken to or turned to: this responds to all events of the stream."""
         found = self.found
         for time, delay in tree.owed:
             delay.response = seconds = round(self._now - time, 3)
@@ -241,7 +241,7 @@ class Observer:
         tree.owed = []
 
     def _come_in(self, tree: PerceivedStream, speaks: bool) -> None:
-        """Something of a stream begins: what others have not finished may be broken by it."""
+        """An AB of a stream begins: it may break what others have not finished."""
         for other in self._trees.values():
             if other.app != tree.app and other.begun:
                 self._come_into(other, tree, speaks)
@@ -250,7 +250,7 @@ class Observer:
             wait.broken = wait.broken or broken
 
     def _come_into(self, other: PerceivedStream, tree: PerceivedStream, speaks: bool) -> None:
-        """A stream comes into another one, which is broken by it if it goes on later."""
+        """A stream enters another one, which is broken if it continues later."""
         if speaks and other.spoken and not other.spoken_into:
             self._speak_into(other, tree)
         idle = not other.running and not tree.running
@@ -258,19 +258,19 @@ class Observer:
         if other.topics and idle and not other.broken_by:
             other.broken_by, other.since = tree.app, self._now
             other.by_reaction = tree.reacting >= 0
-            other.reacting = -1.0  # when it goes on, that is no reaction any more
+            other.reacting = -1.0  # its continuation does not count as a reaction any more
 
     def _speak_into(self, other: PerceivedStream, tree: PerceivedStream) -> None:
-        """A stream speaks while another one that has spoken does something: is it its topic?
+        """A stream speaks while another that has spoken is active: note whether it breaks a topic.
 
-        On a way or a search one may talk: a feedback Command takes as long as it takes.
+        Speaking during a way or a search is fine: a feedback Command takes as long as it takes.
         """
         if other.running and not other.looping and not other.speaking:
             other.spoken_into, other.since = tree.reacting < 0, self._now
             other.reacting = -1.0
 
     def _leave(self, tree: PerceivedStream, behavior: str) -> None:
-        """The robot goes away: is another application in the middle of a conversation?"""
+        """The robot leaves: note whether another application is in the middle of a conversation."""
         for other in self._trees.values():
             if other.app == tree.app or not other.engaged:
                 continue
@@ -319,7 +319,7 @@ class Observer:
 
 
 def _mean(parts: int, number: int) -> float | None:
-    """The mean of so many times, from their sum; of none it is None."""
+    """The mean of a number of times from their sum; None if there are none."""
     return round(parts / PARTS / number, 3) if number else None
 
 

@@ -15,22 +15,22 @@ class PerceivedStream:
     name: str
     app: str
     pending: dict[str, Entry] = field(default_factory=dict)
-    """Requests of it that have not ended, by AB."""
+    """Its requests that have not ended, by AB."""
     topics: set[str] = field(default_factory=set)
     """Those of them that do not leave the user."""
     running: set[str] = field(default_factory=set)
     leaving: set[str] = field(default_factory=set)
-    """What of it runs and leaves the user."""
+    """Its running ABs that leave the user."""
     looping: set[str] = field(default_factory=set)
-    """What of it runs and works in a feedback loop."""
+    """Its running ABs that work in a feedback loop."""
     speaking: set[str] = field(default_factory=set)
-    """What of it runs and speaks."""
+    """Its running ABs that speak."""
     spoken: bool = False
     """Whether it has spoken, and no break has been counted since."""
     spoken_into: bool = False
-    """Whether another application has spoken, by no reaction, since it last did."""
+    """Whether another application has spoken, other than by a reaction, since it last did."""
     since: float = 0.0
-    """When another application came in or spoke into it."""
+    """When another application entered it or spoke into it."""
     told: bool = False
     """Whether it has ever spoken."""
     talked_over: bool = False
@@ -40,11 +40,11 @@ class PerceivedStream:
     begun: bool = False
     engaged: bool = False
     broken_by: str = ""
-    """The application that has come in since it last did something, if any."""
+    """The application that has entered since it last did something, if any."""
     by_reaction: bool = False
     left_by: set[str] = field(default_factory=set)
     reacting: float = -1.0
-    """When a reaction of it started last, if nobody has come in since; else less than 0."""
+    """When its latest reaction started, if no other application has entered since; else below 0."""
     asks: bool = False
     """Whether it has asked or will ask the user something."""
     faced: bool | None = None

@@ -1,4 +1,4 @@
-"""The phases of a transcript's records: what each tells, and the fields that it needs."""
+"""The phases of a transcript's records: the meaning of each, and the fields that it needs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Phase(NamedTuple):
-    """What a record tells, its notable fields, and those without which it says nothing."""
+    """A phase's meaning, its notable fields, and its required ones."""
 
     meaning: str
     notable: str
@@ -18,7 +18,7 @@ PHASES = {
     "load": Phase(
         "an application starts; once as inbound, once by the mediator", "`app`", ("app",)
     ),
-    "unload": Phase("an application has ended or is taken out", "`outcome`: why", ("app",)),
+    "unload": Phase("an application has ended or is unloaded", "`outcome`: why", ("app",)),
     "request": Phase(
         "an AB enters working memory",
         "`behavior`, `tree`, `command`, `text`, `args`, `extra`, `parent`, `parents`, "
@@ -38,7 +38,7 @@ PHASES = {
         ("behavior", "command", "app"),
     ),
     "end": Phase(
-        "an AB ends by itself; `again` as `outcome` of a loop that another follows",
+        "an AB ends by itself; `outcome` is `again` for a loop that another follows",
         "`outcome`, `goal`, `data`",
         ("behavior", "command", "app"),
     ),
@@ -49,16 +49,16 @@ PHASES = {
     "fail": Phase("an AB fails, or a Command is refused", "`event`, `device`, `message`, `rule`"),
     "hold": Phase("a waiting AB may not start", "`rule`, `by`", ("behavior", "rule", "by")),
     "suspend": Phase("a stream is suspended by another", "`tree`, `by`, `rule`"),
-    "resume": Phase("a suspended stream goes on", "`tree`, `behavior`, `rule`"),
+    "resume": Phase("a suspended stream resumes", "`tree`, `behavior`, `rule`"),
     "floor": Phase("the floor is taken or returned", "`tree`, `outcome`, `floor`, `rule`"),
     "window": Phase(
-        "an application begins or ends to handle the end of its Command", "`tree`, `outcome`"
+        "an application begins or finishes handling the end of its Command", "`tree`, `outcome`"
     ),
     "leave": Phase(
         "an application has left a state of its document", "`state`, `rule`", ("app", "state")
     ),
     "stream-end": Phase("a stream ends", "`tree`", ("tree",)),
-    "stop": Phase("the body is stopped, since nobody moves it on", "`behavior`, `rule`"),
+    "stop": Phase("the body is stopped, since nothing keeps it moving", "`behavior`, `rule`"),
     "collision": Phase(
         "without a mediator: an AB loses a device", "`by`, `device`", ("behavior", "by")
     ),
@@ -77,9 +77,9 @@ PHASES = {
         "a stream is kept open for an event, or no longer (x3)",
         "`tree`, `outcome`: `begun`, `joined`, `left` or `over`; `data`: until when (s)",
     ),
-    "interrupt": Phase("a restartable AB gives way to a reaction (x2)", "`behavior`, `by`, `rule`"),
+    "interrupt": Phase("a restartable AB yields to a reaction (x2)", "`behavior`, `by`, `rule`"),
     "halted": Phase(
-        "the device tells how much of it was done",
+        "the device reports how much of it was done",
         "`behavior`, `data`: `done` (0 to 1), `heard`; of what has marks, `mark` and how many "
         "were `passed`",
         ("behavior",),
@@ -90,7 +90,7 @@ PHASES = {
         ("behavior", "device", "data"),
     ),
     "device": Phase(
-        "a device is missing from here on, or there again",
+        "a device is missing from now on, or available again",
         "`device`, `outcome`: `missing` or `back`; `message`: why",
         ("device", "outcome"),
     ),
@@ -104,16 +104,14 @@ PHASES = {
         "`event`, `serial`, `data`",
         ("event",),
     ),
-    "fetched": Phase(
-        "the answer to what an application has asked a URI for", "`data`", ("app", "data")
-    ),
+    "fetched": Phase("the answer to an application's request to a URI", "`data`", ("app", "data")),
     "transferred": Phase(
         "what has become of a call",
         "`serial`, `outcome`, `data`",
         ("app", "serial", "outcome", "data"),
     ),
     "sensed": Phase(
-        "sensor values have changed: all of them at first, then those that some document looks at",
+        "sensor values have changed: at first all of them, then those that some document uses",
         "`data`",
         ("data",),
     ),
@@ -127,4 +125,4 @@ PHASES = {
     "error": Phase("an error that no handler took", "`message`, `source`"),
     "over": Phase("the run has ended", "`outcome`: `over`, `quiet`, `until` or `limit`"),
 }
-"""The phases by their names."""
+"""The phases by name."""

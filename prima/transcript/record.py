@@ -16,13 +16,13 @@ from prima.transcript.phases import PHASES
 if TYPE_CHECKING:
     from pydantic import BaseModel
 
-MEANING = """One line of a transcript. Fields that do not apply are left out.
+MEANING = """One line of a transcript. Fields that do not apply are omitted.
 
 Times are seconds of the run. ``inbound`` marks what came from outside: the
 inbound records of a transcript are enough to run it again."""
 LONGEST_DAYS = 366
 LONGEST = LONGEST_DAYS * 86_400.0
-"""Seconds that a run may last: no drawing of a longer one would come to an end."""
+"""Maximum length of a run (s): drawing a longer one would not end."""
 
 
 _NOTHING: dict[str, Any] = {}
@@ -30,10 +30,10 @@ _NONE: list[Any] = []
 
 
 class Entry:
-    """A record with a value for each field: the empty one where the record lacks it.
+    """A record with a value for each field, empty if the record lacks it.
 
-    The annotations declare the fields in their order: the type, what it means, and where only
-    some words are allowed, those. Times are seconds of the run; ``time`` where the record's own is not.
+    The annotations declare the fields in order: the type, the meaning and, if only some words are
+    allowed, those. Times are seconds of the run; ``time`` replaces the record's own.
     """
 
     def __init__(self, record: Record, time: float | None = None) -> None:
@@ -51,11 +51,11 @@ class Entry:
 
     @property
     def first(self) -> bool:
-        """Whether it is about no further loop of a feedback Command, and nothing resumes."""
+        """Whether it is about neither a further loop of a feedback Command nor a resumption."""
         return self.behavior.partition(".")[2] in ("", "1") and not self.resumed
 
     def only(self, names: Iterable[str]) -> Entry:
-        """The record with some of its fields alone."""
+        """The record with only some of its fields."""
         return Entry({name: self.__dict__[name] for name in names if name in self.__dict__})
 
     time: Annotated[float, "Seconds since the run began."]
@@ -130,7 +130,7 @@ REQUIRED = ("time", "phase", "actor")
 
 
 def lacking(record: Record) -> str:
-    """The first field that a record lacks of those without which its phase says nothing."""
+    """The first required field of its phase that a record lacks."""
     needed = PHASES[record["phase"]].needed
     return next((name for name in needed if record.get(name) is None), "")
 

@@ -138,9 +138,9 @@ class Life(TimeSpan):
 
 @dataclass(slots=True)
 class StreamPiece:
-    """Something of a stream: it ``runs``, is ``away`` (suspended, then resumed) or ``broken``.
+    """A piece of a stream: it ``runs``, is ``away`` (suspended, then resumed) or ``broken``.
 
-    It is broken where another application has come in by no reaction; ``by`` says for whom.
+    It is broken where another application has entered other than by a reaction; ``by`` names it.
     """
 
     begin: float
@@ -172,7 +172,7 @@ class StreamSpan:
     """Since when it is suspended, if it is."""
 
     def put(self, piece: StreamPiece) -> None:
-        """Add a piece; what runs on without a gap is one."""
+        """Add a piece; pieces that run on without a gap are one."""
         last = self.pieces[-1] if self.pieces else None
         if last and piece.kind == last.kind == "runs" and last.end == piece.begin:
             last.end = piece.end
@@ -182,7 +182,7 @@ class StreamSpan:
 
 @dataclass(frozen=True, slots=True)
 class Reaction:
-    """An application's first start because of an event."""
+    """An application's first start in reaction to an event."""
 
     event: Entry
     start: Entry
@@ -192,7 +192,7 @@ class Reaction:
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """All that a transcript tells of its run."""
+    """Everything that a transcript says about its run."""
 
     entries: list[Entry]
     end: float
@@ -217,13 +217,13 @@ class Run:
 
     @property
     def head(self) -> dict[str, Any]:
-        """What the first record tells of the run; empty if it is not the run's."""
+        """The first record's data on the run; empty if it is not the run record."""
         first = self.entries[0] if self.entries else None
         return first.data if first is not None and first.phase == "run" else {}
 
     @property
     def languages(self) -> dict[str, str]:
-        """The languages of applications, as far as the transcript tells."""
+        """The languages of applications, as far as the transcript says."""
         told = {one.app: one.data.get("lang") for one in self.started}
         return {app: lang for app, lang in told.items() if isinstance(lang, str)}
 
@@ -237,6 +237,6 @@ class Run:
         return self.phases.get(phase, [])
 
     def asked(self, name: str) -> Entry | None:
-        """What was requested under an AB's name, if the transcript tells."""
+        """The request of an AB, by its name, if the transcript has it."""
         found = self.behaviors.get(base(name))
         return found.asked if found is not None and found.requested else None
