@@ -58,20 +58,7 @@ def read(path: str | Path) -> Sheet:
         UsageError: it is not such a table, or cannot be read.
     """
     table = table_of(Path(path))
-    if table.exists() and not table.is_file():
-        raise UsageError(f"{table}: cannot be read: it is not a file.")
-    try:
-        cut = ""
-        if table.suffix == ".parquet":
-            cells = parquet_columns(table, MOST_ROWS, MOST_COLUMNS, MOST_BYTES)
-        else:
-            cells, cut = _read_csv(table)
-    except OSError as error:
-        raise UsageError(f"{table}: cannot be read: {error.strerror or error}.") from None
-    except UnicodeDecodeError:
-        raise UsageError(f"{table}: not the table of a sweep: it is not UTF-8.") from None
-    except ValueError as error:
-        raise UsageError(f"{table}: not the table of a sweep: {error}.") from None
+    cells, cut = _cells(table)
     _check(table, cells)
     sheet = Sheet(table, [], cells, _beside(table, PLAN) or {}, cut)
     sheet.cut = cut or _broken_off(sheet)
@@ -82,6 +69,26 @@ def read(path: str | Path) -> Sheet:
         more = f" ({cut})" if cut else ""
         raise UsageError(f"{table}: the table has no rows{more}; make its runs by prima sweep.")
     return sheet
+
+
+def _cells(table: Path) -> tuple[dict[str, list[Any]], str]:
+    """The cells of a table by column, and the error in the row at which it is cut off.
+
+    Raises:
+        UsageError: it cannot be read.
+    """
+    if table.exists() and not table.is_file():
+        raise UsageError(f"{table}: cannot be read: it is not a file.")
+    try:
+        if table.suffix == ".parquet":
+            return parquet_columns(table, MOST_ROWS, MOST_COLUMNS, MOST_BYTES), ""
+        return _read_csv(table)
+    except OSError as error:
+        raise UsageError(f"{table}: cannot be read: {error.strerror or error}.") from None
+    except UnicodeDecodeError:
+        raise UsageError(f"{table}: not the table of a sweep: it is not UTF-8.") from None
+    except ValueError as error:
+        raise UsageError(f"{table}: not the table of a sweep: {error}.") from None
 
 
 def _broken_off(sheet: Sheet) -> str:

@@ -219,18 +219,22 @@ def _triggers(nodes: list[Node], events: list[KnownEvents], cast: Cast) -> Itera
     begins = {name for one in known for name in beginnings(one)}
     for node, attribute, name in _awaited(nodes):
         ending = ENDINGS if attribute == "reason" else frozenset()
-        if name in begins or name in ending or name.startswith(OPEN):
-            continue
-        if attribute == "on" and _is_time(name):
-            remedy = instead(f'Write at="{name}".', node, "on", "at", name)
-            yield A_TIME.at(node.attribute_place("on", value=False), remedy, name=name)
-        elif other := near(name, chain(ending, known)):
-            message = f'Nothing raises an event "{name}".'
-            if other in ending:
-                message = f'No application ends with "{name}".'
-            remedy = meant(other, *value_span(node, attribute))
-            place = node.attribute_place(attribute)
-            yield Problem(place, "warning", "unknown-event", message, remedy)
+        if not (name in begins or name in ending or name.startswith(OPEN)):
+            yield from _unknown(node, attribute, name, near(name, chain(ending, known)))
+
+
+def _unknown(node: Node, attribute: str, name: str, other: str | None) -> Iterator[Problem]:
+    """An event that nothing raises: a time, or a typo of ``other``."""
+    if attribute == "on" and _is_time(name):
+        remedy = instead(f'Write at="{name}".', node, "on", "at", name)
+        yield A_TIME.at(node.attribute_place("on", value=False), remedy, name=name)
+    elif other:
+        message = f'Nothing raises an event "{name}".'
+        if attribute == "reason" and other in ENDINGS:
+            message = f'No application ends with "{name}".'
+        remedy = meant(other, *value_span(node, attribute))
+        place = node.attribute_place(attribute)
+        yield Problem(place, "warning", "unknown-event", message, remedy)
 
 
 def _is_time(text: str) -> bool:
