@@ -11,7 +11,7 @@ from prima.voicexml.dom import INSTRUCTION
 
 RULES = re.compile(r"""\b(allow|deny)\s*=\s*("[^"]*"|'[^']*')""")
 FOLDER = "localhost"
-"""The host of documents in a folder that stands for none."""
+"""The host of documents in a folder that is not mapped to a URI."""
 
 
 def host_of_page(page: Page) -> str:
@@ -23,8 +23,8 @@ def host_of_page(page: Page) -> str:
 def may_read(data: list[dict[str, Any]], host: str) -> bool:
     """Whether documents of a host may read data, given as its nodes.
 
-    Without an instruction everybody may. With one, the longest name that fits the host decides;
-    of equal ones ``deny``. A host that no name fits may not.
+    Without an instruction every host may. With one, the longest name that matches the host decides;
+    between equal ones ``deny`` wins. A host that no name matches may not.
     """
     said = [one["value"] for one in data if _is_rule(one)]
     rules = [

@@ -27,7 +27,7 @@ from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 
 def text_of(pieces: Iterable[Node | str]) -> Text:
-    """What is said of some pieces of a prompt, with its pauses; nothing of blanks alone."""
+    """The spoken text of some pieces of a prompt, with pauses; empty for white space alone."""
     found = tuple(_words(pieces))
     return found if any(not isinstance(one, str) or one.strip() for one in found) else ()
 
@@ -62,7 +62,7 @@ def command_of(node: Node) -> CommandTemplate:
 
 
 def speak(words: Text, node: Node) -> CommandTemplate:
-    """What is said, as a Command."""
+    """Spoken text as a Command."""
     return CommandTemplate("speak", {}, words, False, (), (), node)
 
 
@@ -73,7 +73,7 @@ def run_of(commands: list[CommandTemplate]) -> CommandRun:
 
 
 def saying(pieces: list[Node | str], node: Node) -> Iterator[Act]:
-    """What is said, and the Commands of the robot among it."""
+    """Spoken text, and the Commands of the robot among it."""
     words = text_of(pieces)
     if words:
         yield run_of([speak(words, node)])
@@ -84,14 +84,14 @@ def saying(pieces: list[Node | str], node: Node) -> Iterator[Act]:
 
 
 def code_of(node: Node, attribute: str) -> Expression | None:
-    """The code of an attribute, if it is there."""
+    """The code of an attribute, if present."""
     return (
         Expression(node.get(attribute), node, attribute) if attribute in node.attributes else None
     )
 
 
 def spoken_pieces(content: Iterable[Node | str]) -> Iterator[tuple[list[Node | str], Node | None]]:
-    """Content as what is said, with its prompt where it has one, and as other elements alone."""
+    """Content split into spoken pieces, each with its prompt if any, and other elements."""
     loose: list[Node | str] = []
     for piece in content:
         if isinstance(piece, str) or piece.tag in SPOKEN - {"prompt"}:
@@ -106,7 +106,7 @@ def spoken_pieces(content: Iterable[Node | str]) -> Iterator[tuple[list[Node | s
 
 
 def branches_of(node: Node) -> Iterator[tuple[Expression | None, list[Node | str]]]:
-    """The branches of an ``if``, each with its condition; that of ``else`` is none."""
+    """The branches of an ``if``, each with its condition; ``else`` has none."""
     cond, part = code_of(node, "cond"), list[Node | str]()
     for child in node.content:
         if isinstance(child, Node) and child.tag in ("elseif", "else"):

@@ -33,11 +33,11 @@ class VoiceInterpreter(App[AnyEngine]):
         self._machine = Machine(self)
         self._flow: Flow | None = None
         self._marked: str | None = None
-        """The last mark of what is said now."""
+        """The last mark of what is being said."""
         self._missed: deque[Event] = deque()
-        """Events that came while an answer was waited for (4.1.8): none is lost."""
+        """Events that arrived while waiting for an answer (4.1.8): none is lost."""
 
-    # What a session tells -----------------------------------------------------------
+    # Calls from the session ---------------------------------------------------------
 
     def start(self, now: int) -> None:
         """Begin with the first dialog."""
@@ -46,7 +46,7 @@ class VoiceInterpreter(App[AnyEngine]):
         self._drive(None)
 
     def note_document(self, page: Page) -> None:
-        """A document is there, whatever becomes of it; its path is relative to the first one's."""
+        """Note a loaded document, usable or not; its path is relative to the first one's."""
         first, file = self.document.page, self.document.file
         path = file if page is first else str(PurePath(file).parent / page.root.source.file)
         self.visits.append(ElementVisit(self.name, max(self.now, 0), "document", page.root, path))
@@ -57,7 +57,7 @@ class VoiceInterpreter(App[AnyEngine]):
         return context is not None and self._machine.events.takes(context, thrown)
 
     def event(self, now: int, event: Event) -> None:
-        """Something happened: an event that a handler in scope takes ends the wait (5.2)."""
+        """Deliver an event: one that a handler in scope takes ends the wait (5.2)."""
         self._tick(now)
         if self._is_deaf(event):
             self._missed.append(event)
@@ -85,12 +85,12 @@ class VoiceInterpreter(App[AnyEngine]):
         self.waits.cause = None
 
     def _tell(self, event: Event) -> None:
-        """Give an event's data as ``session.event``: VoiceXML's own variables have none."""
+        """Set ``session.event`` to an event's data: VoiceXML has no variable for it."""
         session = self._machine.documents.session
         self.engine.set(session, "event", {"name": event.name, "data": dict(event.data)})
 
     def notice(self, now: int, notice: Notice) -> None:
-        """The mediator tells the fate of Commands."""
+        """The mediator reports what became of Commands."""
         self._tick(now)
         if notice.what == "unit-timeout":
             self._unit_over(notice)
@@ -106,7 +106,7 @@ class VoiceInterpreter(App[AnyEngine]):
         self._catch_up()
 
     def _unit_over(self, notice: Notice) -> None:
-        """U5: a unit takes too long: whatever is waited for in it is over."""
+        """U5: a unit takes too long: end every wait in it."""
         if self.over or notice.run != self.waits.unit:
             return
         self.waits.overrun(notice.message)
@@ -114,7 +114,7 @@ class VoiceInterpreter(App[AnyEngine]):
         self._catch_up()
 
     def replied(self, now: int, answer: Answer) -> None:
-        """The answer to what was asked for; one that comes too late, or twice, is not heeded."""
+        """The answer to a request; one that comes too late, or twice, is ignored."""
         self._tick(now)
         if self.over or answer.serial != self.waits.asked:
             return
@@ -133,14 +133,14 @@ class VoiceInterpreter(App[AnyEngine]):
         return []
 
     def answer(self, run: int, said: Sequence[Hypothesis]) -> Understood | None:
-        """What the active grammars make of what the user said, or None if they take it not."""
+        """How the active grammars interpret what the user said; None if none takes it."""
         context = self._machine.context
         if context is None or run != self.waits.run or self.over:
             return None
         try:
             self.heard = self._machine.inputs.hear(context, said)
         except Thrown:
-            return None  # told when the question was asked
+            return None  # reported when the question was asked
         if self.heard is None and context.item is not None and context.item.tag == "record":
             text, sure = said[0]
             self.heard = TakenUtterance(text, text, context.item, context.page, sure)
@@ -153,7 +153,7 @@ class VoiceInterpreter(App[AnyEngine]):
         return Understood(value, heard.utterance, heard.confidence)
 
     def heeds(self, text: str) -> bool:
-        """Whether what the user says comes in a way that is listened to (VoiceXML 6.3.6)."""
+        """Whether the input mode of an utterance is listened to (VoiceXML 6.3.6)."""
         context = self._machine.context
         return context is not None and self._machine.inputs.noted(context, text) is not None
 
@@ -170,7 +170,7 @@ class VoiceInterpreter(App[AnyEngine]):
         return self.answers(waits.run) if waits.opens(command) else None
 
     def before(self, command: Command) -> Command | None:
-        """Which of the Commands that are waited for comes before one of them, if any does."""
+        """The awaited Command before a given one, if any."""
         return self.waits.before(command)
 
     def breaks_in(
@@ -179,7 +179,7 @@ class VoiceInterpreter(App[AnyEngine]):
         """Take what the user says during a prompt as the answer to the question behind it (4.1.5).
 
         What is being said is said to its end (rule U1), what is queued behind it is not (O3).
-        What no grammar takes is not for this application: nothing listens yet.
+        An utterance that no grammar takes is not for this application: nothing listens yet.
         """
         if self.over or not self.waits.opens(command):
             return False
@@ -190,7 +190,7 @@ class VoiceInterpreter(App[AnyEngine]):
             answer = self.answer(self.waits.run, said)
             if answer is None or self.heard is None:
                 return False
-            self.heard.mark = None  # the last one played, which the device tells
+            self.heard.mark = None  # the last one played, which the device reports
             outcome = heard.filled(answer)
         self.leave_states()
         self._drive(Resume(outcome))
@@ -198,14 +198,14 @@ class VoiceInterpreter(App[AnyEngine]):
         return True
 
     def expire(self, now: int) -> list[tuple[str, Data]]:
-        """VoiceXML has no delayed events; but a fetch or a call may take too long (6.1.1, 2.3.7)."""
+        """End a fetch or call that takes too long (6.1.1, 2.3.7): no events are ever delayed."""
         self._tick(now)
         if self.waits.late is not None and self.deadline is not None and now >= self.deadline:
             self.replied(now, self.waits.late)
         return []
 
     def leave_states(self) -> None:
-        """O3: what is asked for and waited for is given up."""
+        """O3: give up what is requested and awaited."""
         self.waits.leave_state()
 
     def _here(self) -> Node:
@@ -215,12 +215,12 @@ class VoiceInterpreter(App[AnyEngine]):
         return item or self.document.node
 
     def _begun(self) -> None:
-        """What is queued is asked for: its last mark counts from now on."""
+        """The queue has been requested: its last mark counts from now on."""
         content = self._machine.content
         self._marked, content.mark = content.mark, None
 
     def _catch_up(self) -> None:
-        """Give the events that came while an answer was waited for, once there is a wait."""
+        """Deliver the events that arrived while waiting for an answer, once there is a wait."""
         while (
             self._missed and self.waits.run and not self.over and not self._is_deaf(self._missed[0])
         ):
@@ -243,7 +243,7 @@ class VoiceInterpreter(App[AnyEngine]):
             if out.failed:
                 self.actions.append(Say("error", out.reason, out.source))
             self.quit(out.reason, out.failed, out.source)
-        except Thrown as thrown:  # when nothing is left that could handle it
+        except Thrown as thrown:  # when nothing is left to handle it
             self.quit_unhandled(thrown)
         except RecursionError:
             self.quit("error.semantic: its elements are nested too deep", failed=True)

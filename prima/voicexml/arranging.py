@@ -26,22 +26,22 @@ ARRANGING = ("par", "seq", "iu")
 UNIT = "iu-items"
 """The key of a ``p:iu`` around form items (U5), as PRIMA's own language has it."""
 UNIT_ITEMS = ("block", "field", "initial", "record")
-"""Form items that a unit around such may hold: what they do ends, and is the robot's own."""
+"""Form items that a unit may hold: they end by themselves and act by the robot alone."""
 UNIT_HOLDS = frozenset([*UNIT_ITEMS, *HANDLERS.split()])
 BESIDE = {"filled": ", with a namelist of its fields"} | dict.fromkeys(
     ("grammar", "link", "property", "var", "script", "data", "subdialog", "transfer", "object"), ""
 )
-"""What belongs into the form, with what to write then."""
+"""Elements that belong in the form, each with the remedy."""
 Made = TypeVar("Made")
 DEEPEST = 50
-"""Such elements inside each other."""
+"""Maximum nesting of such elements."""
 
 
 @dataclass(slots=True)
 class Arranged:
-    """Commands that stand in the queue as one; ``after`` of a step counts within them.
+    """Commands queued as one; ``after`` of a step counts within them.
 
-    Like a Command in the queue it has a type, cues and a hook: it is no prompt, and nobody may
+    Like a Command in the queue it has a type, cues and a hook: it is not a prompt, and nobody may
     break in on it.
     """
 
@@ -58,7 +58,7 @@ def is_unit(node: Node) -> bool:
 
 
 def parts_of(dialog: Node) -> list[Node]:
-    """What a dialog holds, in document order: what a unit around form items does, behind it."""
+    """What a dialog holds, in document order: each unit around form items before its contents."""
     found = []
     for node in dialog.nodes:
         found.append(node)
@@ -74,7 +74,7 @@ def holds(item: Node, name: str) -> bool:
 
 
 Queued = Command | Arranged
-"""What is played on reaching a wait."""
+"""What is played when a wait is reached."""
 
 
 def arrange(
@@ -115,13 +115,13 @@ def longest_of(unit: Node) -> int:
 
 
 def said_last(queue: Sequence[Queued]) -> Command | None:
-    """What is said last of a queue; nothing if something else comes behind it."""
+    """The last speech of a queue; None if something else follows it."""
     last = queue[-1] if queue else None
     return last if isinstance(last, Command) and last.type == "speak" else None
 
 
 def take_last_said(queue: list[Queued]) -> Command | None:
-    """Take what is said last off a queue, if nothing else comes behind it."""
+    """Take the last speech off a queue, if nothing else follows it."""
     last = said_last(queue)
     if last is not None:
         queue.pop()
@@ -129,7 +129,7 @@ def take_last_said(queue: list[Queued]) -> Command | None:
 
 
 def steps_of(queue: Sequence[Queued]) -> list[Step]:
-    """What is queued as one tree: each piece waits for all of the one before it (U3)."""
+    """The queue as one tree: each piece waits for all of the one before it (U3)."""
     made: list[Step] = []
     after: tuple[int, ...] = ()
     for piece in queue:
@@ -146,7 +146,7 @@ def steps_of(queue: Sequence[Queued]) -> list[Step]:
 
 
 def _last(steps: list[Step]) -> list[int]:
-    """The steps for which no other one of them waits."""
+    """The steps for which no other step waits."""
     waited = {index for step in steps for index in step.after}
     return [index for index in range(len(steps)) if index not in waited]
 
@@ -172,7 +172,7 @@ ONE_AFTER_THE_OTHER = SHARED_DEVICE.says(
 
 
 def check_arranged(node: Node, problems: list[Problem], depth: int = 0) -> list[Node]:
-    """What is wrong with such an element; gives the Commands in it, in document order."""
+    """Check such an element; gives the Commands in it, in document order."""
     check_own(node, node.tag, problems)
     if depth == DEEPEST:
         problems.append(NESTED_TOO_DEEP.at(node.place, most=DEEPEST))
@@ -208,7 +208,7 @@ def _check_text(node: Node, text: str, problems: list[Problem]) -> None:
 
 
 def check_items(unit: Node, problems: list[Problem]) -> Iterator[Node]:
-    """What is wrong with a unit around form items (U5) itself; gives what it holds."""
+    """Check a unit around form items (U5) itself; gives what it holds."""
     unit.key = UNIT
     check_own(unit, UNIT, problems)
     for child in unit.content:
@@ -238,7 +238,7 @@ def _not_among_items(child: Node) -> Problem:
 
 
 def check_own(node: Node, key: str, problems: list[Problem]) -> None:
-    """What is wrong with the attributes of an element that PRIMA's language has by a key."""
+    """Check the attributes of an element that PRIMA's language has under a key."""
     known = {one.name: one for one in DIALOGUE.elements[key].attributes}
     for name, text in node.attributes.items():
         if name.startswith(("xml:", "{")):
@@ -259,7 +259,7 @@ def check_own(node: Node, key: str, problems: list[Problem]) -> None:
 
 
 def _fits(child: Node, node: Node, problems: list[Problem]) -> bool:
-    """Whether a child may stand in such an element."""
+    """Whether such an element may contain a child."""
     own = child.namespace == PRIMA_NAMESPACE
     if own and child.tag in (*COMMANDS, *(one for one in ARRANGING if one != node.tag)):
         return True
@@ -272,7 +272,7 @@ def _fits(child: Node, node: Node, problems: list[Problem]) -> bool:
 
 
 def _check_now(node: Node, problems: list[Problem]) -> None:
-    """O2: a Command that is wanted now waits for nothing, so that it can only stand first."""
+    """O2: a Command that is wanted now waits for nothing, so it must come first."""
     for command, _ in arrange(node.nodes, lambda one: one)[1:]:
         row = TABLE_4_2.get(command.tag) if command.namespace == PRIMA_NAMESPACE else None
         if row is not None and row.now:
@@ -280,7 +280,7 @@ def _check_now(node: Node, problems: list[Problem]) -> None:
 
 
 def _check_unit(commands: list[Node], problems: list[Problem]) -> None:
-    """U4: no feedback Command and none that leaves the user may be in a unit."""
+    """U4: a unit must not contain feedback Commands or Commands that leave the user."""
     for command in commands:
         name = _type(command)
         one = Reached(CommandTemplate(name, {}, None, False, (), (), command), True)

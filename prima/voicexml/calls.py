@@ -18,9 +18,9 @@ from prima.voicexml.questions import open_to_answers
 from prima.voicexml.state import Context, Flow, HungUp, Resume, TakenUtterance, thrown_outside
 
 CONNECT_MS = 60_000
-"""How long it may take until somebody answers where ``connecttimeout`` does not say."""
+"""The default of ``connecttimeout``: how long it may take until somebody answers."""
 LISTEN = "20s"
-"""How long a question listens during a call, in which it is asked again and again."""
+"""How long each of the repeated questions during a call listens."""
 ANSWERED, NEAR_END = "answered", "near_end_disconnect"
 TELEPHONE = re.compile(r"tel:\+?[-.() 0-9A-Da-dpw*#]+(;.*)?")
 ADDRESS = re.compile(r"sips?:[^\s@]+(@[^\s@]+)?")
@@ -28,7 +28,7 @@ ADDRESS = re.compile(r"sips?:[^\s@]+(@[^\s@]+)?")
 
 @dataclass(slots=True)
 class Call:
-    """A call while it is made."""
+    """A call in progress."""
 
     item: Node
     to: str
@@ -36,15 +36,15 @@ class Call:
     """``bridge``, ``blind`` or ``consultation``."""
     serial: int = 0
     heard: TakenUtterance | None = None
-    """What the caller has said to end it."""
+    """The utterance by which the caller ended it."""
     connected: int | None = None
     """When somebody has answered (ms)."""
     given_up: bool = False
-    """Whether a time of the transfer is over."""
+    """Whether a time limit of the transfer has passed."""
 
     @property
     def listens(self) -> bool:
-        """Whether the caller may end it by something that a grammar of the transfer takes."""
+        """Whether the caller may end it by an utterance that a grammar of the transfer takes."""
         return self.kind != "blind" and bool(self.item.all("grammar"))
 
 
@@ -61,7 +61,7 @@ class Calls:
         Raises:
             Thrown: ``connection.disconnect.transfer`` where the caller is given away,
                 ``connection.disconnect.hangup`` where they hang up, ``error.connection`` and
-                ``error.unsupported`` as the platform tells them (2.3.7.3).
+                ``error.unsupported`` as the platform reports them (2.3.7.3).
         """
         content, local = self.owner.content, self.owner.local()
         if self.owner.gone:
@@ -95,7 +95,7 @@ class Calls:
     # Before the call ------------------------------------------------------------------
 
     def _announce(self, context: Context, call: Call) -> Flow:
-        """Play what is queued; what a grammar takes meanwhile means that no call is made."""
+        """Play what is queued; an utterance that a grammar takes meanwhile prevents the call."""
         queue = self.owner.unqueue()
         if not queue:
             return
@@ -113,7 +113,7 @@ class Calls:
     def _question(
         self, context: Context, call: Call, timeout: str, said: Command | None = None
     ) -> Command:
-        """A question that nothing but the transfer's own grammars end."""
+        """A question that only the transfer's own grammars end."""
         cues = (Cue(0, "hotword"), *(said.cues if said is not None else ()))
         return Command(
             "q-and-a",
@@ -125,7 +125,7 @@ class Calls:
         )
 
     def _note(self, call: Call, resume: Resume) -> None:
-        """See what has ended a wait: an event, or the caller's own words."""
+        """Note what ended a wait: an event, or the caller's words."""
         if resume.event is not None:
             raise thrown_outside(resume)
         if resume.data.get("outcome") == "filled":
@@ -159,7 +159,7 @@ class Calls:
         return outcome
 
     def _over(self, call: Call, outcome: str) -> None:
-        """Tell that the call is over: this side has ended it."""
+        """Report that this side has ended the call."""
         data: Data = {"transfer": "over", "call": call.serial, "outcome": outcome}
         self.app.send(call.to, data, source(call.item))
 
@@ -175,7 +175,7 @@ class Calls:
     def _wait(
         self, context: Context, call: Call, audio: Command | None
     ) -> Generator[None, Resume, str]:
-        """Wait for news of the call, or for what the caller says to end it."""
+        """Wait for news of the call, or for the caller to end it by voice."""
         while True:
             commands = [audio] if audio is not None else []
             if call.listens:
@@ -192,16 +192,16 @@ class Calls:
 
 
 def kind_of(item: Node) -> str:
-    """The type of a transfer, by its newer or its older attribute; blind without one."""
+    """The type of a transfer, from ``type`` or the older attribute; blind by default."""
     return item.get("type") or ("bridge" if item.get("bridge") == "true" else "blind")
 
 
 def check_destination(uri: str, item: Node) -> None:
-    """Refuse what cannot be called (2.3.7.3).
+    """Refuse a destination that cannot be called (2.3.7.3).
 
     Raises:
-        Thrown: ``error.unsupported.uri`` for a scheme that is none of a telephone's,
-            ``error.connection.baddestination`` for what is none of its scheme.
+        Thrown: ``error.unsupported.uri`` for a scheme other than a telephone's,
+            ``error.connection.baddestination`` for a destination invalid in its scheme.
     """
     scheme = uri.partition(":")[0].lower()
     known = scheme in ("tel", "sip", "sips")

@@ -1,4 +1,4 @@
-"""Events that VoiceXML documents throw and catch, and names of which are most likely slips."""
+"""Events that VoiceXML documents throw and catch, and names that are most likely misspelt."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ EVENTS = STANDARD | {
     *("error.unsupported.uri", "error.unsupported.transfer.blind", "error.badfetch.http"),
     *("error.unsupported.transfer.bridge", "error.unsupported.transfer.consultation"),
 }
-"""Events that nobody need throw: VoiceXML's (2.0, 5.2.6; 2.1, 8) and PRIMA's."""
+"""Events that no document need throw: VoiceXML's (2.0, 5.2.6; 2.1, 8) and PRIMA's."""
 OPEN = ("touch.", "error.unsupported.", "error.badfetch.", "error.connection.protocol.")
-"""Beginnings of events that go on with the name of a sensor, Command or code."""
+"""Prefixes of events that continue with the name of a sensor, Command or code."""
 
 
 def thrown_in(root: Node) -> Iterator[str]:
-    """The events that a document throws itself: also by what the user says or chooses."""
+    """The events that a document throws itself, including by what the user says or chooses."""
     for node in root.walk():
         if node.tag in ("throw", "link", "choice", "return") and node.get("event"):
             yield node.get("event")
@@ -41,7 +41,7 @@ NEVER_RAISED = UNKNOWN_EVENT.says('Nothing raises an event "{name}".')
 
 
 def check_caught(root: Node, thrown: Iterable[str]) -> Iterator[Problem]:
-    """Warnings of handlers whose event is most likely a slip: others may be thrown by anybody."""
+    """Warn of handlers whose event is most likely misspelt: any other may be thrown elsewhere."""
     known = {*EVENTS, *thrown}
     begins = {"", *(name for one in known for name in beginnings(one))}
     strange = [one for one in caught_in(root) if one[1].rstrip(".") not in begins]

@@ -20,10 +20,10 @@ class ItemSelection:
         self._owner = owner
 
     def declare(self, context: Context, item: Node) -> None:
-        """Give an item's variable its first value; one without a name is but visited or not."""
+        """Initialise an item's variable; an item without a name is only visited or not."""
         if name := item.get("name"):
             self._owner.content.check_name(item)
-            self._owner.engine.unset(context.dialog, name)  # also what a var has declared (C)
+            self._owner.engine.unset(context.dialog, name)  # even if a var has declared it (C)
             if "expr" in item.attributes:
                 local = self._owner.local()
                 self._owner.content.put(context.dialog, name, item, "expr", context, local)
@@ -31,7 +31,7 @@ class ItemSelection:
         if "expr" in item.attributes:
             guard, name = self._owner.local(), "guard"
             self._owner.content.put(guard, name, item, "expr", context, self._owner.local())
-            if self._owner.engine.defined(guard, name):  # null is a value, too
+            if self._owner.engine.defined(guard, name):  # null is a value
                 context.visited.add(item.index)
 
     def select(self, context: Context, wanted: str) -> Node | None:
@@ -48,7 +48,7 @@ class ItemSelection:
         return select_item(items, wanted, holds, first_undefined, is_wanted)
 
     def _is_over(self, context: Context, item: Node) -> bool:
-        """Whether an item's guard is set; a menu has none."""
+        """Whether an item's guard is set; a menu has no guard."""
         return item.tag != "menu" and self.guarded(context, item)
 
     def _next_to(self, context: Context) -> list[Node]:

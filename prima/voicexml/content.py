@@ -1,4 +1,4 @@
-"""Executable content: what takes no time (VoiceXML 2.0, 5.3)."""
+"""Executable content, which takes no time (VoiceXML 2.0, 5.3)."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from prima.voicexml.state import SCOPES, Context, Flow, GoDialog, HungUp, UriReq
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 STEP_TAGS = 10
-"""Tags of a document of data that count as one step."""
+"""How many tags of a ``data`` document count as one step."""
 SERVICE = "service:"
-"""How the URI of a scenario's service begins."""
+"""The prefix of URIs of a scenario's services."""
 
 
 class Content(Speaker):
-    """Runs executable content for one application; it takes time only where something is fetched."""
+    """Runs executable content for one application; only fetching takes time."""
 
     def __init__(self, owner: MachineOwner) -> None:
         super().__init__(owner)
@@ -41,7 +41,7 @@ class Content(Speaker):
         yield from self.run_all(node.content, context, local)
 
     def run_all(self, content: Iterable[Node | str], context: Context, local: Scope) -> Flow:
-        """Run pieces of content; text and what is said among it make one prompt (4.1.2)."""
+        """Run pieces of content; adjacent text and speech make one prompt (4.1.2)."""
         speech = Speech(context.page.lang, "")
         for item in content:
             if isinstance(item, str) or item.tag in SPOKEN - {"prompt"}:
@@ -63,7 +63,7 @@ class Content(Speaker):
         self.note_bargein(context)
 
     def act(self, node: Node, context: Context, local: Scope) -> Flow:
-        """One element that is not said."""
+        """Run one element that is not spoken."""
         match node.tag:
             case "var":
                 self.declare(node, local, context, local)
@@ -89,7 +89,7 @@ class Content(Speaker):
                 yield from self.leave(node, context, local)
 
     def leave(self, node: Node, context: Context, local: Scope) -> Flow:
-        """Elements that control does not come back from."""
+        """Run an element from which control does not return."""
         match node.tag:
             case "throw":
                 name = self.event(node, context, local)
@@ -114,7 +114,7 @@ class Content(Speaker):
         """Declare a variable in a scope (5.3.1)."""
         self.check_name(node)
         if "expr" not in node.attributes:
-            if not self.engine.has(scope, node.get("name")):  # one that is there keeps its value
+            if not self.engine.has(scope, node.get("name")):  # an existing one keeps its value
                 self.engine.unset(scope, node.get("name"))
             return
         self.put(scope, node.get("name"), node, "expr", context, local)
@@ -194,7 +194,7 @@ class Content(Speaker):
     # Control ----------------------------------------------------------------------------
 
     def branch(self, node: Node, context: Context, local: Scope) -> Flow:
-        """The first branch whose condition holds (5.3.4)."""
+        """Run the first branch whose condition holds (5.3.4)."""
         chosen: list[Node | str] = []
         taken = self.holds(node, context, local)
         for item in node.content:
@@ -217,7 +217,7 @@ class Content(Speaker):
         yield from self.owner.documents.go(context, self.word(node, "next", context, local), node)
 
     def submit(self, node: Node, context: Context, local: Scope) -> Flow:
-        """Leave for what values are answered with, or send them and go on (5.3.8)."""
+        """Submit values and go to the document returned, or send them and go on (5.3.8)."""
         inputs = [one.get("name") for one in form_items(context) if one.tag in INPUTS]
         names = node.get("namelist").split() if "namelist" in node.attributes else inputs
         values = self.values(node, [name for name in names if name], context, local)
@@ -250,7 +250,7 @@ class Content(Speaker):
     # Scripts, data and the transcript -----------------------------------------------------
 
     def script(self, node: Node, scope: Scope, context: Context, local: Scope) -> Flow:
-        """Run a script; what it declares belongs to the scope it stands in (5.3.12)."""
+        """Run a script; its declarations belong to the enclosing scope (5.3.12)."""
         code = node.own_text
         attribute = next((one for one in ("src", "srcexpr") if one in node.attributes), "")
         if attribute:
@@ -264,7 +264,7 @@ class Content(Speaker):
             raise self.failure(error, node, attribute) from None
 
     def resource(self, node: Node, context: Context, local: Scope) -> str:
-        """The URI of what an element fetches.
+        """The URI that an element fetches.
 
         Raises:
             Thrown: ``error.badfetch`` where there is none.
@@ -299,7 +299,7 @@ class Content(Speaker):
             raise self.failure(error, node, "src") from None
 
     def _dom(self) -> Scope:
-        """What makes documents; its classes are there once there is a document (2.1, D)."""
+        """The factory of documents; its classes exist once there is a document (2.1, D)."""
         if self._maker is None:
             blank = self.engine.scope()
             scopes = (blank, blank, blank, blank, blank)
@@ -311,7 +311,7 @@ class Content(Speaker):
         return self._maker
 
     def report(self, node: Node, context: Context, local: Scope) -> None:
-        """What exit and disconnect give to whoever runs the application: told in the transcript."""
+        """Write what exit and disconnect return to the transcript."""
         found: Json = self.named(node, context, local) or None
         if "expr" in node.attributes:
             found = self.value(node, "expr", context, local)
@@ -320,7 +320,7 @@ class Content(Speaker):
             self.write(f"{node.tag}: {told}", node)
 
     def log(self, node: Node, context: Context, local: Scope) -> None:
-        """Something for the transcript (5.3.13)."""
+        """Write a log entry to the transcript (5.3.13)."""
         label = f"{node.get('label')}: " if node.get("label") else ""
         parts = [self.spoken(node, context, local)]
         if "expr" in node.attributes:

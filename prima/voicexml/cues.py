@@ -1,4 +1,4 @@
-"""What the markup of a prompt says of time: pauses, rates, set times and marks (SSML 1.0)."""
+"""Timing in the markup of a prompt: pauses, rates, set durations and marks (SSML 1.0)."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from prima.language.values import LONGEST_MS, read_value
 from prima.messages import Cue
 
 PAUSES = {"none": 0, "x-weak": 100, "weak": 250, "medium": 500, "strong": 750, "x-strong": 1000}
-"""What a break of each strength takes, in ms (SSML 1.0, 2.2.3)."""
+"""The duration of a break of each strength, in ms (SSML 1.0, 2.2.3)."""
 SIZES = {"none": 0, "small": 250, "medium": 500, "large": 1000}
-"""The same for the sizes that VoiceXML 1.0 had."""
+"""The same for the sizes of VoiceXML 1.0."""
 RATES = {"x-slow": 0.5, "slow": 0.8, "medium": 1.0, "default": 1.0, "fast": 1.25, "x-fast": 2.0}
 """Named rates, as multiples of the usual one (SSML 1.0, 2.2.4)."""
 SLOWEST, FASTEST = 0.1, 10.0
-"""The voice speaks neither slower nor faster, whatever a document says."""
+"""The slowest and fastest rate of the voice, whatever a document asks for."""
 MAX_CUES = 1000
 """How many pauses, rates and marks a prompt may have; further ones have no effect."""
 MAX_NAME = 200
@@ -33,7 +33,7 @@ def break_ms(time: str, strength: str, size: str) -> int:
 
 
 def milliseconds(text: str) -> int | None:
-    """A time such as ``2s`` or ``500ms`` in ms; None if it is none."""
+    """A time such as ``2s`` or ``500ms`` in ms; None for anything else."""
     try:
         value = read_value("duration", text.strip())
     except ValueError:
@@ -47,10 +47,10 @@ def is_rate(text: str) -> bool:
 
 
 def rate_of(text: str, around: float) -> float:
-    """A rate as a multiple of the usual one; ``around`` is that of what stands around it.
+    """A rate as a multiple of the usual one; ``around`` is the rate of the surrounding text.
 
-    A number or a percentage without a sign is of the usual rate; ``+10%`` is a tenth faster
-    than what stands around, and ``+0.5`` adds half the usual rate to it.
+    A number or an unsigned percentage is relative to the usual rate; ``+10%`` is a tenth faster
+    than the surrounding text, and ``+0.5`` adds half the usual rate to it.
     """
     if text in RATES:
         return RATES[text]
@@ -87,7 +87,7 @@ def fold(parts: Iterable[str | Cue]) -> tuple[str, tuple[Cue, ...]]:
 
 
 def _tidy(text: str, cues: list[Cue]) -> tuple[Cue, ...]:
-    """Leave out cues that change nothing, and set times that are not closed or hold no text."""
+    """Drop cues that change nothing, and set durations that are unclosed or hold no text."""
     kept = _Kept(text)
     for cue in cues:
         kept.take(cue)
@@ -95,13 +95,13 @@ def _tidy(text: str, cues: list[Cue]) -> tuple[Cue, ...]:
 
 
 class _Kept:
-    """The cues kept of a text, of which the times begun and not yet closed are known."""
+    """The cues kept of a text, with the durations opened and not yet closed."""
 
     def __init__(self, text: str) -> None:
         self._text = text
         self._cues: list[Cue] = []
         self._opened: list[int] = []
-        """Where each open time begins among the cues; -1 for one that was left out."""
+        """Where each open duration begins among the cues; -1 for one that was dropped."""
         self._rate = 1.0
 
     def take(self, cue: Cue) -> None:
@@ -134,7 +134,7 @@ class _Kept:
         self._cues[begun:] = [Cue(cue.at, "pause", self._cues[begun].value), *marks]
 
     def closed(self) -> tuple[Cue, ...]:
-        """All of them, without the times that are still open."""
+        """All of them, without the durations that are still open."""
         for index in reversed([one for one in self._opened if one >= 0]):
             del self._cues[index]
         return tuple(self._cues)
@@ -148,12 +148,12 @@ def _wants_pause(text: str, at: int, before: list[Cue]) -> bool:
 
 
 def clipped(cues: Iterable[Cue], length: int) -> tuple[Cue, ...]:
-    """Cues of a text that has been cut off at a length."""
+    """The cues of a text that has been cut off at a length."""
     return tuple(Cue(min(cue.at, length), cue.kind, cue.value) for cue in cues)
 
 
 def later(cues: Iterable[Cue], characters: int) -> tuple[Cue, ...]:
-    """The pauses and marks among cues where no text is, behind so many characters of another."""
+    """The pauses and marks among a text's cues, placed after so many characters of another text."""
     return tuple(
         Cue(characters, cue.kind, cue.value) for cue in cues if cue.kind in ("pause", "mark")
     )

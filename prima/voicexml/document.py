@@ -19,7 +19,7 @@ __all__ = [
     "PRIMA_NAMESPACE", "Fetch", "FetchError", "Page", "VoiceDocument", "broken", "join", "of_web",
 ]  # fmt: skip
 REMOTE = frozenset(["http", "https", "service"])
-"""Schemes of URIs that are asked for outside the application."""
+"""URI schemes of resources outside the application."""
 Fetch = Callable[[str], bytes]
 """Gives the bytes of a file by its name in the application's folder."""
 
@@ -28,12 +28,12 @@ Glance = Callable[[str], tuple[bytes, int]]
 
 
 def of_web(place: str) -> bool:
-    """Whether a document's place is a URI: a host has sent it, or a service in its stead."""
+    """Whether a document's place is a URI: it was sent by a host, or a service in its stead."""
     return place.startswith(("http:", "https:"))
 
 
 class FetchError(Exception):
-    """A resource cannot be had; ``event`` is what the application is told."""
+    """A resource cannot be fetched; ``event`` is thrown in the application."""
 
     def __init__(self, message: str, event: str = "error.badfetch") -> None:
         super().__init__(message)
@@ -75,17 +75,17 @@ class Page:
         return self.join(self.base(node), uri)
 
     def join(self, base: str, uri: str) -> str:
-        """A URI seen from its base; what the folder stands for is a name in it."""
+        """A URI resolved against its base; a URI that the folder maps becomes a name in it."""
         if not uri or self.site is None:
             return join(base, uri)
         return self.site.join(base, uri)
 
     def dialog(self, name: str) -> Node | None:
-        """The dialog of that id, or the first one where there is no name."""
+        """The dialog with that id, or the first one if the name is empty."""
         return self.dialogs.get(name) if name else next(iter(self.dialogs.values()), None)
 
     def warnings(self) -> list[Problem]:
-        """What is no error until it is reached; found only for who asks."""
+        """Errors only if executed; computed on demand."""
         return check_code(self.root, set(self.dialogs))
 
 
@@ -100,7 +100,7 @@ class VoiceDocument:
     fetch: Fetch
     node: Node
     glance: Glance | None = None
-    """Where recordings are looked at; without it they are fetched."""
+    """Where recordings are looked up; without it they are fetched."""
     watches: list[Json] = field(default_factory=list)
     forms: dict[str, Json] = field(default_factory=dict)
 
@@ -111,7 +111,7 @@ class VoiceDocument:
         return site.folder if site is not None else os.path.dirname(self.file)
 
     def outside(self, uri: str) -> str:
-        """The URI to ask for outside the application's folder; nothing where it has the file."""
+        """The URI to fetch from outside the application's folder; empty if it has the file."""
         if urlsplit(uri).scheme in REMOTE:
             return uri
         site = self.page.site
@@ -128,7 +128,7 @@ class VoiceDocument:
         return True
 
     def seen(self, name: str) -> str:
-        """A name in the folder as messages have it: seen from the first document's folder."""
+        """A name in the folder as messages show it: relative to the first document's folder."""
         if self.page.site is None or urlsplit(name).scheme in REMOTE:
             return name
         return os.path.relpath(os.path.join(self.folder, name), os.path.dirname(self.file) or ".")
@@ -140,6 +140,6 @@ class VoiceDocument:
 
 
 def broken(page: Page) -> DocumentError | None:
-    """The error that a document's problems amount to, if any is an error."""
+    """The error raised for a document's problems, if any is an error."""
     errors = [problem for problem in page.problems if problem.severity == "error"]
     return DocumentError(errors) if errors else None

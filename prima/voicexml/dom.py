@@ -141,9 +141,9 @@ DOM = r"""(function () {
   return { Node: Node, DOMException: DOMException,
     whole: function (content) { return make({ type: 9, content: content }, null, null, -1); } };
 })()"""
-"""Makes documents of :func:`plain_tree`, in which nothing can be changed, and their two classes.
+"""Makes read-only documents of :func:`plain_tree`, and their two classes.
 
-A node is made when a script first asks for it.
+A node is created when a script first accesses it.
 """
 
 
@@ -161,7 +161,7 @@ def plain_tree(uri: str, data: bytes, place: str) -> list[Any]:
 
 
 class _DomBuilder:
-    """Takes down what a document that is known to be well-formed is made of."""
+    """Collects the nodes of a document that is known to be well-formed."""
 
     def __init__(self) -> None:
         self.top: list[Any] = []

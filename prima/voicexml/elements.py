@@ -11,7 +11,7 @@ INPUTS = frozenset({"field", "record", "object", "subdialog", "transfer"})
 HANDLERS = ("catch", "error", "help", "noinput", "nomatch")
 """Elements that take events (5.2)."""
 SILENT = frozenset(["lexicon", "metadata", "meta", "desc"])
-"""Elements of prompts that say nothing."""
+"""Elements of prompts that are not spoken."""
 
 
 def handler_names(handler: Node) -> list[str]:
@@ -22,6 +22,6 @@ def handler_names(handler: Node) -> list[str]:
 
 
 def handler_number(handler: Node) -> int:
-    """From which time on a handler takes its events, or a prompt is said; 1 where it is none."""
+    """The count of a handler or a prompt; 1 if it is not a number."""
     count = handler.get("count", "1")
     return max(int(count), 1) if count.isdecimal() else 1

@@ -16,18 +16,18 @@ SHOWN = """function (v) { return v === undefined ? 'undefined'
   : v === null || typeof v !== 'object' ? v : v.nodeType !== undefined ? v.textContent
   : typeof v.toString === 'function' && v.toString !== Object.prototype.toString ? String(v)
   : v; }""".replace("\n", "")
-"""What is said of a value in the engine: of a node of ``data`` its text, and of what has words of
-its own, as an array, these."""
+"""The spoken text of a value in the engine: the text of a node of ``data``, and an object's own
+string form, such as an array's."""
 WORD = "function (v) { return v === void 0 ? null : `${v}`; }"
-"""What an attribute says by a value in the engine: nothing where it is undefined (5.1)."""
+"""The text of an attribute from a value in the engine; null for undefined (5.1)."""
 NAME = "function (v) { return v === void 0 || v === null ? null : `${v}`; }"
-"""The same where it names something: null is no name, and no URI."""
+"""Like the former, for names and URIs: null is refused."""
 TOLD = frozenset(["message", "aai"])
-"""Attributes that name nothing: what they say is only told."""
+"""Attributes that name nothing: their text is only reported."""
 
 
 class VoiceEvaluator:
-    """Evaluates what attributes hold, with the places of what fails."""
+    """Evaluates attributes, and gives the place of what fails."""
 
     def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
@@ -75,7 +75,7 @@ class VoiceEvaluator:
         """An attribute, or its ``expr`` form, as a word.
 
         Raises:
-            Thrown: ``error.semantic`` where the expression fails or gives none.
+            Thrown: ``error.semantic`` if the expression fails or gives none.
         """
         dynamic = {"next": "expr", "nextitem": "expritem"}.get(name, f"{name}expr")
         if name in node.attributes:
@@ -91,7 +91,7 @@ class VoiceEvaluator:
         """The event that an element throws, if it throws one.
 
         Raises:
-            Thrown: ``error.semantic`` where it has no name, or the expression fails.
+            Thrown: ``error.semantic`` if it has no name, or the expression fails.
         """
         name = self.word(node, "event", context, local)
         if not name and not node.attributes.keys().isdisjoint(("event", "eventexpr")):
@@ -99,7 +99,7 @@ class VoiceEvaluator:
         return name
 
     def said(self, node: Node, attribute: str, how: str, context: Context, local: Scope) -> Json:
-        """What a function of the engine makes of the value of an attribute's expression."""
+        """Apply a function of the engine to the value of an attribute's expression."""
         code = self.code(node, attribute)
         try:
             self.engine.compile(code)  # what does not compile is told by its own place
@@ -108,7 +108,7 @@ class VoiceEvaluator:
             raise self.failure(error, node, attribute) from None
 
     def elements(self, node: Node, context: Context, local: Scope) -> list[Json]:
-        """The elements of a foreach's array, as the engine's values."""
+        """The elements of a foreach's array, as values of the engine."""
         self.check_name(node, "item")
         try:
             found = self.engine.elements(
@@ -122,7 +122,7 @@ class VoiceEvaluator:
 
     @staticmethod
     def check_name(node: Node, attribute: str = "name") -> None:
-        """Refuse to declare a variable by a name that says its scope, or is no name (5.1)."""
+        """Refuse to declare a variable whose name has a scope prefix or is invalid (5.1)."""
         name = node.get(attribute)
         if "." in name:
             message = f'"{name}" names a scope; declare it there'
@@ -132,7 +132,7 @@ class VoiceEvaluator:
             raise Thrown.at(node, "error.semantic", f'"{name}" {why}')
 
     def text(self, node: Node, context: Context, local: Scope) -> str:
-        """What a value says (4.1.4)."""
+        """The text of a value (4.1.4)."""
         code, scopes = self.code(node, "expr"), context.scopes(local)
         try:
             self.engine.compile(code)  # what does not compile is told by its own place

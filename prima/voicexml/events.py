@@ -26,7 +26,7 @@ WORDS = {
         "maxspeechtimeout": "長すぎます。",
     },
 }
-"""What those handlers say before, in the languages that they know; in others, nothing."""
+"""What those handlers say first, by language; nothing in any other language."""
 
 
 class Events:
@@ -65,14 +65,14 @@ class Events:
         )
 
     def takes(self, context: Context, thrown: Thrown) -> bool:
-        """Whether a handler is there for an event that has not been counted; it is not then."""
+        """Whether a handler would take an event, without counting it."""
         try:
             return self.taker(context, thrown) is not None
         except Thrown:
             return True
 
     def taker(self, context: Context, thrown: Thrown) -> Node | None:
-        """The handler of an event that has not been counted; it is not then.
+        """The handler that would take an event, without counting it.
 
         Raises:
             Thrown: for a condition that fails.
@@ -85,14 +85,14 @@ class Events:
             context.counters = held
 
     def unhandled(self, context: Context, thrown: Thrown) -> Flow:
-        """Say what is queued, and end the application with an event that nothing takes."""
+        """Play what is queued, then end the application with an unhandled event."""
         yield from self.owner.finish(context)
         raise GoOut(thrown.reason, True, thrown.source)
 
     def _count(self, context: Context, thrown: Thrown) -> None:
         """Count an event where it was thrown, under its name and all prefixes (5.2.2).
 
-        Only those that a handler names make a difference.
+        Only names that a handler uses are counted.
         """
         names = {name for one in _takers(context, thrown) for name in one.names}
         context.counters = context.counters.came(_place(context), names)
@@ -107,7 +107,7 @@ class Events:
         return local
 
     def _run(self, context: Context, handler: Node, thrown: Thrown) -> Flow:
-        """Run a handler as if it stood where the event was thrown; what is next may be quiet."""
+        """Run a handler as if where the event was thrown; the next item may be quiet."""
         self.owner.reprompted = False
         try:
             yield from self.owner.content.run(handler, context, self._scope(thrown))
@@ -117,7 +117,7 @@ class Events:
         context.quiet = not self.owner.reprompted
 
     def _hang_up(self, context: Context, thrown: HungUp) -> Flow:
-        """Nobody is there any more: what is queued is said before, nothing after (5.3.11)."""
+        """The user is gone: play what is queued before, and nothing after (5.3.11)."""
         try:
             if self.owner.queue and not thrown.outside:
                 yield from self.owner.play(context)
@@ -153,7 +153,7 @@ def _handlers(context: Context) -> Iterator[Node]:
 
 
 def _takers(context: Context, thrown: Thrown) -> list[Candidate[Node]]:
-    """The handlers in scope that take an event; that of all takes VoiceXML's own events alone."""
+    """The handlers in scope that take an event; one for all events takes VoiceXML's own alone."""
     known = (
         Candidate(one, tuple(handler_names(one)), handler_number(one)) for one in _handlers(context)
     )

@@ -22,14 +22,14 @@ from prima.voicexml.settings import setting
 from prima.voicexml.state import Flow, Resume, UriRequest
 
 STEP_BYTES = 200
-"""Bytes of a resource that count as one step."""
+"""How many bytes of a resource count as one step."""
 FETCH_TIMEOUT = 10_000
-"""How long an answer is waited for (ms) where ``fetchtimeout`` does not say."""
+"""The default of ``fetchtimeout`` (ms)."""
 HOSTS_ONLY = "what a host has sent names no file, only what hosts and services answer"
 
 
 class Missing(Thrown):
-    """A resource that must be asked for before a grammar that names it can be loaded."""
+    """A resource must be fetched before a grammar that names it can be loaded."""
 
     def __init__(self, uri: str, node: Node) -> None:
         super().__init__("error.badfetch", f"{uri} has not been fetched", source(node))
@@ -69,7 +69,7 @@ def load_page(
 
 
 def _read(owner: MachineOwner, uri: str, data: bytes) -> Page:
-    """A document; that of a host is no part of the folder, whatever URI the folder stands for."""
+    """Read a document; one from a host is not part of the folder, whatever URI the folder maps."""
     if uri in owner.hosted:
         whole = owner.document.outside(uri)
         return read_page(whole, whole, data)
@@ -101,7 +101,7 @@ def fetch(
 
 
 def _weighed(owner: MachineOwner, data: bytes, node: Node) -> bytes:
-    """Count what is to be read as steps: to read much, again and again, is a loop as well."""
+    """Count the bytes to read as steps: reading a lot again and again is a loop as well."""
     for _ in range(len(data) // STEP_BYTES):
         owner.app.count_step(node)
     return data
@@ -110,7 +110,7 @@ def _weighed(owner: MachineOwner, data: bytes, node: Node) -> bytes:
 def _asked(
     owner: MachineOwner, uri: str, node: Node, request: UriRequest
 ) -> Generator[None, Resume, Fetched]:
-    """Ask for a resource, and play prompts and fetch audio until its answer is there (6.1.1)."""
+    """Request a resource, and play prompts and fetch audio until the answer arrives (6.1.1)."""
     timeout = milliseconds(_setting(owner, node, "fetchtimeout"), FETCH_TIMEOUT)
     data: Data = {"method": request.method or "get", "params": dict(request.values)}
     late = Fetched(owner.app.name, 0, "", problem="no answer within its fetchtimeout")
@@ -124,7 +124,7 @@ def _asked(
 
 
 def _check_reach(where: str, uri: str, node: Node) -> None:
-    """See that what a host has sent names no file, to read it or to go there.
+    """Refuse a file that a document from a host would read or go to.
 
     Raises:
         Thrown: ``error.badfetch``.
@@ -134,7 +134,7 @@ def _check_reach(where: str, uri: str, node: Node) -> None:
 
 
 def _setting(owner: MachineOwner, node: Node, name: str) -> str:
-    """A fetch's setting: the element's own, or the property of that name (6.3.5)."""
+    """A setting of a fetch: the element's attribute, or the property of that name (6.3.5)."""
     own = node.get(name)
     return own or (setting(owner.context, name) if owner.context is not None else "")
 
@@ -151,10 +151,10 @@ def _file(owner: MachineOwner, uri: str, node: Node) -> bytes:
 
 
 def held(owner: MachineOwner, uri: str, node: Node) -> bytes:
-    """A grammar's bytes: a file's, or what :func:`gathered` has asked for.
+    """The bytes of a grammar: of a file, or fetched by :func:`gathered`.
 
     Raises:
-        Thrown: ``error.badfetch``; :class:`Missing` while nobody has asked for it.
+        Thrown: ``error.badfetch``; :class:`Missing` if it has not been fetched yet.
     """
     whole = _held_as(owner, uri, node)
     if not owner.document.outside(whole):
@@ -168,7 +168,7 @@ def held(owner: MachineOwner, uri: str, node: Node) -> bytes:
 
 
 def _held_as(owner: MachineOwner, uri: str, node: Node) -> str:
-    """What a resource that a grammar names is known by: its name where it is in the folder."""
+    """The key of a resource that a grammar names: its name if it is in the folder."""
     whole, site = urldefrag(uri)[0], owner.document.page.site
     return whole if site is None or of_web(node.source.file) else site.name(whole)
 
@@ -181,7 +181,7 @@ def refusal(owner: MachineOwner, by: str, uri: str, node: Node) -> str:
 
 
 def gathered(owner: MachineOwner, use: Callable[[], object]) -> Flow:
-    """Do what needs grammars, once all that they are made of has been asked for."""
+    """Do what needs grammars, once all their resources have been fetched."""
     while True:
         try:
             use()

@@ -1,4 +1,4 @@
-"""What the user may say where an application waits: active grammars and what they take (3.1)."""
+"""What the user may say while an application waits: active grammars and what they take (3.1)."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ from prima.voicexml.state import Context, TakenUtterance
 UNIVERSALS = {"help": "help", "cancel": "cancel", "exit": "exit"}
 """Commands that listen everywhere once the property ``universals`` names them (6.3.6)."""
 DEAF = frozenset(["record", "transfer"])
-"""Items that wait even where no grammar listens."""
+"""Items that wait even if no grammar is active."""
 MOST_RESULTS = 100
 
 
 @dataclass(slots=True)
 class Active:
-    """A grammar that listens, and what it belongs to: an item, a form, a link or a choice."""
+    """An active grammar, and its owner: an item, a form, a link or a choice."""
 
     listener: Listener
     owner: Node
     page: Page
     level: Node
-    """The element whose grammars are tried together; a link or choice is of its parent."""
+    """The element whose grammars are tried together: the parent of a link or choice."""
 
 
 Taken = tuple[Active, GrammarMatch]
-"""What a grammar takes, with it."""
+"""A match with its grammar."""
 
 
 class Inputs:
@@ -47,18 +47,18 @@ class Inputs:
     def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
         self._loaded: dict[tuple[str, int, str], tuple[Page, Listener]] = {}
-        """With the page that each is of: the next one of its URI may be another document."""
+        """With the page of each: the next page of the same URI may be another document."""
         self._budget = Budget()
-        """What matching the utterance takes that is being heard."""
+        """The budget for matching the current utterance."""
         self._active: list[Active] = []
-        """What listens in the wait that there is."""
+        """What listens in the current wait."""
         self._words: Answers | None = None
-        """What of that can be said."""
+        """The words that it takes."""
 
     # Hearing ------------------------------------------------------------------------
 
     def activate(self, context: Context) -> None:
-        """Load all that listens now; it does until what was waited for has come (3.1.4).
+        """Load all grammars that listen now; they stay active until the wait ends (3.1.4).
 
         Raises:
             Thrown: for a grammar that cannot be used; ``error.semantic`` where none listens.
@@ -69,7 +69,7 @@ class Inputs:
             raise Thrown.at(item, "error.semantic", "no grammar listens here")
 
     def words(self, context: Context) -> Answers:
-        """What can be said now, for recognisers; the same object as long as that is the same."""
+        """What can be said now, for recognisers; the same object while nothing changes."""
         if self._words is None:
             heard = self._active if "voice" in self.modes(context) else []
             options: dict[str, Json] = {}
@@ -80,7 +80,7 @@ class Inputs:
         return self._words
 
     def hear(self, context: Context, said: Sequence[Hypothesis]) -> TakenUtterance | None:
-        """What the most specific grammars take of what was said, or None (3.1.4).
+        """The matches of the most specific grammars for an utterance, or None (3.1.4).
 
         The likeliest hypothesis that any grammar takes decides which those are; further results
         are of the others. Of all results the surest comes first (5.1.5).
@@ -114,11 +114,11 @@ class Inputs:
         )
 
     def most_results(self, context: Context) -> int:
-        """How many results are wanted at most (6.3.2)."""
+        """The maximum number of results (6.3.2)."""
         return int(min(float(setting(context, "maxnbest")), MOST_RESULTS))
 
     def noted(self, context: Context, text: str) -> tuple[str, str] | None:
-        """What no grammar has taken, and whether by keys; None if nobody listens to such (6.3.6)."""
+        """An utterance that no grammar took, and its mode; None if such input is off (6.3.6)."""
         found = list(self._ways(context, text))
         pressed = [one for one in found if one[1] == "dtmf"]
         return pressed[-1] if pressed else next(iter(found), None)
@@ -128,7 +128,7 @@ class Inputs:
         return setting(context, "inputmodes").split()
 
     def _ways(self, context: Context, text: str) -> Iterator[tuple[str, str]]:
-        """An utterance as keys and as speech, as far as the application takes such input."""
+        """An utterance as keys and as speech, where the application takes such input."""
         modes = self.modes(context)
         for said, mode in ways(text, setting(context, "termchar")):
             if mode in modes:
@@ -200,7 +200,7 @@ class Inputs:
             yield Active(keys(link.get("dtmf"), link.get("dtmf")), link, page, level)
 
     def _of(self, context: Context, node: Node, page: Page, level: Node) -> Iterator[Active]:
-        """The grammars that stand in an item or dialog: its own, of its options, choices, links."""
+        """The grammars in an item or dialog: its own, and those of its options, choices, links."""
         numbers = numbered(node)
         for one in node.nodes:
             match one.tag:
@@ -265,7 +265,7 @@ class Inputs:
         return made
 
     def _failed(self, node: Node, message: str) -> None:
-        """A tag failed while the user was being understood: the grammar takes it not."""
+        """A tag failed on the utterance, so the grammar does not take it."""
         self.owner.app.actions.append(Say("log", f"no match: {message}", source(node)))
 
 
@@ -285,7 +285,7 @@ def numbered(node: Node) -> dict[int, str]:
 
 
 def words_of(option: Node) -> str:
-    """What an option or choice says: its own text, that of its markup included."""
+    """The text of an option or choice, including its markup's."""
     parts: list[str] = []
     for item in option.content:
         if isinstance(item, str):

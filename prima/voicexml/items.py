@@ -1,4 +1,4 @@
-"""What comes of a form item: values, filled elements, subdialogs (VoiceXML 2.0, 2.3 and 2.4)."""
+"""The results of form items: values, filled elements, subdialogs (VoiceXML 2.0, 2.3 and 2.4)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from prima.voicexml.settings import form_items, setting
 from prima.voicexml.state import Context, Flow, GoDialog, Params, TakenUtterance, UriRequest
 
 ABSENT = object()
-"""What stands for a slot that an interpretation lacks: null is a value."""
+"""Marks a slot that an interpretation lacks: null is a value."""
 
 
 class Items:
@@ -35,7 +35,7 @@ class Items:
     # What the user said ---------------------------------------------------------------
 
     def process(self, context: Context, heard: TakenUtterance) -> Flow:
-        """What the user said goes to the item, form, link or choice that has taken it."""
+        """Pass what the user said to the item, form, link or choice that took it."""
         owner = heard.owner
         self.owner.app.note(owner, "in" if owner.tag in ("link", "choice") else "heard")
         self.remember(context, heard)
@@ -47,16 +47,16 @@ class Items:
             yield from self._follow(context, owner)
         filled = self._fill(context, heard)
         if not filled:
-            return  # the algorithm just goes on (C)
+            return  # the algorithm just continues (C)
         for item in form_items(context):
             if item.tag == "initial":
                 self.mark(context, item)
         yield from self.run_filled(context, filled)
 
     def _follow(self, context: Context, node: Node) -> Flow:
-        """A link's or choice's target: a dialog, or an event (2.2, 2.5).
+        """Go to a link's or choice's target: a dialog, or an event (2.2, 2.5).
 
-        What a link's attributes say is of the place where it was heard, not of its own.
+        A link's attributes are evaluated where it was heard, not where it is written.
         """
         content, local = self.owner.content, self.owner.local()
         event = content.event(node, context, local)
@@ -66,9 +66,9 @@ class Items:
         yield from self.owner.documents.go(context, uri, node)
 
     def remember(self, context: Context, heard: TakenUtterance) -> None:
-        """Set ``application.lastresult$`` (5.1.5); what was said is recorded where that is asked for.
+        """Set ``application.lastresult$`` (5.1.5); record what was said if that is requested.
 
-        Of what is heard with ``recordutterance`` the words are the recording (2.1, 7.2).
+        With ``recordutterance`` the words heard are the recording (2.1, 7.2).
         """
         if heard.mode == "voice" and setting(context, "recordutterance") == "true":
             heard.recorded = self.recorder.keep(heard.utterance)
@@ -130,7 +130,7 @@ class Items:
         context.item = item
         for action in item.all("filled"):
             if not self.owner.selection.guarded(context, item):
-                break  # one before has cleared it, and it is filled no more
+                break  # an earlier one has cleared it
             yield from self.owner.content.run(action, context, self.owner.local())
 
     def _satisfied(self, context: Context, node: Node, filled: list[Node]) -> bool:
@@ -174,7 +174,7 @@ class Items:
         yield from self.run_filled(context, [item])
 
     def _params(self, context: Context, item: Node) -> Params:
-        """What a subdialog is given, by value (6.4)."""
+        """The params of a subdialog, by value (6.4)."""
         local, given = self.owner.local(), Params(self.engine.scope())
         for param in item.all("param"):
             name = param.get("name")
@@ -188,7 +188,7 @@ class Items:
 
 
 def _dialog_of(page: Page, owner: Node) -> Node | None:
-    """The dialog whose grammar it was: a form or menu of its own, or that of a choice."""
+    """The dialog that owns the grammar: a form or menu itself, or that of a choice."""
     if owner.tag in ("form", "menu"):
         return owner
     menus = page.dialogs.values() if owner.tag == "choice" else ()

@@ -1,4 +1,4 @@
-"""Questions of VoiceXML documents at which no grammar listens: error.semantic when they are asked."""
+"""Questions of VoiceXML documents without an active grammar: error.semantic when asked."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ def check_listening(page: Page, root: Page | None) -> Iterator[Problem]:
 
 
 def _asked_alone(page: Page) -> Iterator[Node]:
-    """The questions that are surely asked, in forms at which nothing listens."""
+    """The questions that are certainly asked, in forms without any grammar."""
     for form in page.root.all("form"):
         if not _listens(form):
             yield from filter(_surely_asked, parts_of(form))
 
 
 def _surely_asked(item: Node) -> bool:
-    """Whether it is a question that nothing in its own element keeps from being asked."""
+    """Whether an item is a question that nothing in its own element prevents."""
     return item.tag in ASKING and {"expr", "cond"}.isdisjoint(item.attributes)
 
 

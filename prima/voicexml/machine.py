@@ -35,9 +35,9 @@ from prima.voicexml.state import (
 from prima.voicexml.units import Units
 
 DIALOG_STEPS = 100
-"""As many pieces of content is the work of beginning a dialog."""
+"""Beginning a dialog counts as so many pieces of content."""
 ITEM_STEPS = 10
-"""As many is the work of selecting an item."""
+"""Selecting an item counts as so many."""
 
 
 class Machine:
@@ -49,16 +49,16 @@ class Machine:
         self.document = app.document
         self.pages: dict[str, Page] = {app.document.page.uri: app.document.page}
         self.resources: dict[str, bytes | Thrown] = {}
-        """What grammars are made of and no file is: its bytes, or why it cannot be had."""
+        """Resources of grammars that are not files: the bytes, or why they cannot be fetched."""
         self.hosted: set[str] = set()
-        """Names and URIs that a real host has answered, and no service."""
+        """Names and URIs that a real host, not a service, has answered."""
         self.queue: list[Queued] = []
-        """Prompts and Commands that are played on reaching a wait (4.1.8)."""
+        """Prompts and Commands that are played when a wait is reached (4.1.8)."""
         self.asking: Node | None = None
         """The last prompt queued: its timeout and bargein count."""
         self.reprompted = False
         self.gone = ""
-        """The event by which the user has gone: nothing is waited for any more (1.5.4)."""
+        """The event by which the user left: nothing is waited for any more (1.5.4)."""
         self.content = Content(self)
         self.inputs = Inputs(self)
         self.documents = Documents(self)
@@ -71,7 +71,7 @@ class Machine:
         self.state = ""
         """The dialog that is active, by its name."""
 
-    # What content needs -------------------------------------------------------------
+    # For content --------------------------------------------------------------------
 
     def say(self, text: str, lang: str, place: str, prompt: Node | None = None) -> None:
         """Queue something to be said."""
@@ -82,7 +82,7 @@ class Machine:
             self.queue.append(Command("speak", text=text, lang=lang, source=place))
 
     def unqueue(self) -> list[Queued]:
-        """What is queued, to be said in a wait that no question is part of."""
+        """The queue, to be played in a wait without a question."""
         queue, self.queue, self.asking = self.queue, [], None
         return queue
 
@@ -91,7 +91,7 @@ class Machine:
         return self.engine.scope()
 
     def enumeration(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
-        """Read what enumerate says: each choice, in its own words (2.2.4)."""
+        """Read an enumerate: each choice, in its own words (2.2.4)."""
         owner = context.item if context.item is not None else context.form
         choices = owner.all("choice", "option") if owner is not None else []
         if owner is None or not choices or _holds_enumerate(node):
@@ -128,7 +128,7 @@ class Machine:
         raise reason
 
     def finish(self, context: Context) -> Flow:
-        """Say what is queued at an application's end (4.1.8): nothing is handled any more."""
+        """Play what is queued at an application's end (4.1.8); no events are handled any more."""
         self.context = None
         if self.queue and not self.gone:
             try:
@@ -160,7 +160,7 @@ class Machine:
                 yield from self.events.unhandled(context, thrown)
 
     def _enter(self, context: Context, page: Page, submitted: bool) -> Flow:
-        """Set up a document's scopes; what fails is an event in it."""
+        """Set up a document's scopes; a failure is an event in it."""
         try:
             yield from self.documents.enter(context, page, submitted)
         except (Thrown, ScriptError) as error:
@@ -241,7 +241,7 @@ class Machine:
             context.item = item
             yield from self.visit(context, item, wanted)
         elif context.unit is not None and self.queue and not self.gone:
-            yield from self.play(context)  # a unit ends when all of it has been said
+            yield from self.play(context)  # a unit ends when all of it has been played
         else:
             return False
         return True
@@ -325,7 +325,7 @@ class Machine:
     def wait(
         self, commands: Sequence[Queued], open_to_answers: Sequence[Command] = ()
     ) -> Generator[None, Resume, Resume]:
-        """Wait for the end of Commands; with nobody there it is the application's end (1.5.4)."""
+        """Wait for the end of Commands; without a user the application ends (1.5.4)."""
         self.queue = []
         if self.gone:
             raise GoOut(self.gone)

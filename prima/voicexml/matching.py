@@ -28,14 +28,14 @@ from prima.script.budget import Budget
 from prima.voicexml.document import Page
 
 KEYS = frozenset("0123456789*# ")
-"""What may be typed on a telephone's keys: such an utterance is tried as DTMF first."""
+"""Characters of telephone keys: an utterance of only these is tried as DTMF first."""
 LANGUAGE = re.compile(r"[A-Za-z]{2,3}(-[A-Za-z0-9]{2,8})*")
-"""Languages of grammars; recognition compares words, so that it takes any real one."""
+"""Languages of grammars; recognition compares words, so any real language will do."""
 
 
 @dataclass(frozen=True, slots=True)
 class GrammarMatch:
-    """One way in which a grammar takes an utterance."""
+    """One way in which a grammar matches an utterance."""
 
     utterance: str
     interpretation: Json
@@ -44,7 +44,7 @@ class GrammarMatch:
 
     @property
     def means(self) -> str:
-        """What tells it from other results."""
+        """What distinguishes it from other results."""
         return json.dumps(self.interpretation, sort_keys=True, default=str)
 
 
@@ -53,14 +53,14 @@ class Listener:
     """A grammar, the words of an option, or keys."""
 
     match: Callable[[str, str, int], list[GrammarMatch]]
-    """Gives the ways in which it takes what was said in a mode, at most so many."""
+    """Gives at most so many matches of an utterance in a mode."""
     words: Answers = field(default_factory=Answers)
-    """What of it can be said, for recognisers."""
+    """What can be said to it, for recognisers."""
 
 
 Fetch = Callable[[str], bytes]
 Refusal = Callable[[str, str], str]
-"""Why a grammar may not refer to another, by their URIs; nothing if it may."""
+"""Why a grammar may not refer to another, by their URIs; empty if it may."""
 Tell = Callable[[Node, str], None]
 
 
@@ -141,7 +141,7 @@ def _loaded(node: Node, page: Page, uri: str, fetch: Fetch, refusal: Refusal) ->
     except GrammarError as error:
         if failures:
             raise failures[0] from None
-        message = f"{place}: {error}" if uri else str(error)  # an own place, in the same file
+        message = f"{place}: {error}" if uri else str(error)  # has its own place, in this file
         raise Thrown(_event(error), message, place) from None
     return made
 
@@ -157,7 +157,7 @@ def _given(node: Node, uri: str, fetch: Fetch) -> tuple[Node | str | bytes, str]
 
 
 def _event(error: GrammarError) -> str:
-    """What an application is told of a grammar that cannot be used (5.2.6)."""
+    """The event for a grammar that cannot be used (5.2.6)."""
     for kind, name in (
         (UnsupportedFormat, "error.unsupported.format"),
         (UnsupportedLanguage, "error.unsupported.language"),
@@ -169,7 +169,7 @@ def _event(error: GrammarError) -> str:
 
 
 def phrase(text: str, value: Json, approximate: bool) -> Listener:
-    """A listener to one phrase; approximately, to some of its words in their order (2.2.5)."""
+    """A listener to one phrase or, if approximate, to some of its words in order (2.2.5)."""
     wanted = fold(text).split()
 
     def match(said: str, mode: str, _most: int) -> list[GrammarMatch]:

@@ -1,4 +1,4 @@
-"""What the parts of a VoiceXML interpreter need of the whole, and of each other.
+"""What the parts of a VoiceXML interpreter require of the whole and of each other.
 
 The machine (:mod:`~prima.voicexml.machine`) runs the Form Interpretation Algorithm. Its parts
 run content, listen, enter documents, fill items and handle events; they know each other, the
@@ -35,9 +35,9 @@ class VoiceApplication(Protocol):
     heard: TakenUtterance | None
     """What the user said last, as a grammar took it."""
     actions: list[Action]
-    """What it wants, for the session to carry out."""
+    """Its requests, for the session to carry out."""
     visits: list[ElementVisit]
-    """What it came to."""
+    """The elements that it came to."""
 
     @property
     def waits(self) -> Waits:
@@ -55,7 +55,7 @@ class VoiceApplication(Protocol):
         """An element is gone through, or its condition has been evaluated."""
 
     def note_document(self, page: Page) -> None:
-        """A document is there, whatever becomes of it."""
+        """Note a loaded document, usable or not."""
 
     def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound what is done in one instant."""
@@ -127,10 +127,10 @@ class ListeningGrammars(Protocol):
         """The kinds of input that the application takes (6.3.6)."""
 
     def noted(self, context: Context, text: str) -> tuple[str, str] | None:
-        """An utterance that no grammar has taken, and its mode; None if nobody listens to such."""
+        """An utterance that no grammar took, and its mode; None if such input is off."""
 
     def most_results(self, context: Context) -> int:
-        """How many results are wanted at most (6.3.2)."""
+        """The maximum number of results (6.3.2)."""
 
 
 class DocumentEntering(Protocol):
@@ -192,7 +192,7 @@ class Filling(Protocol):
         """Fills those that record."""
 
     def process(self, context: Context, heard: TakenUtterance) -> Flow:
-        """What the user said goes to the item, form, link or choice that has taken it."""
+        """Pass what the user said to the item, form, link or choice that took it."""
 
     def remember(self, context: Context, heard: TakenUtterance) -> None:
         """Set ``application.lastresult$`` (5.1.5)."""
@@ -229,16 +229,16 @@ class MachineOwner(Protocol):
     pages: dict[str, Page]
     """Documents by their URIs."""
     resources: dict[str, bytes | Thrown]
-    """What grammars are made of and no file is: its bytes, or why it cannot be had."""
+    """Resources of grammars that are not files: the bytes, or why they cannot be fetched."""
     hosted: set[str]
-    """Names and URIs that a real host has answered, and no service."""
+    """Names and URIs that a real host, not a service, has answered."""
     queue: list[Queued]
-    """Prompts and Commands that are played on reaching a wait (4.1.8)."""
+    """Prompts and Commands that are played when a wait is reached (4.1.8)."""
     asking: Node | None
     """The last prompt queued."""
     reprompted: bool
     gone: str
-    """The event by which the user has gone."""
+    """The event by which the user left."""
     context: Context | None
 
     # Its parts:
@@ -285,10 +285,10 @@ class MachineOwner(Protocol):
         """Queue something to be said."""
 
     def unqueue(self) -> list[Queued]:
-        """What is queued, to be said in a wait that no question is part of."""
+        """The queue, to be played in a wait without a question."""
 
     def enumeration(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
-        """Read what enumerate says (2.2.4)."""
+        """Read an enumerate (2.2.4)."""
 
     def play(self, context: Context) -> Flow:
         """Play what is queued and wait until it has been said."""
@@ -312,4 +312,4 @@ class MachineOwner(Protocol):
         """Run documents and dialogs of one context until it is left."""
 
     def finish(self, context: Context) -> Flow:
-        """Say what is queued at an application's end (4.1.8)."""
+        """Play what is queued at an application's end (4.1.8)."""

@@ -1,4 +1,4 @@
-"""All documents of a VoiceXML application, as far as files name each other by their names."""
+"""All documents of a VoiceXML application that files refer to by literal names."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from prima.voicexml.reading import read_page
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, WORDED
 
 MOST_PAGES = 100
-"""Documents of one application that are read."""
+"""Maximum number of documents read for one application."""
 LEADING = {"goto": "next", "link": "next", "choice": "next", "submit": "next", "subdialog": "src"}
 """Elements that lead to a dialog, and the attribute that names it."""
 
@@ -32,9 +32,9 @@ class Pages:
         self._fetch = fetch
         self._pages: dict[str, Page | None] = {first.uri: first}
         self.problems: list[Problem] = []
-        """What is wrong with documents that cannot be read at all."""
+        """Problems of documents that cannot be read at all."""
         self.open = False
-        """Whether something leads to a document that is known only in a run."""
+        """Whether something leads to a document that only a run determines."""
         waiting = [first]
         while waiting:
             page = waiting.pop(0)
@@ -62,7 +62,7 @@ class Pages:
             file = f"{self._folder}{unquote(uri)}"
             page = read_page(uri, file, self._fetch(uri), self._site)
         except FetchError:
-            pass  # told where it is named
+            pass  # reported where it is named
         except DocumentError as error:
             self.problems += error.problems
         self._pages[uri] = page
@@ -86,7 +86,7 @@ class Pages:
                     yield from _untaken(node, dialog)
 
     def _target(self, page: Page, node: Node) -> tuple[Page | None, str]:
-        """Where an element leads: to which document, if it is known, and which dialog."""
+        """The target of an element: its document, if known, and its dialog."""
         uri = node.get(LEADING.get(node.key, "")).strip()
         base, name = parted(page.resolve(uri, node)) if uri else ("", "")
         if uri[:1] == "#":
@@ -119,7 +119,7 @@ def _named(page: Page) -> Iterator[str]:
         if not uri or uri[:1] == "#":
             continue
         whole = urlsplit(page.resolve(uri, node))
-        asks = node.key == "submit" and not whole.path.endswith(".vxml")  # what a server makes
+        asks = node.key == "submit" and not whole.path.endswith(".vxml")  # the server generates it
         if not (whole.scheme or whole.netloc or asks) and whole.path:
             yield whole.path
 
@@ -136,13 +136,13 @@ def _untaken(node: Node, form: Node) -> Iterator[Problem]:
 
 SPEAKING = frozenset(["prompt", "block", "filled", "catch", "noinput", "nomatch", "help", "error",
                       "initial", "field", "choice", "option", "if", "menu", "record"])  # fmt: skip
-"""Elements whose own text is said."""
+"""Elements whose own text is spoken."""
 OPEN = frozenset(["value", "enumerate", "foreach"])
-"""What says something that is known only in a run."""
+"""Elements whose speech only a run determines."""
 
 
 def spoken_in(page: Page) -> Iterator[list[object]]:
-    """The texts that a document says; what is known only in a run is None in them."""
+    """The texts that a document speaks; None stands for what only a run determines."""
     for node in page.root.walk():
         if node.tag in SPEAKING or node.namespace == PRIMA_NAMESPACE:
             parts = list(_parts(node))

@@ -1,4 +1,4 @@
-"""What is said: prompts, their markup, and Commands of the robot among them (VoiceXML 2.0, 4.1)."""
+"""Speech: prompts, their markup, and Commands of the robot among them (VoiceXML 2.0, 4.1)."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 APART = frozenset(["p", "s", "paragraph", "sentence"])
 SENTENCE = Cue(0, "sentence")
 UNKNOWN_MS = 1000
-"""How long a recording plays that cannot be looked at and has no text (4.1.3)."""
+"""The duration assumed for a recording that cannot be read and has no text (4.1.3)."""
 MAX_KNOWN = 1000
-"""Recordings whose length is remembered."""
+"""Maximum number of recordings whose length is cached."""
 
 
 Maker = Callable[[Node], Command]
-"""Makes a Command of its element."""
+"""Makes a Command from its element."""
 
 
 class Speaker(VoiceEvaluator):
@@ -40,9 +40,9 @@ class Speaker(VoiceEvaluator):
     def __init__(self, owner: MachineOwner) -> None:
         super().__init__(owner)
         self.mark: str | None = None
-        """The last mark of what is queued, for devices that tell of none (VoiceXML 2.1, 4)."""
+        """The last mark queued, for devices that report none (VoiceXML 2.1, 4)."""
         self.ahead: tuple[Cue, ...] = ()
-        """Pauses and marks behind which nothing has been said yet."""
+        """Pauses and marks not yet followed by speech."""
         self._known: dict[str, int | None] = {}
 
     def prompt(self, node: Node, context: Context, local: Scope) -> None:
@@ -51,7 +51,7 @@ class Speaker(VoiceEvaluator):
             self.utter(node, context, local)
 
     def utter(self, node: Node, context: Context, local: Scope) -> None:
-        """Queue what a prompt says, whether its condition holds or not."""
+        """Queue a prompt's speech without checking its condition."""
         speech = self.read_whole(node, context, local)
         text, cues = speech.take()
         self.owner.say(text, speech.lang, speech.place, node)
@@ -61,7 +61,7 @@ class Speaker(VoiceEvaluator):
     def note_bargein(self, context: Context, own: str = "") -> None:
         """Note whether the user may break in on what has just been queued (4.1.5, 6.3.2).
 
-        A Command is no prompt: it is always done. ``own`` is the prompt's attribute.
+        A Command is not a prompt: it is always carried out. ``own`` is the prompt's attribute.
         """
         for command in self.owner.queue:
             if command.hook is None:
@@ -85,7 +85,7 @@ class Speaker(VoiceEvaluator):
             self.ahead += later(cues, 0)
 
     def question_cues(self, asked: Command | None, before: Sequence[Queued]) -> tuple[Cue, ...]:
-        """The cues of a question: those of the prompt that it is, and what counts for it."""
+        """The cues of a question: those of its prompt, and those of its own."""
         marked = any(cue.kind == "mark" for one in before for cue in one.cues)
         earlier = (Cue(0, "earlier"),) if marked else ()
         own, self.ahead = (asked.cues if asked is not None else self.ahead), ()
@@ -97,14 +97,14 @@ class Speaker(VoiceEvaluator):
         return node.get("xml:lang") or context.page.lang
 
     def spoken(self, node: Node, context: Context, local: Scope) -> str:
-        """What an element says, as text alone: SSML is read for its words (4.1.1).
+        """The spoken text of an element: SSML is read for its words (4.1.1).
 
-        What stands before a Command, or is of another language, has been queued already.
+        What precedes a Command, or is in another language, has been queued already.
         """
         return self.read_whole(node, context, local).take()[0]
 
     def read_whole(self, node: Node, context: Context, local: Scope) -> Speech:
-        """Read an element that is said; gives what has not been queued of it."""
+        """Read a spoken element; gives the part that has not been queued."""
         speech = Speech(self.lang(node, context), source(node), base=node.get("xml:base"))
         for item in [node] if node.tag in SPOKEN - {"prompt"} else node.content:
             self.read(item, context, local, speech)
@@ -179,7 +179,7 @@ class Speaker(VoiceEvaluator):
             self.read_all(node, context, local, speech)
 
     def mark_here(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
-        """A place that is told as passed (VoiceXML 2.1, 4)."""
+        """Set a mark that is reported when passed (VoiceXML 2.1, 4)."""
         name = self.word(node, "name", context, local)[:MAX_NAME]
         self.owner.app.count_output(len(name), node)
         speech.parts.append(" ")
@@ -197,7 +197,7 @@ class Speaker(VoiceEvaluator):
         speech.say_at(around)
 
     def audio(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
-        """A recording: its text if it has one, else what it is called (4.1.3).
+        """Read a recording: its text if it has one, else its name (4.1.3).
 
         A recording of the application's folder takes its own time, whatever its text.
         """
@@ -205,10 +205,10 @@ class Speaker(VoiceEvaluator):
         if "expr" in node.attributes:
             uri = self.said(node, "expr", WORD, context, local)
             if uri is None:
-                return  # an undefined one is not said at all, nor is what it holds
+                return  # neither an undefined one nor its content is played
             name = str(uri)
             ms = self.owner.items_of.recorder.lengths.get(name)
-            if ms is not None:  # what a record has taken is played back as its words (2.3.6)
+            if ms is not None:  # a record's recording is played back as its words (2.3.6)
                 opened = speech.open(ms)
                 speech.parts += [Cue(0, "sound", name), f" {name} "]
                 speech.close(opened)
@@ -231,7 +231,7 @@ class Speaker(VoiceEvaluator):
         """How long (ms) a recording of the application's folder plays, if it can be played.
 
         ``name`` is relative to a prompt's own ``base``, and that to the page's. What a host
-        has sent plays no file.
+        has sent plays no file of the folder.
         """
         if of_web(node.source.file):
             return None

@@ -1,4 +1,4 @@
-"""Questions: what an item plays, waits for, and makes of the end of the wait (VoiceXML 2.0, 4.1)."""
+"""Questions: playing prompts, waiting for input, and processing it (VoiceXML 2.0, 4.1)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Questions:
     def ask(self, context: Context, item: Node) -> Flow:
         """Play what is queued, then wait for the user (C4)."""
         owner = self.owner
-        # A grammar that cannot be used is told before anything is said.
+        # A grammar that cannot be used is reported before anything is said.
         yield from gathered(owner, lambda: owner.inputs.activate(context))
         owner.items_of.recorder.check(context, item)
         asked = take_last_said(owner.queue)
@@ -39,7 +39,7 @@ class Questions:
         yield from self._answered(context, item, resume)
 
     def _question(self, context: Context, item: Node, asked: Command | None) -> Command:
-        """The question that an item's last prompt is (4.1.5, 4.1.7)."""
+        """The question made of an item's last prompt (4.1.5, 4.1.7)."""
         prompt, self.owner.asking = self.owner.asking, None
 
         def wanted(name: str) -> str:
@@ -56,7 +56,7 @@ class Questions:
         return Command("q-and-a", args, text, lang=lang, source=source(item), cues=cues)
 
     def _cues(self, context: Context, item: Node, hotword: bool) -> Iterator[Cue]:
-        """How an answer is listened for: what breaks the question off, and how long it may be."""
+        """Cues for listening: what interrupts the question, and how long an answer may be."""
         modes = self.owner.inputs.modes(context)
         longest = milliseconds(setting(context, "maxspeechtimeout"), 0)
         if longest and item.tag != "record" and "voice" in modes:  # a recording has its own maxtime
@@ -64,10 +64,10 @@ class Questions:
         if hotword:
             yield Cue(0, "hotword")
         elif len(set(modes)) == 1 and item.tag != "record":
-            yield Cue(0, "hotword", modes[0])  # what comes otherwise breaks off nothing
+            yield Cue(0, "hotword", modes[0])  # other input interrupts nothing
 
     def _answered(self, context: Context, item: Node, resume: Resume) -> Flow:
-        """Process what has ended the wait."""
+        """Process what ended the wait."""
         if resume.event is not None:
             if item.tag == "record":
                 self.owner.items_of.recorder.broken_off(context, item, resume.event)
@@ -88,7 +88,7 @@ class Questions:
         raise Thrown("noinput" if outcome == "filled" else outcome, message, source(item))
 
     def _not_taken(self, context: Context, item: Node, data: Data) -> None:
-        """Set ``application.lastresult$`` for what no grammar takes (5.1.5).
+        """Set ``application.lastresult$`` for input that no grammar takes (5.1.5).
 
         Raises:
             Thrown: ``noinput``, if nobody listens to such input (6.3.6).
@@ -106,7 +106,7 @@ class Questions:
 
 
 def open_to_answers(queue: list[Queued], question: Command) -> list[Command]:
-    """Of what is queued before a question that during which it may be answered (4.1.5).
+    """The part of the queue before a question during which it may be answered (4.1.5).
 
     Those are the last prompts: an answer ends the wait, and what may not be broken in on is
     to be said before. They get the cues that an answer needs.

@@ -23,10 +23,10 @@ READ_AS_VOICEXML = NO_NAMESPACE.says(
 
 
 def read_page(uri: str, file: str, data: bytes, site: Site | None = None) -> Page:
-    """Read a VoiceXML document, of a folder that was perhaps copied from a site.
+    """Read a VoiceXML document; its folder may be a copy of a site.
 
     Raises:
-        DocumentError: it is not well-formed, or no VoiceXML at all.
+        DocumentError: it is not well-formed, or not VoiceXML at all.
     """
     root = parse(file, data, (VOICEXML,))
     bare = _without_namespace(root)
@@ -46,9 +46,9 @@ def read_page(uri: str, file: str, data: bytes, site: Site | None = None) -> Pag
 
 
 def _without_namespace(root: Node) -> list[Problem]:
-    """Take a ``<vxml>`` without any namespace for VoiceXML's, with a warning.
+    """Accept a ``<vxml>`` without any namespace as VoiceXML, with a warning.
 
-    So do the platforms for which such documents were written; their elements are no others'.
+    The platforms for which such documents were written do the same.
     """
     if root.tag != "vxml" or root.namespace:
         return []

@@ -1,4 +1,4 @@
-"""Recordings of the user: the words that they have said, or the name of a file (VoiceXML 2.0, 2.3.6)."""
+"""Recordings of the user: the words said, or the name of a file (VoiceXML 2.0, 2.3.6)."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from prima.voicexml.settings import setting
 from prima.voicexml.state import Context, Flow, TakenUtterance
 
 FORMATS = frozenset(["audio/basic", "audio/x-alaw-basic", "audio/x-wav", "audio/wav"])
-"""Formats that every platform records in (appendix E)."""
+"""Formats in which every platform records (appendix E)."""
 BEEP_MS = 500
 END_KEYS = "#*"
-"""Keys that may end what is said in words; other keys would be taken for its last word."""
+"""Keys that may end a spoken recording; others would be taken for its last word."""
 MS_A_LETTER = 100
-"""How long a letter is guessed to take where the device does not tell how long it heard."""
+"""The assumed duration of a letter if the device does not report how long it heard."""
 MAX_KNOWN = 1000
-"""Recordings that are known as such when they are played back."""
+"""Maximum number of recordings recognised when played back."""
 
 
 class RecordItems:
@@ -31,14 +31,14 @@ class RecordItems:
         """What has been recorded, and how long it was (ms)."""
 
     def keep(self, said: str, ms: float | None = None) -> int:
-        """Know what was said as a recording; gives how long it is (ms), a guess if nobody told."""
+        """Keep an utterance as a recording; gives its duration (ms), a guess if not reported."""
         while len(self.lengths) >= MAX_KNOWN:
             self.lengths.pop(next(iter(self.lengths)))
         self.lengths[said] = MS_A_LETTER * len(said) if ms is None else int(ms)
         return self.lengths[said]
 
     def check(self, context: Context, item: Node) -> None:
-        """Refuse a format in which nothing can be recorded, of an item or of what is said to it.
+        """Refuse a format that cannot be recorded, of a record item or of ``recordutterance``.
 
         Raises:
             Thrown: ``error.unsupported.format`` (2.0, 2.3.6; 2.1, 7.2).
@@ -69,7 +69,7 @@ class RecordItems:
     def take(self, context: Context, item: Node, heard: TakenUtterance, data: Data) -> Flow:
         """Fill a record with what was said.
 
-        Keys alone end it before anything has been recorded: its variable stays as it is, and
+        If only keys are pressed, nothing has been recorded: its variable stays as it is, and
         the keys are found in ``application.lastresult$``.
         """
         items = self.owner.items_of
@@ -103,7 +103,7 @@ class RecordItems:
 
 
 def divided(heard: TakenUtterance, item: Node) -> tuple[str, str]:
-    """What was said as the words that are recorded, and the keys that ended them."""
+    """Divide an utterance into the words recorded and the keys that ended them."""
     text = heard.utterance.strip()
     ends = item.get("dtmfterm") != "false"
     if heard.recognised and heard.mode == "dtmf":

@@ -1,4 +1,4 @@
-"""How long a recording is, by the header of its file: WAV or AU, nothing of its sound is read."""
+"""The duration of a recording by its file's header (WAV or AU); the sound is not read."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ import struct
 from prima.language.values import LONGEST_MS
 
 HEADER_BYTES = 65_536
-"""How much of a file's beginning is looked at."""
+"""How much of a file's beginning is read."""
 AU_BYTES = {1: 1, 2: 1, 3: 2, 4: 3, 5: 4, 6: 4, 7: 8, 27: 1}
 """Bytes of one sample in each encoding of an AU file."""
 UNKNOWN_SIZE = 0xFFFFFFFF
 
 
 def length_ms(head: bytes, size: int) -> int | None:
-    """How long a recording plays.
+    """The duration of a recording.
 
     Args:
         head: the first bytes of its file, :data:`HEADER_BYTES` at most.
         size: how many bytes the whole file has.
 
     Returns:
-        Milliseconds, or None for what is neither WAV nor AU or whose header cannot be true.
+        Milliseconds, or None if it is neither WAV nor AU, or its header is implausible.
     """
     try:
         if head[:4] == b"RIFF" and head[8:12] == b"WAVE":
@@ -39,7 +39,7 @@ def length_ms(head: bytes, size: int) -> int | None:
 
 
 def _wav(head: bytes, size: int) -> tuple[int, int]:
-    """Bytes of sound and bytes a second; 0 where that is not said, or more than is there."""
+    """Bytes of sound and bytes a second; 0 where the header gives none, or more than there are."""
     at, rate = 12, 0
     while at + 8 <= len(head):
         name, length = head[at : at + 4], struct.unpack_from("<I", head, at + 4)[0]
@@ -53,14 +53,14 @@ def _wav(head: bytes, size: int) -> tuple[int, int]:
 
 
 def _au(head: bytes, size: int) -> tuple[int, int]:
-    """The same of an AU file; its header may leave the length open."""
+    """The same for an AU file, whose header may leave the length open."""
     offset, length, encoding, samples, channels = struct.unpack_from(">5I", head, 4)
     rate = samples * channels * AU_BYTES.get(encoding, 0)
     return _sound(length, size - offset) if offset >= 24 else 0, rate
 
 
 def _sound(said: int, there: int) -> int:
-    """Bytes of sound: what the header says, unless it leaves that open or says too much."""
+    """Bytes of sound as in the header, unless it leaves them open or claims too many."""
     if said == UNKNOWN_SIZE:
         return there
     return said if said <= there else 0

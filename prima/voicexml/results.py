@@ -1,4 +1,4 @@
-"""Results of recognition as documents see them (VoiceXML 2.0, 2.3.1 and 5.1.5)."""
+"""Recognition results as documents see them (VoiceXML 2.0, 2.3.1 and 5.1.5)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ RESULTS = """(function (all) {
   for (const name in best) all[name] = best[name];  // without globals, which documents may change
   return all;
 })($results)"""
-"""Makes ``lastresult$`` of ``$results``: an array that has the best result's properties itself."""
+"""Makes ``lastresult$`` from ``$results``: an array with the best result's properties."""
 
 
 def shadow(heard: TakenUtterance) -> dict[str, Json]:

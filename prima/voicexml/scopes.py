@@ -19,10 +19,10 @@ CONNECTION = """session.connection = (function (held) {
   if (held.originator) held.originator = held[held.originator];
   return held;
 })(given)"""
-"""What is known of the user's connection; what is not is undefined (5.1.4)."""
+"""What is known about the user's connection; the rest is undefined (5.1.4)."""
 TELEPHONE = """session.telephone =
   { ani: session.connection.remote.uri, dnis: session.connection.local.uri }"""
-"""What VoiceXML 1.0 had instead, and many platforms after it."""
+"""What VoiceXML 1.0, and many platforms after it, had instead."""
 
 
 class Documents:
@@ -45,7 +45,7 @@ class Documents:
         return self.engine.view(session)
 
     def enter(self, context: Context, page: Page, submitted: bool = False) -> Flow:
-        """Make a document the active one, with what it keeps of its application (1.5.2)."""
+        """Make a document the active one, keeping its application's state (1.5.2)."""
         root = yield from self.root(page, context)
         to_root = root is None and context.root is not None and context.root.uri == page.uri
         if to_root and not submitted:
@@ -65,7 +65,7 @@ class Documents:
     def root(
         self, page: Page, context: Context | None = None
     ) -> Generator[None, Resume, Page | None]:
-        """The application root of a leaf: the one that a context has loaded, or another (1.5.2).
+        """The application root of a leaf: the one loaded in a context, or another (1.5.2).
 
         Raises:
             Thrown: ``error.badfetch`` or ``error.semantic``.
@@ -79,7 +79,7 @@ class Documents:
         return (yield from load_page(self.owner, uri, page.root))
 
     def _enter_root(self, context: Context, root: Page) -> Flow:
-        """The application of a leaf: the one there is, or a new one."""
+        """Enter the application of a leaf: the current one, or a new one."""
         if context.root is not None and context.root.uri == root.uri:
             return
         if context.root is None and context.page.uri == root.uri:
@@ -100,7 +100,7 @@ class Documents:
             yield from self.declare(node, scope, context)
 
     def declare(self, node: Node, scope: Scope, context: Context) -> Flow:
-        """What a document or form declares: a variable, a script's variables, or data."""
+        """Run a declaration of a document or form: a variable, a script's variables, or data."""
         content, local = self.owner.content, self.owner.local()
         match node.tag:
             case "script":
@@ -126,7 +126,7 @@ class Documents:
         """
         page, dialog = yield from self.find(context, uri, node, request, base)
         if page is not None:
-            yield from self.root(page, context)  # a document without its root is none
+            yield from self.root(page, context)  # a document needs its root
         raise GoDialog(page, dialog, submitted=request is not None)
 
     def find(

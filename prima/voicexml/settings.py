@@ -1,4 +1,4 @@
-"""What holds for a dialog: its properties and its form items."""
+"""A dialog's properties and form items."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ DEFAULTS = {
     "inputmodes": "dtmf voice",
     "confidencelevel": str(USUAL_CONFIDENCE),
 }
-"""Values of properties that no document sets."""
+"""Defaults of properties."""
 
 
 def form_items(context: Context) -> list[Node]:
-    """The form items of the active dialog: units, and behind each what it holds."""
+    """The form items of the active dialog: each unit before the items it holds."""
     form = context.form
     if form is None:
         return []
@@ -32,7 +32,7 @@ def form_items(context: Context) -> list[Node]:
 
 
 def setting(context: Context, name: str) -> str:
-    """A property's value, innermost first; a value of the wrong kind is none (6.3)."""
+    """A property's value, innermost first; a value of the wrong kind is ignored (6.3)."""
     page_roots = [context.page.root, context.root.root if context.root else None]
     kind = PROPERTIES.get(name)
     for node in (context.item, context.form, *page_roots):

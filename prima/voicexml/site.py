@@ -1,4 +1,4 @@
-"""A folder of files that stands for what is served at a URI (2.0, 6.1.1)."""
+"""A folder of files that represents a site at a URI (2.0, 6.1.1)."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ class Site:
     folder: str
 
     def whole(self, uri: str) -> str:
-        """The URI of a name in the folder; any other one as it is."""
+        """The URI of a name in the folder; any other name unchanged."""
         return uri if urlsplit(legal(uri)).scheme else f"{self.root}{uri}"
 
     def name(self, uri: str) -> str:
-        """The name in the folder of a URI's file; a URI beside or above it as it is."""
+        """The name in the folder of a URI's file; a URI outside it unchanged."""
         if not uri.startswith(self.root):
             return uri
         name = uri[len(self.root) :]
-        return f"./{name}" if ":" in name.partition("/")[0] else name  # it is no scheme
+        return f"./{name}" if ":" in name.partition("/")[0] else name  # not a scheme
 
     def join(self, base: str, uri: str) -> str:
-        """A URI seen from its base, a name in the folder where it leads there."""
+        """A URI resolved against its base; as a name if it is in the folder."""
         return self.name(urljoin(self.whole(base), legal(uri)))
 
 
 def site_of(file: str, uri: str, folder: str = "") -> Site:
-    """The site of a first document's file; without a folder its own stands for that of the URI.
+    """The site of a first document's file; by default the file's own folder represents the URI's.
 
     Raises:
-        ValueError: with a message and a remedy: no such document can be at that URI.
+        ValueError: with a message and a remedy: the document cannot be at that URI.
     """
     parts = urlsplit(uri)
     if parts.scheme not in ("http", "https") or not parts.netloc or parts.query or parts.fragment:
@@ -64,7 +64,7 @@ def site_of(file: str, uri: str, folder: str = "") -> Site:
 
 
 def _written(uri: str, inside: str) -> str:
-    """The end of a URI that means a path, with what is written as ``%20`` or the like."""
+    """The end of a URI that means a path, whose characters may be escaped, as ``%20``."""
     for start in range(len(uri) - len(inside), -1, -1):
         if uri[start - 1 : start] == "/" and unquote(uri[start:]) == inside:
             return uri[start:]
@@ -72,7 +72,7 @@ def _written(uri: str, inside: str) -> str:
 
 
 def within(file: str, folder: str) -> str | None:
-    """A file's path seen from a folder above it, with ``/`` between; None if it is not in it."""
+    """A file's path relative to a folder above it, separated by ``/``; None if it is not in it."""
     path = os.path.relpath(os.path.abspath(file), os.path.abspath(folder))
     return None if path.split(os.sep)[0] == os.pardir else path.replace(os.sep, "/")
 
@@ -81,7 +81,7 @@ def mapping_of(text: str) -> tuple[str, str]:
     """The URI and the folder of a mapping on the command line, ``URI=FOLDER``.
 
     Raises:
-        ValueError: it is no such mapping.
+        ValueError: it is not such a mapping.
     """
     uri, mark, folder = text.partition("/=")
     if not mark:

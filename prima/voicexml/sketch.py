@@ -1,4 +1,4 @@
-"""A VoiceXML document as the values that checks of PRIMA's own language look at.
+"""A VoiceXML document as the values that checks of PRIMA's own language work on.
 
 What is found out without running anything is found out of both languages in the same way: what
 units reach (U5), how long they speak, what is told twice (O3). A sketch has what such checks need
@@ -48,15 +48,15 @@ from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 ASKING = ("field", "initial", "record", "menu")
 FETCHING = ("goto", "submit", "data", "script")
-"""Elements of content while whose fetch something may be played."""
+"""Elements of content whose fetch may play something."""
 LEADING = ("goto", "submit", "subdialog")
 FAILURES = ("error.badfetch", "error.unsupported.format", "error.unsupported.builtin")
-"""What a question's grammars, and what is fetched, may throw beside what PRIMA's language has."""
+"""Events thrown by a question's grammars and by fetches, besides those of PRIMA's language."""
 UNIVERSAL = ("help", "cancel", "exit")
 
 
 class Sketch:
-    """One document, with the handlers that it has from its application root."""
+    """One document, with the handlers of its application root."""
 
     def __init__(self, page: Page, root: Page | None) -> None:
         self.page = page
@@ -105,7 +105,7 @@ class Sketch:
         filled = tuple(self._filled(one) for one in node.all("filled"))
         if node.tag not in ASKING:
             return Subdialog(*own, filled=filled)
-        # Commands among what it asks: they are done before the question.
+        # Commands in its prompts: they are carried out before the question.
         asked = tuple(one for one in self._acts(node, node.content) if isinstance(one, CommandRun))
         filled = (*filled, Filled("any", (), asked, node))
         return Field(*own, prompts=tuple(self._prompts(node)), filled=filled)
@@ -139,7 +139,7 @@ class Sketch:
     # Content ------------------------------------------------------------------------------
 
     def _acts(self, holder: Node, content: Iterable[Node | str]) -> tuple[Act, ...]:
-        """Content of an element as acts; what is said without an element of its own is its."""
+        """The content of an element as acts; bare text belongs to the element."""
         made: list[Act] = []
         for pieces, node in spoken_pieces(content):
             cond = code_of(node, "cond") if pieces and node is not None else None
@@ -182,14 +182,14 @@ class Sketch:
         """The dialogs that an element leads to, of this document or of others."""
         node, where = act.node, "src" if isinstance(act, Subdialog) else "next"
         if node.tag not in LEADING:
-            return []  # somebody else's number, or an object
+            return []  # a transfer's destination, or an object
         if where in node.attributes:
             return self._targets(node, PossibleText(node.get(where).strip(), True))
         found = choices(node.get("srcexpr" if where == "src" else "expr"))
         return [target for one in found for target in self._targets(node, one)]
 
     def _targets(self, node: Node, uri: PossibleText) -> list[FormTarget]:
-        """The dialog of a URI, or those of all URIs that begin so."""
+        """The dialog of a URI, or those of all URIs with that beginning."""
         own = self.page.uri
         if uri.text[:1] == "#" or (not uri.text and not uri.whole):
             return [FormTarget(f"{own}#{parted(uri.text)[1]}", uri.whole)]
@@ -205,7 +205,7 @@ class Sketch:
     # Events -------------------------------------------------------------------------------
 
     def _thrown(self, item: Item) -> Iterator[str | None]:
-        """What visiting an item may throw by itself: also by what the user says to a link."""
+        """The events that visiting an item may throw, including by what the user says to a link."""
         yield from thrown_by(item)
         yield from FAILURES
         if not isinstance(item, Field):
@@ -218,7 +218,7 @@ class Sketch:
 
     @cached_property
     def _called_outside(self) -> list[str | None]:
-        """What the user may bring about anywhere in the document."""
+        """Events that the user may cause anywhere in the document."""
         return list(dict.fromkeys(one for node in self._wider for one in self._called_in(node)))
 
     @cached_property
@@ -228,7 +228,7 @@ class Sketch:
 
     @staticmethod
     def _called_in(node: Node) -> Iterator[str | None]:
-        """What the user may bring about by what is directly in an element."""
+        """Events that the user may cause by the direct children of an element."""
         for link in node.all("link"):
             if link.attributes.keys() & {"event", "eventexpr"}:
                 yield link.get("event") or None

@@ -1,6 +1,6 @@
-"""What is found of a VoiceXML document as it is found of one in PRIMA's own language.
+"""Checks of VoiceXML documents that are shared with PRIMA's own language.
 
-Units around form items and what they reach (U4, U5), how long units speak, what is told twice (O3).
+Units around form items and what they reach (U4, U5), how long units speak, what is said twice (O3).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from prima.voicexml.sketch import Sketch
 
 PREFIX = "p:"
 OWN = ("noinput", "nomatch", "help", "cancel", "exit", "error", "maxspeechtimeout", "connection")
-"""What begins an event that no part of what is being said can be told twice by: VoiceXML's own."""
+"""Prefixes of VoiceXML's own events, by which nothing is said twice."""
 REMEDY = "Leave out the <goto>: the dialog goes on then. Or give what is said a cond."
 LATER = " At run time it is error.semantic."
 
@@ -33,12 +33,12 @@ def unit_errors(page: Page) -> list[Problem]:
 
 
 def check_sketched(pages: Iterable[tuple[Page, Page | None]]) -> Iterator[Problem]:
-    """What is no error of an application's documents, but that their author wants to know.
+    """Warnings for the documents of an application.
 
     Args:
         pages: the documents, each with its application root document.
     """
-    sound = [one for one in pages if broken(one[0]) is None]  # what others hold is told later
+    sound = [one for one in pages if broken(one[0]) is None]  # others are reported later
     every = {one.uri: one.root for both in sound for one in both if one is not None}
     nodes = (node for root in every.values() for node in root.walk())
     if not any(node.tag in HANDLERS or is_unit(node) for node in nodes):
@@ -65,7 +65,7 @@ def _check_units(sketch: Sketch, root: Page | None) -> Iterator[Problem]:
 
 
 def _source(sketch: Sketch, root: Page | None) -> EnteredDocument:
-    """A document as what is told twice is looked for in it."""
+    """A document as the check for repeated speech sees it."""
     own = {*OWN, *thrown_in(sketch.page.root), *(thrown_in(root.root) if root is not None else ())}
     return EnteredDocument(
         sketch.document, lambda name: _is_foreign(name, own), sketch.leads, queues=True
@@ -73,7 +73,7 @@ def _source(sketch: Sketch, root: Page | None) -> EnteredDocument:
 
 
 def added_in_units(page: Page, commands: Mapping[str, CommandType]) -> Iterator[Problem]:
-    """Commands that a robot adds and that cannot stand in the units that they stand in."""
+    """Commands that a robot adds and that cannot be in the units that contain them."""
     added = {name: row for name, row in commands.items() if name not in TABLE_4_2}
     for problem in _unit_problems(Sketch(page, None), added):
         yield problem._replace(severity="warning", remedy=problem.remedy + LATER)
@@ -95,5 +95,5 @@ def _unit_problems(
 
 
 def _is_foreign(name: str, own: set[str]) -> bool:
-    """Whether a handler that names an event waits for what is not of the dialog itself."""
+    """Whether a handler that names an event waits for one from outside the dialog."""
     return bool(name) and own.isdisjoint(beginnings(name))

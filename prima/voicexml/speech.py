@@ -1,4 +1,4 @@
-"""What a prompt says while it is read, until it is queued (VoiceXML 4.1)."""
+"""The speech of a prompt while it is read, until it is queued (VoiceXML 4.1)."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class Speech:
     rate: float = 1.0
     """How fast it is said, as a multiple of the usual rate."""
     silent: bool = False
-    """Whether a recording is heard in the place of what is read: its marks are not passed."""
+    """Whether a recording is played instead of the text read, whose marks are not passed."""
     takes: int = 0
 
     def take(self) -> tuple[str, tuple[Cue, ...]]:
-        """The text so far, white space folded, and its cues; nothing of it is left."""
+        """Remove and return the text so far, white space folded, and its cues."""
         text, cues = fold(self.parts)
         self.parts.clear()
         self.takes += 1
@@ -36,19 +36,19 @@ class Speech:
         return text, cues
 
     def say_at(self, rate: float) -> None:
-        """What follows is said at a rate."""
+        """Set the rate of what follows."""
         if rate != self.rate:
             self.rate = rate
             self.parts.append(Cue(0, "rate", rate))
 
     def open(self, ms: int | None) -> int:
-        """What follows takes so long, until it is closed; gives what closes it."""
+        """Begin a set duration for what follows; gives what closes it."""
         if ms is None:
             return -1
         self.parts.append(Cue(0, "lasts", ms))
         return self.takes
 
     def close(self, opened: int) -> None:
-        """Here ends what takes a set time, unless it has been split meanwhile."""
+        """End a set duration, unless it has been split meanwhile."""
         if opened == self.takes:
             self.parts.append(Cue(0, "end"))

@@ -23,7 +23,7 @@ class Resume:
     data: Data = field(default_factory=dict)
     event: Event | None = None
     outside: bool = False
-    """Whether the event is none of what was waited for, but has come meanwhile."""
+    """Whether the event is not what was waited for, but arrived meanwhile."""
 
 
 Flow = Generator[None, Resume, None]
@@ -31,7 +31,7 @@ Flow = Generator[None, Resume, None]
 
 @dataclass(frozen=True, slots=True)
 class UriRequest:
-    """What goes along with a URI: a submit's, subdialog's or data's method and values."""
+    """The method and values of a submit, subdialog or data that go along with a URI."""
 
     method: str = "get"
     values: Mapping[str, Json] = field(default_factory=dict)
@@ -50,9 +50,9 @@ class TakenUtterance:
     others: list[tuple[str, Json, float]] = field(default_factory=list)
     """Further results, best first, as utterance, interpretation and confidence."""
     recognised: bool = True
-    """Whether a grammar has taken it, and not a record all that is said."""
+    """Whether a grammar took it, rather than a record."""
     mark: str | None = None
-    """The last mark passed before it; by devices that tell of none, the prompts' last mark."""
+    """The last mark passed before it; the prompts' last mark for devices that report none."""
     marktime: int | None = None
     """How much (ms) was played from that mark on, if that is known (VoiceXML 2.1, 4)."""
 
@@ -60,14 +60,14 @@ class TakenUtterance:
     """How long (ms) its recording is, if it was recorded (VoiceXML 2.1, 7)."""
 
     def take_mark(self, data: Data) -> None:
-        """Take in what the device tells of marks, if it does (:class:`prima.messages.Heard`)."""
+        """Take over the marks that the device reports, if any (:class:`prima.messages.Heard`)."""
         if "markname" in data:
             self.mark, self.marktime = data["markname"], data.get("marktime")
 
 
 @dataclass(slots=True)
 class Params:
-    """What a subdialog is given and has not declared yet (2.3.4)."""
+    """Params of a subdialog that it has not declared yet (2.3.4)."""
 
     values: Scope
     names: dict[str, None] = field(default_factory=dict)
@@ -106,7 +106,7 @@ class UnitOver(Thrown):
 
 
 class HungUp(Thrown):
-    """The user is no longer there, or is about to go: a hangup, a disconnect, a transfer (1.5.4)."""
+    """The user has left or is about to: a hangup, a disconnect, a transfer (1.5.4)."""
 
     def __init__(
         self, name: str, message: str = "", source: str = "", outside: bool = False
@@ -116,7 +116,7 @@ class HungUp(Thrown):
 
 
 def thrown_outside(resume: Resume) -> Thrown:
-    """The event that has ended a wait."""
+    """The event that ended a wait."""
     assert resume.event is not None
     thrown = thrown_of_event(resume.event)
     thrown.outside = thrown.outside or resume.outside
@@ -135,11 +135,11 @@ def thrown_of_event(event: Event) -> Thrown:
 
 
 class Unasked(Thrown):
-    """A parameter for which a subdialog has no variable: what it does not handle is its caller's."""
+    """A parameter for which a subdialog has no variable; unhandled, it is thrown in the caller."""
 
 
 class GoDialog(Transfer):
-    """A goto or submit, or an utterance that another dialog's grammar has taken."""
+    """A goto or submit, or an utterance that another dialog's grammar took."""
 
     def __init__(
         self,

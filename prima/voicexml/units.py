@@ -1,4 +1,4 @@
-"""Units around form items (rule U5): what is asked and said in one is one Atomic Behavior.
+"""Units around form items (rule U5): each unit's questions and speech are one Atomic Behavior.
 
 An event that is thrown in a unit is handled in it, wherever the handler stands. One that comes
 from outside is handled in it by the handlers of its items and its own alone; any other handler
@@ -26,10 +26,10 @@ class Units:
     def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
         self._reached: dict[int, tuple[Node, Page | None, Reach]] = {}
-        """What each unit reaches, with the application root that was its document's then."""
+        """What each unit reaches, with its document's application root at that time."""
 
     def span(self, context: Context, unit: Node, wanted: str) -> Flow:
-        """Visit the items of a unit, which is left by whatever way.
+        """Visit the items of a unit; closes it however it is left.
 
         Args:
             context: that of its dialog.
@@ -37,7 +37,7 @@ class Units:
             wanted: the name of the item in it to begin with, if a goto names one.
         """
         if self.owner.queue:
-            yield from self.owner.play(context)  # what was said before is no part of it
+            yield from self.owner.play(context)  # earlier speech is not part of it
         app, items = self.owner.app, self.owner.items_of
         app.waits.open_unit(self._reach(context, unit), longest_of(unit), unit)
         context.unit = unit
@@ -54,7 +54,7 @@ class Units:
             app.waits.close_unit()
 
     def _say_rest(self, context: Context) -> Flow:
-        """What is said before a unit is left belongs to it (O3); nothing breaks it off."""
+        """Play what is queued before a unit is left: it belongs to the unit (O3), uninterrupted."""
         if not self.owner.queue or self.owner.gone:
             return
         self.owner.app.waits.leaving = True
@@ -77,7 +77,7 @@ class Units:
         return True
 
     def _takes(self, context: Context, unit: Node, thrown: Thrown) -> bool:
-        """Whether a handler that stands in a unit takes an event, or nobody can tell."""
+        """Whether a handler in a unit takes an event, or may take it."""
         try:
             handler = self.owner.events.taker(context, thrown)
         except Thrown:
@@ -92,7 +92,7 @@ class Units:
             self.owner.engine.unset(context.dialog, unit.get("name"))
 
     def _reach(self, context: Context, unit: Node) -> Reach:
-        """What may be asked for in a unit, by all handlers that it can reach."""
+        """What may be requested in a unit, by all handlers that it can reach."""
         kept = self._reached.get(id(unit))
         if kept is None or kept[1] is not context.root:
             reach = Sketch(context.page, context.root).reach(unit)

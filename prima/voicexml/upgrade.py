@@ -1,4 +1,4 @@
-"""Versions of VoiceXML: documents of 1.0, and those that name none, are read as later ones."""
+"""Versions of VoiceXML: documents of 1.0, or without a version, are read as later ones."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ OLD = "1.0"
 RENAMED = {"vxml": {"base": "xml:base", "lang": "xml:lang"}, "pros": {"vol": "volume"}}
 """Attributes of VoiceXML 1.0 with their later names."""
 DROPPED = {"subdialog": ("modal",)}
-"""Attributes of VoiceXML 1.0 that have no meaning any more; ``caching`` is one of all elements."""
+"""Attributes of VoiceXML 1.0 without a meaning now; ``caching`` is one on any element."""
 EVENTS = re.compile(r"(?<!\S)(error\.)?telephone(?=[.\s]|$)")
 """Events of the telephone, which are those of a connection now (2.0, 5.2.6)."""
 
@@ -38,12 +38,12 @@ OTHER_VERSION = BAD_VALUE.says(
 
 
 def old(root: Node) -> bool:
-    """Whether a document is of VoiceXML 1.0, which has no namespace and other elements in part."""
+    """Whether a document is VoiceXML 1.0, which has no namespace and partly other elements."""
     return root.get("version").strip() == OLD
 
 
 def version_problem(root: Node) -> Problem | None:
-    """What is to be said of a document's version: an error if it is none that can be run (1.5)."""
+    """The problem of a document's version, if any: an error if it cannot be run (1.5)."""
     version = root.get("version").strip()
     if version in VERSIONS:
         return None
@@ -81,7 +81,7 @@ def _dtmf(node: Node) -> None:
 
 
 def _grammar(node: Node) -> None:
-    """A grammar's text without a type is in the form that 1.0 shows; it is not supported."""
+    """A grammar's text without a type is in the format of 1.0's examples: not supported."""
     written = node.text and not node.nodes and not node.text.startswith("#ABNF")
     if written and "type" not in node.attributes:
         node.attributes["type"] = UNTYPED
@@ -96,7 +96,7 @@ def _emp(node: Node) -> None:
 
 
 def _pros(node: Node) -> None:
-    """Rates were words per minute; only a change in percent means the same."""
+    """Rates were words per minute; only a change in percent still means the same."""
     node.tag = "prosody"
     if not node.get("rate").endswith("%"):
         node.attributes.pop("rate", None)
@@ -109,7 +109,7 @@ def _break(node: Node) -> None:
 
 
 def _sayas(node: Node) -> None:
-    """One element for what are three: words in place of others, sounds, and kinds of text."""
+    """Replace one element by three: substituted words, sounds, and kinds of text."""
     given = {name: node.attributes.pop(name, "") for name in ("sub", "phon", "class")}
     for name, tag, later in SAID_AS:
         if given[name]:
@@ -128,4 +128,4 @@ CHANGED: dict[str, Callable[[Node], None]] = {
     "break": _break,
     "sayas": _sayas,
 }
-"""What becomes of elements of VoiceXML 1.0."""
+"""How elements of VoiceXML 1.0 are upgraded."""

@@ -7,7 +7,7 @@ from typing import Literal
 from prima.script.globals import IDENTIFIER, RESERVED
 
 SOMETIMES = frozenset(["async", "await", "let", "of", "static", "yield"])
-"""Words that are names, too, in the ECMAScript of documents."""
+"""Words that are names as well in the ECMAScript of documents."""
 
 
 def wrong_name(name: str) -> Literal["", "not a name", "reserved"]:

@@ -1,6 +1,6 @@
-"""Variables that a VoiceXML document uses and nothing declares: error.semantic when it gets there.
+"""Variables that a VoiceXML document uses and nothing declares: error.semantic when reached.
 
-Where it cannot be told, a name is taken for declared. Executable content has a scope of its own, in
+In case of doubt, a name is taken for declared. Executable content has a scope of its own, in
 that of its dialog (5.1.2); what a dialog or a document declares counts from where it stands on in
 what is evaluated in document order, and everywhere in all else.
 """
@@ -38,15 +38,15 @@ LISTING = frozenset(["submit", "clear", "return", "exit", "subdialog", "disconne
 DIALOGS = ("form", "menu")
 SETUP = ("var", "script", "data")
 CONTAINERS = frozenset([*HANDLERS, "block", "filled", "prompt"])
-"""Elements whose content has a scope of its own, unless they stand in such content themselves."""
+"""Elements whose content has a scope of its own, unless they are in such content themselves."""
 FILES = ("src", "srcexpr")
-"""Attributes of a script that stands elsewhere."""
+"""Attributes of an external script."""
 LISTED = re.compile(r"\S+")
 """A name in a list of names."""
 MENTIONED = re.compile(rf"\b(?:{'|'.join(sorted(OBJECTS))})\b")
 
 Text = Callable[[Page, Node], str | None]
-"""Gives the text of a script in a file, if it can be had."""
+"""Gives the text of a script in a file, if it can be read."""
 
 
 class Unknown(Exception):
@@ -75,7 +75,7 @@ class Read(NamedTuple):
 
     @property
     def place(self) -> Place:
-        """Where it stands."""
+        """Where it is written."""
         return self.node.source.inside(self.node.index, self.attribute, self.start)
 
 
@@ -106,13 +106,13 @@ class _Look:
 
     @staticmethod
     def outside(page: Page) -> list[Node]:
-        """What stands outside of a document's dialogs."""
+        """The elements outside of a document's dialogs."""
         return [node for node in page.root.nodes if node.tag not in DIALOGS]
 
     # What is declared -------------------------------------------------------------------------
 
     def level(self, page: Page, tops: Iterable[Node], ordered: bool = False) -> Level:
-        """The scope that elements are in, without those in it that have their own.
+        """The scope of elements, without nested ones that have their own.
 
         Raises:
             Unknown: a script cannot be read.
@@ -143,14 +143,14 @@ class _Look:
 
     @staticmethod
     def shadows(level: Level) -> set[str]:
-        """Shadow variables of a dialog's items: those that a user fills, or a form's grammar (3.1.6)."""
+        """Shadow variables of the items that a user or a form's grammar fills (3.1.6)."""
         filled = INPUTS - {"subdialog"}
         if any(node.key == "grammar" for top in level.nodes[:1] for node in top.nodes):
             filled = INPUTS
         return {f"{node.get('name')}$" for node in level.nodes if node.key in filled}
 
     def script(self, page: Page, node: Node) -> Names:
-        """The names in a script, which may stand in a file.
+        """The names in a script, which may be in a file.
 
         Raises:
             Unknown: it cannot be read.
@@ -165,9 +165,9 @@ class _Look:
         return found
 
     def mentions(self) -> set[tuple[str, str]]:
-        """Members of scopes that somebody gives values or looks at: who knows which are there.
+        """Members of scopes that some code assigns or tests, which may therefore exist.
 
-        A scope that is used as a whole is in it with an empty name: any member may be meant.
+        A scope used as a whole appears with an empty name: any member may be meant.
         """
         found: set[tuple[str, str]] = set()
         for page in filter(None, (self.page, self.root)):
@@ -187,14 +187,14 @@ class _Look:
     # What is used -----------------------------------------------------------------------------
 
     def problems(self) -> Iterator[Problem]:
-        """Warnings of all that is used and not declared."""
+        """Warnings of all names used and not declared."""
         everywhere = NameScope(name for one in self.dialogs.values() for name in one.names)
         application = {"application": self.shared[-1]}
         outer = Known(*self.shared[1:])
         setup = [node for node in self.own.nodes if node.tag in SETUP]
         yield from self.check(setup, self.own, outer, application)
         if not self.dialogs:
-            return  # handlers and links stand in the dialogs of other documents
+            return  # handlers and links are inherited by other documents' dialogs
         others = [node for node in self.own.nodes if node.tag not in SETUP]
         known = Known(*self.shared, everywhere)
         yield from self.check(others, Level(), known, application)
@@ -226,7 +226,7 @@ class _Look:
     def check(
         self, nodes: Iterable[Node], level: Level, outer: Known, members: Mapping[str, NameScope]
     ) -> Iterator[Problem]:
-        """Check elements in a scope: what they use is declared before them there, or around it."""
+        """Check that what elements use is declared before them in their scope, or around it."""
         seen: set[str] = set()
         for node in nodes:
             seen |= _with_it(node, level)
@@ -241,7 +241,7 @@ class _Look:
             seen |= level.by_node.get(node.index, set())
 
     def members(self, node: Node, known: Mapping[str, NameScope]) -> Iterator[Problem]:
-        """Warnings of members of scopes that must be there and are not."""
+        """Warn of members of scopes that must exist and do not."""
         for read in _members(node):
             holder, _, name = read.name.partition(".")
             scope = known.get(holder)
@@ -252,7 +252,7 @@ class _Look:
 
 
 def _mentions(uses: list[Use]) -> Iterator[tuple[str, str]]:
-    """The members of scopes that some code gives values or looks at, and scopes used as a whole."""
+    """The members of scopes that some code assigns or tests, and scopes used as a whole."""
     members = [use for use in uses if use.holder]
     for scope in OBJECTS:
         written = sum(use.name == scope and not use.holder for use in uses)
@@ -265,13 +265,13 @@ def _with_it(node: Node, level: Level) -> set[str]:
     """The names that may be there before all of an element has been evaluated."""
     if node.key == "script":
         return level.by_node.get(node.index, set())
-    if node.tag == "foreach" and level.ordered:  # its end comes before its beginning again
+    if node.tag == "foreach" and level.ordered:  # its end precedes its beginning again
         return set().union(*(level.by_node.get(one.index, ()) for one in node.walk()))
     return set()
 
 
 def _in_order(read: Read) -> bool:
-    """Whether code of a document or dialog is evaluated where it stands, and not later."""
+    """Whether code of a document or dialog is evaluated where it is written, and not later."""
     return read.node.tag in SETUP or (read.node.tag in FORM_ITEMS and read.attribute == "expr")
 
 
@@ -302,7 +302,7 @@ def _listed(node: Node, attribute: str) -> Iterator[Read]:
 
 
 def _members(node: Node) -> Iterator[Read]:
-    """Members of scopes, as ``document.x``, whose being there is needed."""
+    """Members of scopes, such as ``document.x``, that must exist."""
     for attribute, code in node.attributes.items():
         if is_code(node, attribute) and MENTIONED.search(code):
             yield from _parted(node, attribute, expression_names(code))

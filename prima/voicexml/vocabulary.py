@@ -112,15 +112,15 @@ VOICEXML = Vocabulary(NAMESPACE, "voicexml", "vxml", _elements())
 """VoiceXML's elements; grammars are checked by :mod:`prima.grammar`."""
 
 SPOKEN = frozenset(BLOCKS.split()) - {"said-foreach"} | {"prompt"}
-"""Elements that are said; all but ``prompt`` are a prompt even without one around (4.1.2)."""
+"""Spoken elements; all but ``prompt`` make a prompt even without one around them (4.1.2)."""
 WORDED = frozenset(tag for tag in SPOKEN - {"prompt", "enumerate"} if VOICEXML.elements[tag].text)
-"""Elements of speech markup whose text is a part of that around them."""
+"""Elements of speech markup whose text is part of the surrounding text."""
 HOLDING = frozenset(
     key
     for key in (SPOKEN | {"said-foreach"}) - {"enumerate"}
     if "break" in VOICEXML.elements[key].children
 )
-"""Elements besides executable content in which a Command of the robot may stand."""
+"""Elements besides executable content that may contain a Command of the robot."""
 
 ALTERNATIVES = {
     "goto": ("next expr nextitem expritem !",),
@@ -140,7 +140,7 @@ ALTERNATIVES = {
     "script": ("src srcexpr content !",),
     "grammar": ("src srcexpr content !",),
 }
-"""Attributes of which at most one may stand, or with ``!`` exactly one; ``content`` is the
+"""Attributes of which at most one may be given, or with ``!`` exactly one; ``content`` is the
 element's own content (each element's own section)."""
 _TRUTH, _TIME = "true false", "time"
 VALUES = {
@@ -173,7 +173,7 @@ VALUES = {
     "finalsilence": _TIME,
     "connecttimeout": _TIME,
 }
-"""What attributes may say: words, a time, a rate of speech, or a whole number from 1; an
+"""What attributes may hold: keywords, a time, a rate of speech, or a whole number from 1; an
 element's own come first."""
 EXPRESSIONS = frozenset(
     [
@@ -191,7 +191,7 @@ EXPRESSIONS = frozenset(
 )
 """Attributes that hold ECMAScript."""
 FETCHED_VALUES = {"maxage": "number", "maxstale": "number"}
-"""What all elements that fetch may say (6.1.2)."""
+"""Attributes of all elements that fetch (6.1.2)."""
 FETCHED = ("audio", "document", "grammar", "object", "script", "data")
 PROPERTIES = {
     **dict.fromkeys(
@@ -211,4 +211,4 @@ PROPERTIES = {
     "bargeintype": "speech hotword",
     "maxnbest": "integer",
 }
-"""What properties of the Recommendation hold (6.3)."""
+"""Kinds of the Recommendation's properties (6.3)."""

@@ -25,12 +25,12 @@ from prima.voicexml.state import Resume, UnitOver
 
 
 class Waits:
-    """Asks for Commands, answers and units, and waits for them.
+    """Requests Commands, answers and units, and waits for them.
 
     Args:
         app: the application.
         here: where it is.
-        begun: is called when what is queued is asked for.
+        begun: is called when the queue is requested.
     """
 
     def __init__(
@@ -40,21 +40,21 @@ class Waits:
         self._here = here
         self._begun = begun
         self.run = 0
-        """The Commands that are waited for; 0 for none."""
+        """The run of Commands that is waited for; 0 for none."""
         self.cause: int | None = None
-        """The event that what is asked for next reacts to."""
+        """The event to which the next request reacts."""
         self.asked: int | None = None
-        """The serial of what is asked for outside and waited for: the transitioning state."""
+        """The serial of the outside request that is waited for: the transitioning state."""
         self.late: Answer | None = None
-        """The answer when the deadline is over."""
+        """The answer assumed at the deadline."""
         self.calling = False
-        """Whether what is waited for is a call, which the user may hang up."""
+        """Whether a call is waited for, which the user may hang up."""
         self.patient = False
-        """Whether what is played now is played to its end, even with the answer there."""
+        """Whether the current prompts are played to their end, even once the answer is there."""
         self.unit: int | None = None
-        """The unit around form items in which Commands are asked for (U5)."""
+        """The unit around form items in which Commands are requested (U5)."""
         self.leaving = False
-        """Whether a unit is being left: what is said in it is said to its end."""
+        """Whether a unit is being left: its speech is played to its end."""
         self._answer: Answer | None = None
         self._state = 0
         self._left = 0
@@ -64,9 +64,9 @@ class Waits:
         self._queue: Sequence[Queued] = ()
         """Commands whose end is waited for."""
         self._unit_place = ""
-        """Where that unit is written."""
+        """Where that unit is in the document."""
         self._overdue = ""
-        """What to say of a unit that has just taken too long."""
+        """The message for a unit that has just taken too long."""
 
     # Commands -------------------------------------------------------------------------
 
@@ -75,14 +75,14 @@ class Waits:
         return any(one is command for one in self._open)
 
     def before(self, command: Command) -> Command | None:
-        """Which of the Commands that are waited for comes before one of them, if any does."""
+        """The awaited Command before a given one, if any."""
         for one, after in pairwise(self._queue):
             if after is command:
                 return one if isinstance(one, Command) else None
         return None
 
     def leave_state(self) -> None:
-        """O3: what is asked for and waited for is given up."""
+        """O3: give up what is requested and awaited."""
         if self._left != self._state:
             self._left = self._state
             self._app.actions.append(LeaveState(self._state))
@@ -90,7 +90,7 @@ class Waits:
     def wait(
         self, commands: Sequence[Queued], open_to_answers: Sequence[Command] = ()
     ) -> Generator[None, Resume, Resume]:
-        """Ask for Commands, one after another, and wait for the end of the last.
+        """Request Commands, one after another, and wait for the end of the last.
 
         Args:
             commands: the Commands.
@@ -116,7 +116,7 @@ class Waits:
         return resume
 
     def open_unit(self, reach: Reach, longest: int, node: Node) -> None:
-        """U5: what is asked for from now on belongs to a unit, which is a state of its own."""
+        """U5: requests from now on belong to a unit, which is a state of its own."""
         self.unit, self._unit_place = next(self._app.units), source(node)
         self._state = next(self._app.states)
         cause, self.cause = self.cause, None
@@ -126,13 +126,13 @@ class Waits:
         )
 
     def close_unit(self) -> None:
-        """U5: the unit is left, by whatever way."""
+        """U5: the unit is left, in whatever way."""
         if self.unit is not None and not self._app.over:
             self._app.actions.append(CloseUnit(self.unit))
         self.unit = None
 
     def _stay_in_time(self) -> None:
-        """U5: nothing is waited for any longer in a unit that has taken too long.
+        """U5: wait no longer in a unit that has taken too long.
 
         Raises:
             UnitOver: ``error.unit.timeout``.
@@ -143,23 +143,23 @@ class Waits:
             raise UnitOver("error.unit.timeout", message, self._unit_place)
 
     def ask(self, uri: str, data: Data, late: Answer, timeout: int, node: Node) -> None:
-        """Ask something of a URI; ``late`` is the answer if none comes in ``timeout`` ms."""
+        """Send a request to a URI; ``late`` is the answer if none comes in ``timeout`` ms."""
         late.serial = self._app.send(uri, data, source(node))
         self.expect(late, timeout)
 
     def expect(self, late: Answer, timeout: int | None) -> None:
-        """Wait for an answer to what has been asked; without a timeout, for ever."""
+        """Wait for an answer to a request; without a timeout, for ever."""
         self.asked, self._answer, self.late = late.serial, None, late
         self.calling = isinstance(late, Transferred)
         self._app.deadline = None if timeout is None else self._app.now + timeout
 
     @property
     def overdue(self) -> bool:
-        """Whether the answer is that none has come in time."""
+        """Whether no answer came in time."""
         return self._answer is not None and self._answer is self.late
 
     def expect_nothing(self) -> None:
-        """Wait for no answer any more."""
+        """Stop waiting for an answer."""
         self.asked = self._answer = self.late = self._app.deadline = None
         self.calling = False
 
@@ -190,7 +190,7 @@ class Waits:
         return self._answer
 
     def take(self, answer: Answer) -> None:
-        """The answer to what was asked for is there."""
+        """Take the answer to the request."""
         self.asked, self._answer, self._app.deadline = None, answer, None
 
     def overrun(self, message: str) -> None:

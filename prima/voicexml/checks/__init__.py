@@ -1,4 +1,4 @@
-"""Everything wrong with a VoiceXML document, with its place: the Recommendation's schema and rules."""
+"""Checks of VoiceXML documents against the Recommendation's schema and rules."""
 
 from prima.voicexml.checks.elements import FORM_ITEMS
 from prima.voicexml.checks.guests import check_commands

@@ -18,7 +18,7 @@ from prima.voicexml.cues import is_rate
 from prima.voicexml.vocabulary import ALTERNATIVES, VALUES, VOICEXML
 
 WORDS = frozenset(["next", "nextitem", "src", "event"])
-"""Attributes of any words in which white space at the ends means nothing."""
+"""Free-text attributes in which leading and trailing white space is insignificant."""
 KEYS = re.compile(r"\s*[0-9*#A-D](?:\s*[0-9*#A-D])*\s*")
 
 READ_AS = BAD_VALUE.says(
@@ -33,7 +33,7 @@ HAS_BOTH = EXCLUSIVE.says('<{tag}> has both "{name}" and {other}.', "Keep one of
 
 @dataclass(frozen=True, slots=True)
 class ElementEntry:
-    """What the tables say of an element, ready for use."""
+    """The tables' entry for an element, ready for use."""
 
     known: frozenset[str]
     required: tuple[str, ...]
@@ -63,7 +63,7 @@ def check_attributes(node: Node, entry: ElementEntry) -> Iterator[Problem]:
     for name in node.attributes:
         yield from _check_attribute(node, name, entry)
     for name in entry.required:
-        if name not in node.attributes and node.key != "vxml":  # whose version has its own check
+        if name not in node.attributes and node.key != "vxml":  # its version is checked elsewhere
             yield missing(node, name)
     for names in entry.alternatives:
         yield from _check_alternatives(node, names)
@@ -85,13 +85,13 @@ def _check_attribute(node: Node, name: str, entry: ElementEntry) -> Iterator[Pro
 
 
 def missing(node: Node, name: str) -> Problem:
-    """An attribute that an element needs and lacks."""
+    """The problem of a required attribute that is missing."""
     hint = added("", node, VOICEXML.attributes[node.key][name][0])
     return NEEDS.at(node.place, hint, tag=node.tag, name=name)
 
 
 def _capitals(node: Node, name: str) -> Problem:
-    """Words of HTTP in capitals, which other platforms take: they are read as if in small letters."""
+    """Accept keywords of HTTP in capitals, as other platforms do: they are read as lower case."""
     text = node.attributes[name]
     node.attributes[name] = small = text.lower()
     kind = ENTRIES[node.key].kinds[name]
@@ -126,7 +126,7 @@ REMEDIES = {
 
 
 def fits(kind: str, text: str) -> bool:
-    """Whether a text is a value of a kind, or one of the words that the kind lists."""
+    """Whether a text is a value of a kind, or one of the keywords that the kind lists."""
     return FITS[kind](text) if kind in FITS else text in kind.split()
 
 
@@ -143,7 +143,7 @@ def _is_whole(text: str) -> bool:
 
 
 def _are_events(text: str) -> bool:
-    """A dot alone, as no name at all, is for all events."""
+    """Whether a text lists events; a dot alone, like an empty name, stands for all events."""
     return all(name == "." or _reads("event", name) for name in text.split())
 
 
@@ -177,14 +177,14 @@ def bad_value(node: Node, name: str, text: str, kind: str) -> Problem:
 
 
 def instead_of(node: Node, name: str, text: str, kind: str) -> Hint:
-    """What to write in place of a value that is not of its kind."""
+    """The remedy for a value that is not of its kind."""
     if kind == "time" and (right := meant_value("duration", text)):
         return replaced(f'Write "{right}".', right, *value_span(node, name))
     return Hint(REMEDIES.get(kind, f"Write {one_of(kind.split())}."))
 
 
 def _check_alternatives(node: Node, names: tuple[str, ...]) -> Iterator[Problem]:
-    """Attributes of an element that exclude each other, or none where one is needed."""
+    """Check attributes that exclude each other, and those of which one is required."""
     needed = names[-1] == "!"
     names = names[:-1] if needed else names
     given = [name for name in names if name in node.attributes]

@@ -1,4 +1,4 @@
-"""What holds between single elements of VoiceXML and their children."""
+"""Constraints between single elements of VoiceXML and their children."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def _check_if(node: Node) -> Iterator[Problem]:
 
 
 def _check_say_as(node: Node) -> Iterator[Problem]:
-    """How to say it: older documents write ``type`` (4.1.1)."""
+    """Check a ``say-as``; older documents write ``type`` (4.1.1)."""
     if not {"interpret-as", "type"} & node.attributes.keys():
         yield missing(node, "interpret-as")
 

@@ -39,7 +39,7 @@ SAYS_NOTHING = NOTHING_TO_SAY.says(
 
 
 def check_guest(node: Node, parent: Node) -> list[Problem]:
-    """An element of PRIMA's language among VoiceXML's own."""
+    """Check an element of PRIMA's language among VoiceXML's own."""
     if node.tag not in (*COMMANDS, *ARRANGING):
         hint = suggestion(node.tag, [*COMMANDS, *ARRANGING], *name_spans(node))
         return [UNKNOWN_COMMAND.at(node.place, hint, tag=node.tag)]
@@ -65,7 +65,7 @@ def _check_arguments(node: Node) -> Iterator[Problem]:
 
 
 def check_commands(root: Node, commands: Mapping[str, CommandType]) -> list[Problem]:
-    """Warnings for Commands that a robot adds or lacks: at run time they are events."""
+    """Warn of Commands that a robot adds or lacks: at run time they cause events."""
     problems: list[Problem] = []
     for node in root.walk():
         name = node.get("type")
@@ -81,7 +81,7 @@ def check_commands(root: Node, commands: Mapping[str, CommandType]) -> list[Prob
 
 
 def command_problems(node: Node, row: CommandType) -> list[Problem]:
-    """Arguments and texts for which a Command is an event when it is asked for."""
+    """Arguments and texts that make a Command fail with an event when it is requested."""
     given = _arguments(node, row)
     says = bool(node.own_text.strip() or node.all("value"))
     found = [
@@ -98,7 +98,7 @@ def command_problems(node: Node, row: CommandType) -> list[Problem]:
 
 
 def _arguments(node: Node, row: CommandType) -> dict[str, str | None]:
-    """The arguments that a Command has, with the values written; None for an expression's."""
+    """The arguments of a Command with the values written; None for an expression."""
     given: dict[str, str | None] = {}
     for name, text in node.attributes.items() if node.tag != "command" else ():
         bare = name.removesuffix("-expr")

@@ -1,4 +1,4 @@
-"""Errors only if executed: what a run reports as an event when it is reached."""
+"""Errors only if executed: a run reports them as events when it reaches them."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ LATER_VALUES = {
     "prosody": {"pitch": "pitch", "range": "pitch", "volume": "volume"},
     "voice": {"age": "number", "variant": "integer"},
 }
-"""Keys that nobody can press, events that nothing throws or takes, and what no voice can do."""
+"""Impossible keys, events that nothing throws or takes, and speech that no voice can produce."""
 NO_DIALOG = NO_SUCH_FORM.says(
     'There is no dialog "{name}" here: this will be error.badfetch.', severity="warning"
 )
@@ -67,7 +67,7 @@ NOT_CHECKED = BAD_EXPRESSION.says('"{code}" cannot be checked: {error}.', severi
 def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
     """Warnings for expressions that do not compile, for dialogs that are not there, and the like.
 
-    Only validation asks for them: a run reports what it reaches, as an event.
+    Only validation uses this: a run reports what it reaches, as an event.
     """
     problems = list(_all_compiled(root))
     lang = root.get("xml:lang", "en")
@@ -110,7 +110,7 @@ def is_code(node: Node, attribute: str) -> bool:
 
 
 def _value_problems(node: Node) -> list[Problem]:
-    """Values that do nothing, though they are no error when they are reached."""
+    """Values without effect that are not errors when reached."""
     return [
         bad_value(node, name, node.get(name), kind)._replace(severity="warning")
         for name, kind in {**FETCHED_VALUES, **LATER_VALUES.get(node.key, {})}.items()
@@ -176,7 +176,7 @@ def _all_compiled(root: Node) -> Iterator[Problem]:
 
 
 def _codes(node: Node) -> Iterator[tuple[str, str]]:
-    """The code of an element that an engine has to look at, with its attribute; none for a script."""
+    """The code of an element that an engine must check, with its attribute (none for a script)."""
     for name in node.attributes:
         if is_code(node, name) and compiled(node.get(name)) is None:
             yield name, node.get(name)
@@ -197,6 +197,6 @@ def _compile(node: Node, name: str, code: str, checker: IsolatedSyntax) -> Itera
 
 
 def _statements(node: Node, name: str) -> Problem:
-    """An expression that is a script: other platforms take it, and so does this one."""
+    """Warn of an expression that is a script: accepted here as on other platforms."""
     diagnosis = STATEMENTS if node.get(name).strip() else EMPTY
     return diagnosis.at(node.attribute_place(name), name=name)

@@ -17,12 +17,12 @@ HIDING = {
     "session": "the session variables, which are read-only",
     **{name: f"the variables of the {name}" for name in sorted(OBJECTS)},
 }
-"""Names that variables should not have, and what they make unreachable (5.1.2)."""
+"""Names that variables should not have, each with what it hides (5.1.2)."""
 NAMING = {
     **dict.fromkeys([*FORM_ITEMS, UNIT, "var", "data"], "name"),
     **dict.fromkeys(["foreach", "said-foreach"], "item"),
 }
-"""Elements that have a variable, and the attribute that names it."""
+"""Elements that declare a variable, with the attribute that names it."""
 
 HIDES = BAD_VALUE.says('The variable "{name}" hides {what}.', "Write another name.", "warning")
 NOT_A_NAME = BAD_VALUE.says(

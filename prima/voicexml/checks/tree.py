@@ -1,4 +1,4 @@
-"""The elements of a VoiceXML document: which may stand where, and what they hold."""
+"""The elements of a VoiceXML document: where each may appear, and what it may contain."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from prima.voicexml.upgrade import version_problem
 from prima.voicexml.vocabulary import COMMANDS, NAMESPACE, PRIMA_NAMESPACE, SRGS, VOICEXML
 
 MOST_ALIKE = 5
-"""Of problems that say the same, so many are shown, each with its place."""
+"""How many problems with the same message are shown, each with its place."""
 LONGEST_SHOWN = 30
 """Characters of stray text that a message quotes."""
 HABITS: dict[str, str | Instead] = {
@@ -33,12 +33,12 @@ HABITS: dict[str, str | Instead] = {
     "par": f'Write <p:par> around Commands, with xmlns:p="{PRIMA_NAMESPACE}".',
     "seq": f'Write <p:seq> around Commands, with xmlns:p="{PRIMA_NAMESPACE}".',
 }
-"""What to write for elements of other languages."""
+"""Remedies for elements of other languages."""
 HOLDERS = {
     "foreach": "a <foreach> of executable content",
     "said-foreach": "a <foreach> of a prompt",
 }
-"""How messages name elements that hold different things by where they are."""
+"""How messages name elements whose content depends on where they appear."""
 
 HOLDS_TEXT = STRAY_TEXT.says('<{tag}> holds text: "{text}".')
 IGNORED = WRONG_NAMESPACE.says(
@@ -49,9 +49,9 @@ NOT_HERE = MISPLACED_ELEMENT.says("<{tag}> cannot stand in {holder}.", "It may s
 
 
 def check_tree(root: Node) -> list[Problem]:
-    """Give every node its key, take out what is of foreign namespaces, and report what is wrong.
+    """Give every node its key, remove foreign namespaces, and report what is wrong.
 
-    A document with an error is not run: who fetches it gets ``error.badfetch`` (5.2.6).
+    A document with an error is not run: fetching it throws ``error.badfetch`` (5.2.6).
     """
     root.key = "vxml"
     problems = [problem] if (problem := version_problem(root)) else []
@@ -67,7 +67,7 @@ def check_tree(root: Node) -> list[Problem]:
 
 
 def _check_element(node: Node) -> list[Problem]:
-    """What is wrong with an element itself."""
+    """Check an element itself."""
     entry = ENTRIES[node.key]
     problems: list[Problem] = []
     if node.attributes or entry.required or entry.alternatives:
@@ -82,7 +82,7 @@ def _check_element(node: Node) -> list[Problem]:
 
 
 def _check_children(node: Node, stack: list[Node], problems: list[Problem]) -> None:
-    """Find the children's keys; those that are to be looked at go onto the stack."""
+    """Find the children's keys; push those to be checked onto the stack."""
     foreign = False
     for child in node.nodes:
         if is_unit(child) and node.key == "form":
