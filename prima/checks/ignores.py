@@ -1,9 +1,9 @@
 """Ignores: warnings and notes that authors suppress, with a reason.
 
-A comment in a document, ``<!-- prima-ignore: CODE reason -->``, counts for the element behind it
-and all that this holds; before the root element it counts for the whole document. An ``[[ignore]]``
-of the nearest ``prima.toml``, from a document's folder upwards, counts for all documents, or those
-that it names. Errors are never ignored: what is wrong with them does not run.
+A comment in a document, ``<!-- prima-ignore: CODE reason -->``, applies to the element after it
+and its content; before the root element it applies to the whole document. An ``[[ignore]]`` of the
+nearest ``prima.toml``, from a document's folder upwards, applies to all documents, or those that
+it names. Errors are never ignored: a document with errors does not run.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Ignore:
     files: tuple[str, ...] = ("*",)
     used: bool = False
     around: Ignore | None = None
-    """The next of its code that counts for all that it counts for."""
+    """The next of its code that applies to everything that it applies to."""
 
     def use(self) -> None:
         """Mark it, and those around it, as used."""
@@ -84,7 +84,7 @@ class DocumentIgnores:
             if one.span[0] < one.span[1]:
                 by_code.setdefault(one.code, []).append(one)
         self._turns = {code: list(_turns(found)) for code, found in by_code.items()}
-        """By codes, the places from which on another one counts, or none."""
+        """By code, the places from which another one applies, or none."""
 
     def taking(self, problem: Problem) -> Ignore | None:
         """The innermost one that applies to a problem."""
@@ -97,7 +97,7 @@ class DocumentIgnores:
 
 
 def _turns(ignores: list[Ignore]) -> Iterator[tuple[Position, Ignore | None]]:
-    """Where another ignore of a code begins to count, or the one around it counts again."""
+    """Where another ignore of a code begins to apply, or the enclosing one applies again."""
     open_: list[Ignore] = []
     for one in sorted(ignores, key=lambda one: (one.span[0], _backwards(one.span[1]))):
         while open_ and open_[-1].span[1] <= one.span[0]:
@@ -110,7 +110,7 @@ def _turns(ignores: list[Ignore]) -> Iterator[tuple[Position, Ignore | None]]:
 
 
 def _backwards(position: Position) -> Position:
-    """What sorts later positions before earlier ones."""
+    """A sort key that puts later positions before earlier ones."""
     return -position[0], -position[1]
 
 
@@ -139,7 +139,7 @@ class Ignores:
         self._checked: dict[str, str] = {}
         """The checked documents, by the names used in messages."""
         self._errors: dict[str, set[str]] = {}
-        """The codes of errors by document: who knows which warnings it would get without them."""
+        """The codes of errors by document, whose warnings are therefore uncertain."""
 
     def left(self, problems: Iterable[Problem]) -> list[Problem]:
         """The problems without an ignore."""
@@ -150,11 +150,11 @@ class Ignores:
         return [problem for problem in found if not self._ignored(problem)]
 
     def check(self, file: str) -> None:
-        """Look at the ignores of a document itself, once its problems have been sifted."""
+        """Check the ignores of a document itself, once its problems have been filtered."""
         self._checked[absolute(file)] = file
 
     def told(self) -> list[Problem]:
-        """What is wrong with the ignores of the documents checked, those without use among it."""
+        """The problems of the ignores of the documents checked, including unused ones."""
         found: list[Problem] = []
         settings: dict[str, IgnoreSettings] = {}
         for path, file in self._checked.items():
@@ -171,7 +171,7 @@ class Ignores:
         return found
 
     def _as_others(self, problem: Problem) -> Problem:
-        """A problem of settings in a file that is named as the documents are: absolutely or not."""
+        """A problem of settings, whose file is named like the documents: absolutely or not."""
         if any(map(isabs, self._checked.values())):
             return problem
         return problem._replace(place=problem.place._replace(file=relpath(problem.place.file)))
@@ -183,7 +183,7 @@ class Ignores:
         return not ignore.used and (empty or ignore.code not in OF_SCENARIOS)
 
     def _is_over(self, ignore: Ignore, settings: IgnoreSettings) -> bool:
-        """Whether an entry has no use, and all documents that it names are checked, and right."""
+        """Whether an entry is unused, and all documents that it names are checked and right."""
         if ignore.used:
             return False
         from pathlib import Path  # seldom needed
@@ -211,7 +211,7 @@ class Ignores:
         return bool(found)
 
     def _path(self, file: str) -> str:
-        """A file's path, which many problems have."""
+        """A file's path, cached as many problems share it."""
         if file not in self._paths:
             self._paths[file] = absolute(file)
         return self._paths[file]
@@ -251,7 +251,7 @@ def _unused(ignore: Ignore) -> Problem:
 
 def _incomplete(place: Place, code: str, reason: str, form: str) -> Problem | None:
     """The problem of an ignore's code or reason, if any."""
-    from prima.checks.codes import diagnoses  # imports every check, and few documents ignore any
+    from prima.checks.codes import diagnoses  # imports every check, and few documents have ignores
 
     known = diagnoses()
     if code in known:
@@ -286,9 +286,9 @@ def in_document(file: str, data: bytes) -> tuple[list[Ignore], list[Problem]]:
 
 
 def comments(text: str) -> Iterator[tuple[int, str, int]]:
-    """The comments that may be ignores: where each begins, its text, where what is behind it ends."""
+    """Comments that may be ignores: their beginnings, texts, and ends of the next elements."""
     waiting: list[tuple[int, int, str]] = []
-    """Comments whose element has not ended: where they begin, how deep it is, the text."""
+    """Comments whose element has not ended: where they begin, its depth, the text."""
     depth = 0
     for piece in MARKUP.finditer(text):
         tag = piece[0]

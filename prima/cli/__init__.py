@@ -90,9 +90,9 @@ def cli() -> None:
 
 
 def interrupt_again(lost: sys.UnraisableHookArgs) -> None:
-    """Press Ctrl-C again where its exception came in a place that lets none out.
+    """Repeat a Ctrl-C whose exception was raised where exceptions are swallowed.
 
-    Such are a library's callbacks from C, and what Python calls while it frees an object.
+    Such places are callbacks of a library in C, and code that Python runs to free an object.
     """
     if not isinstance(lost.exc_value, KeyboardInterrupt):
         sys.__unraisablehook__(lost)

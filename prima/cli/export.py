@@ -70,7 +70,7 @@ def _format(to: str | None, output: str | None) -> str:
     """The format that is named, or that of the file's suffix.
 
     Raises:
-        UsageError: there is neither, or it is none for a terminal.
+        UsageError: there is neither, or the format is not for a terminal.
     """
     form = to.lower() if to else Path(output or "").suffix.lower()[1:]
     if not form:

@@ -70,7 +70,7 @@ def _usage(error: click.ClickException) -> int:
 
 
 def _closed_pipe(_error: BrokenPipeError) -> int:
-    """Nobody reads any more; Python must not flush stdout at its end."""
+    """Nobody reads stdout any more; Python must not flush it at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return FINE
 

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 INTERRUPTED = 130
 """The exit code after Ctrl-C."""
-FASTEST = 1000.0  # as prima.api.live.FASTEST, which takes long to import
+FASTEST = 1000.0  # equals prima.api.live.FASTEST, which is slow to import
 
 
 @click.command()
@@ -155,7 +155,7 @@ def live(
 
 
 def _check(chosen: Chosen, settings: LiveSettings) -> None:
-    """Try the robot; exit code 2 if it is not set up, 3 if something of it does not work."""
+    """Check the robot; exit code 2 if it is not set up, 3 if a part of it does not work."""
     from prima.live.preflight import check_robot
 
     if code := check_robot(chosen, settings, lambda text: click.echo(clean(text))):
@@ -197,7 +197,7 @@ class Rows:
         from prima.transcript.table import format_head, layout
 
         self._table = GrowingTable()
-        self._table.add(visit.before)  # what goes on is shown with its arguments and numbers
+        self._table.add(visit.before)  # continued Commands keep their arguments and numbers
         self._shape = layout([doc.id for doc in visit.loaded.cast.documents], columns(), why)
         click.echo(format_head(self._shape))
 

@@ -134,7 +134,7 @@ def _report_table(
     """Write the page of a sweep's table, or its figures.
 
     Raises:
-        UsageError: it is no such table, or nothing can be written.
+        UsageError: it is not such a table, or nothing can be written.
     """
     from prima import results
 
@@ -184,7 +184,7 @@ def _write_figures(figures: list[Figure], output: str | None, name: str | None) 
     """Write all figures into a folder, or the one that is named.
 
     Raises:
-        UsageError: there is none of that name, or nothing can be written.
+        UsageError: there is no such figure, or nothing can be written.
     """
     from prima.loading.writing import write_whole
 

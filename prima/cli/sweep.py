@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from prima.experiments.sweep import Output, Sweep
 
 MANY = 100_000
-"""Runs of which it is told before how long they take."""
+"""The number of runs from which their duration is estimated beforehand."""
 
 
 @click.command()
@@ -177,7 +177,7 @@ def _vary(varied: tuple[str, ...]) -> dict[str, str]:
 
 
 def _tell_cost(made: Sweep, address: str | None, workers: int | None, plan: bool) -> None:
-    """Tell how long a sweep takes, if it was asked for, or if it is long."""
+    """Print how long a sweep will take, if requested or if it is long."""
     from prima.experiments.cluster import size_of
     from prima.experiments.sweep import estimate
 
@@ -210,7 +210,7 @@ def _print(made: Sweep, pool: Pool) -> None:
 
 
 def _write(out: Output, resume: bool) -> None:
-    """Write the table, and tell what is in it.
+    """Write the table, and report its contents.
 
     Raises:
         Exit: a run was not fine.

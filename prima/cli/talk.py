@@ -266,7 +266,7 @@ def _step_by_step(conversation: Conversation, screen: TerminalScreen) -> None:
 
 
 def _ask(prompt: str, piped: Piped, interactive: bool) -> str | None:
-    """The next line, or None at the end of input; who types it is prompted.
+    """The next line, or None at the end of input; prompts at a terminal.
 
     Raises:
         EOFError: the end of input, at a terminal.

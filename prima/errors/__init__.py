@@ -1,11 +1,11 @@
-"""Errors, divided by who caused them.
+"""Errors, divided by their cause.
 
 The *author* of a document gets a list of :class:`Problem`, all at once, inside
 a :class:`DocumentError`. Whoever called the program wrongly, or named something
 that cannot be read or written, gets a :class:`UsageError`. A run that had to be
-given up is a :class:`RunError`. What a robot or a service does wrong is no
-exception at all but an event that a document can handle; what the programmer
-does wrong is an assertion.
+aborted raises a :class:`RunError`. An error of a robot or a service is not an
+exception but an event that a document can handle; a programming error is an
+assertion.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Text of strangers as people and other tools may have it: it says something, and does nothing.
+"""Makes untrusted text safe for people and other tools: it is shown and has no other effect.
 
-Documents, transcripts, names of files and answers of hosts hold what their authors like. Whatever
-of it goes to a terminal, a page, a picture or another tool's file goes through here before.
+Documents, file names, transcripts and answers of hosts may contain anything. Text from them that
+goes to a terminal, a page, a picture or another tool's file is passed through these functions.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ FORMULA = tuple("=+-@\uff1d\uff0b\uff0d\uff20")
 
 
 def visible(text: str, keep: str = "") -> str:
-    """Text without what a terminal would obey, or what turns or hides other text.
+    """Text without characters that control a terminal, or reverse or hide other text.
 
     White space that is no space becomes one, but what is to be kept, as ``"\\n"``.
     """
@@ -43,17 +43,17 @@ def escaped(text: str) -> str:
 
 def _escape(found: re.Match[str]) -> str:
     letter = found[0]
-    if letter == "\n" or "\ud800" <= letter <= "\udfff":  # which is no UTF-8, and told as that
+    if letter == "\n" or "\ud800" <= letter <= "\udfff":  # not UTF-8, and reported as that
         return letter
     units = letter.encode("utf-16-be").hex()
     return "".join(f"\\u{units[start : start + 4]}" for start in range(0, len(units), 4))
 
 
 def harmless(text: str) -> str:
-    """Text that a spreadsheet does not take for a formula: an apostrophe is put before one."""
+    """Text that a spreadsheet does not take for a formula: an apostrophe precedes formulas."""
     return f"'{text}" if text.lstrip(" '").startswith(FORMULA) else text
 
 
 def unharmed(text: str) -> str:
-    """The text of which :func:`harmless` made this one."""
+    """The original of a text changed by :func:`harmless`."""
     return text[1:] if text[:1] == "'" and harmless(text[1:]) == text else text

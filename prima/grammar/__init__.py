@@ -1,6 +1,6 @@
 """Speech and key grammars: SRGS 1.0 in both forms, their meaning (SISR 1.0), built-in types.
 
-The room's interface is loaded when it is used: most applications have few grammars, or none.
+The interface is loaded on first use: most applications have few grammars, or none.
 """
 
 from __future__ import annotations

@@ -53,10 +53,10 @@ def read_abnf(source: Source, document: GrammarDocument, problems: Problems, whe
 
 
 class _AbnfReader:
-    """Makes parts of what the parser finds, as it finds it; notes what is wrong and goes on.
+    """Builds a document as the parser goes along; notes problems and continues.
 
-    A method in capitals gets a token (abnf.lark says which) as soon as it is taken, any other
-    one the parts of a whole rule of that grammar.
+    A method in capitals gets a token (named in abnf.lark) as soon as it is read, any other
+    the parts of a whole rule of that grammar.
     """
 
     def __init__(self, source: Source, document: GrammarDocument, problems: Problems) -> None:
@@ -160,7 +160,7 @@ class _AbnfReader:
             self.note(self.root, "no-such-rule", f'The root rule "{root}" is not there.', hint)
 
     def _named(self, token: Token) -> Span:
-        """The name that a token has behind its $."""
+        """The name that follows the $ of a token."""
         place = self._where(token)()
         return Span.of(place._replace(column=place.column + 1), token[1:])
 
@@ -178,7 +178,7 @@ class _AbnfReader:
         return [self._sequence(found[-1])], [found[0] if len(found) == 2 else None]
 
     def alternatives(self, found: list[Any]) -> Alternatives:
-        """Those before, a sign, and one more."""
+        """The previous ones, a sign, and one more."""
         parts, weights = found[0]
         parts.append(self._sequence(found[-1]))
         weights.append(found[2] if len(found) == 4 else None)
@@ -187,7 +187,7 @@ class _AbnfReader:
     # Sequences (2.3), repeats (2.5) and brackets
 
     def parts(self, found: list[Any]) -> list[Part | str]:
-        """Those before, if any, and one more, which may have a language and a repeat."""
+        """The previous ones, if any, and one more, which may have a language and a repeat."""
         before: list[Part | str] = found.pop(0) if isinstance(found[0], list) else []
         part, *more = found
         for times in more:  # a language is None
@@ -197,7 +197,7 @@ class _AbnfReader:
         return before
 
     def _sequence(self, found: list[Part | str]) -> Part:
-        """A sequence; tokens side by side are taken together."""
+        """A sequence; adjacent tokens are joined."""
         parts: list[Part] = []
         words: list[str] = []
         for part in found:
@@ -266,7 +266,7 @@ class _AbnfReader:
         return self._token(text, token)
 
     def _no_question_mark(self, token: Token) -> bool:
-        """Refuse the sign that is reserved after an expansion (2.5)."""
+        """Refuse the question mark, which is reserved after an expansion (2.5)."""
         if "?" not in token:
             return False
         message = f'"{token[:40]}" has a question mark, which is reserved after an expansion.'
@@ -319,13 +319,13 @@ class _AbnfReader:
 
 
 Alternatives = tuple[list[Part], list[float | None]]
-"""What may be said, and the weight of each, if it is given."""
+"""The alternatives, and the weight of each, if given."""
 _reader: ContextVar[_AbnfReader] = ContextVar("reader")
-"""The one that is at work; the parser is made once for all of them."""
+"""The active reader; all share one parser."""
 
 
 class _Handlers:
-    """The methods of the reader that is at work."""
+    """The methods of the active reader."""
 
     def __getattr__(self, name: str) -> Callable[[Any], object]:
         method = getattr(_AbnfReader, name)

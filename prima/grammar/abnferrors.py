@@ -27,27 +27,27 @@ _EXPECTED = {
     "TEXT": "a text in quotes",
     "IS": "the word is",
 }
-"""Descriptions of what may come next, likeliest first: the first that is possible is named."""
+"""Descriptions of what may come next, most likely first: the first possible one is named."""
 _CLOSING = {"RPAR": '")"', "RSQB": '"]"', "SEMICOLON": '";"'}
-"""What ends alternatives: named where they may also continue."""
+"""Ends of alternatives, named if they may also continue."""
 _RESERVED = {
     "}": "A tag that holds a } itself is written {!{ ... }!}.",
     "!": "A language stands only after a token, a rule or a bracket, before its repeat: oui!fr<2>.",
     "*": 'Write <0-> for any number of times; a sign that is a key or said, in quotes: "*".',
     "+": 'Write <1-> for once or more; a sign that is said, in quotes: "+".',
 }
-"""Remedies for signs that mean something else, here or in other languages (2.5)."""
+"""Remedies for signs with another meaning, here or in other languages (2.5)."""
 _UNCLOSED = {
     '"': 'A quote is opened and not closed: write the other ".',
     "{": "A tag is opened and not closed: write }, or }!} if it begins with {!{.",
     "<": "An angle bracket is opened and not closed: write >.",
     "/": "A comment or a weight is not closed: /* ... */, /0.5/.",
 }
-"""Remedies for what begins something and does not end it."""
+"""Remedies for unclosed constructs."""
 
 
 def unexpected(source: Source, error: UnexpectedInput) -> Problem:
-    """The problem of something in the wrong place."""
+    """The problem of an unexpected token."""
     text = source.text
     token = error.token if isinstance(error, UnexpectedToken) else None
     if token is not None and token.type == "$END":

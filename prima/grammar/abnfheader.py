@@ -19,7 +19,7 @@ def decode_abnf(file: str, data: bytes) -> str:
     """The text of a file in the ABNF form, in the encoding that its header names (SRGS 4.4).
 
     Raises:
-        GrammarError: an unknown encoding, or the bytes are not in it.
+        GrammarError: the encoding is unknown, or the bytes are not in it.
     """
     encoding = _encoding(data)
     if not _is_accepted(encoding):
@@ -35,7 +35,7 @@ def decode_abnf(file: str, data: bytes) -> str:
 
 
 def as_unicode(text: str) -> bytes:
-    """A text in this form as UTF-8, which is what its header says then; where nothing moves."""
+    """A text in this form as UTF-8, as its header then declares, with all positions unchanged."""
     header = HEADER.match(text)
     if header is None or header[2] is None or not _is_accepted(header[2].lower()):
         return text.encode(errors="surrogatepass")
@@ -45,7 +45,7 @@ def as_unicode(text: str) -> bytes:
 
 
 def _is_accepted(encoding: str) -> bool:
-    """Whether an encoding is one of those accepted, under any of its names."""
+    """Whether an encoding is accepted, under any of its names."""
     try:
         name = codecs.lookup(encoding).name
     except (LookupError, ValueError):
@@ -55,7 +55,7 @@ def _is_accepted(encoding: str) -> bool:
 
 
 def _encoding(data: bytes) -> str:
-    """The encoding of a file by its first bytes, or as its header says."""
+    """The encoding of a file by its first bytes or its header."""
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return "utf-16"
     if data.startswith((b"#\0", b"\0#")):
@@ -65,7 +65,7 @@ def _encoding(data: bytes) -> str:
 
 
 def header_end(source: Source) -> int:
-    """The offset at which the header ends, which has the first line for itself (4.1).
+    """The offset at which the header ends; it is alone on the first line (4.1).
 
     Raises:
         GrammarError: it is missing, its version is unknown, or its line goes on.

@@ -1,4 +1,4 @@
-"""What a question or a link takes: options, grammars, and a built-in type of PRIMA's own language."""
+"""Answers to a question or a link: options, grammars, and built-in types of PRIMA's language."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TYPES = ("boolean", "number", "digits", "date", "time", "text")
 
 @dataclass(slots=True)
 class Answers:
-    """All that a question or a link takes: options first, then grammars, then its built-in type."""
+    """The answers to a question or a link: options first, then grammars, then its built-in type."""
 
     options: dict[str, Json] = field(default_factory=dict)
     grammars: Sequence[Grammar] = ()
@@ -29,7 +29,7 @@ class Answers:
     def match(self, text: str, budget: Budget | None = None, tell: Tell | None = None) -> Json:
         """The value of an utterance, or None if it is not an answer.
 
-        A grammar of which a tag fails does not take the utterance; ``tell`` gets the reason.
+        A grammar with a failing tag does not take the utterance; ``tell`` gets the reason.
         """
         said = fold(text)
         if said in self.options:
@@ -47,6 +47,6 @@ class Answers:
         return read(self.type, text)
 
     def in_grammar(self, text: str) -> bool:
-        """Whether an utterance is an answer, and not taken only because any text is one."""
+        """Whether an utterance is an answer other than as free text."""
         known = replace(self, type="") if self.type == "text" else self
         return known.match(text) is not None

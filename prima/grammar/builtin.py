@@ -1,6 +1,6 @@
 """The built-in types of VoiceXML 2.0 (Appendix P), for voice and for keys.
 
-Their values are those that the appendix gives: ``true``, ``19990204``, ``USD10.50``, ``0530p``.
+Their values are in the appendix's format: ``true``, ``19990204``, ``USD10.50``, ``0530p``.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from prima.grammar.text import fold, wide
 if TYPE_CHECKING:
     from prima.messages import Json
 
-YES = {  # by language; without a language all count
+YES = {  # by language; without one, all count
     "en": "yes|yeah|yep|yup|yes please|yes i do|yes you may|yes it is|yes sir|yes maam|yes thats right|sure"
     "|of course|ok|okay|correct|right|thats right|thats correct|that is right|that is correct"
     "|true|affirmative|absolutely|definitely|certainly|uh huh|i do|it is",
@@ -58,7 +58,7 @@ CURRENCIES |= {
 }
 CURRENCIES |= {code.lower(): code for code in CURRENCIES.values()}
 MOST_WORDS = 20
-"""Words of an amount of money without a currency, at most."""
+"""Maximum number of words of an amount of money without a currency."""
 PARTS = {"cent": "", "cents": "", "penny": "", "pennies": "", "pence": "GBP", "p": "GBP",
          "セント": ""}  # fmt: skip
 """Hundredths, with the currency if they imply one."""
@@ -86,14 +86,14 @@ _UNIT = re.compile(
 _POINT_FIRST = re.compile(r"(?<![0-9])\.(?=[0-9])")
 
 Reader = Callable[[dict[str, str], str, str, str], "Json"]
-"""Parameters, language, text and mode to value; None where it does not match."""
+"""Parameters, language, text and mode to value; None if it does not match."""
 
 
 def built_in(uri: str, mode: str, lang: str) -> BuiltIn:
     """The built-in type that a URI names.
 
     Raises:
-        ValueError: unknown type, or parameters that it does not have.
+        ValueError: the type or its parameters are unknown.
     """
     match = _URI.fullmatch(uri)
     name = match[1] if match else ""
@@ -186,7 +186,7 @@ def _number(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
 
 
 def _decimal_keys(text: str) -> tuple[str, str]:
-    """The figures of a number in keys before and after its point, which is ``*``; nothing else."""
+    """The digits of a number in keys before and after its point, which is ``*``, if it is one."""
     match = re.fullmatch(r"([0-9]*)(?:\*([0-9]*))?", _keys(text))
     if match is None or not (match[1] or match[2]):
         return "", ""
@@ -194,7 +194,7 @@ def _decimal_keys(text: str) -> tuple[str, str]:
 
 
 def _plain(figures: str) -> str:
-    """Figures without needless zeros."""
+    """Digits without needless zeros."""
     return figures.lstrip("0") or "0"
 
 
@@ -236,7 +236,7 @@ def _spoken_money(said: str) -> str | None:
 
 
 def _amount(said: str) -> tuple[int | None, int | None]:
-    """A number before the name of a currency: what is whole, and hundredths."""
+    """A number before the name of a currency: whole units, and hundredths."""
     whole = "1" if said in ("a", "an") else number(said)
     if whole is None or whole[0] in "+-":
         return None, None

@@ -1,8 +1,8 @@
 """Matching: which expansions match which stretches of an utterance, each found once.
 
 A chart in the manner of generalised parsing with memory: every expansion is tried once at
-every place, whoever asks for it, and everyone who asks hears of every end. So left recursion,
-rules that refer to each other and ambiguity need no more than polynomial work; nothing recurses.
+every position, and every requester is notified of each end. So left recursion, mutually recursive
+rules and ambiguity take only polynomial work; nothing recurses.
 """
 
 from __future__ import annotations
@@ -26,43 +26,43 @@ if TYPE_CHECKING:
     from prima.messages import Json
 
 MAX_STEPS = 200_000
-"""How many steps one utterance may take; one that needs more matches nothing."""
+"""Maximum number of steps for one utterance; one that needs more matches nothing."""
 MOST_READ = 300
-"""How many characters a built-in type reads inside an utterance."""
+"""Maximum number of characters that a built-in type reads inside an utterance."""
 MOST_EMPTY = 1000
-"""How often what is repeated may match nothing; where it has to more often, all of it is one time."""
+"""How often a repeated expansion may match nothing; if it must more often, once counts for all."""
 
 
 class ChartWay(NamedTuple):
-    """One way to match a stretch: what comes before, and what comes last."""
+    """One way to match a stretch: the part before, and the last part."""
 
     rank: int
-    """Which alternative it is; lower ones are written first."""
+    """The number of the alternative, in the order of the grammar."""
     cost: float
     left: Cell | None
     right: Cell | None
     lost: int = 0
-    """How many words GARBAGE takes: anything else is better, whatever it costs."""
+    """How many words GARBAGE takes: any other match is better, at whatever cost."""
 
 
 class Cell:
-    """An expansion matched from one place to another, in all ways."""
+    """An expansion matched from one position to another, in all ways."""
 
     __slots__ = ("end", "number", "part", "start", "value", "ways")
 
     def __init__(self, part: Part | None, start: int, end: int, number: int) -> None:
         self.part = part
-        """None for a beginning of a sequence or of repeats."""
+        """None for the beginning of a sequence or of repeats."""
         self.start = start
         self.end = end
         self.number = number
         self.ways: list[ChartWay] = []
         self.value: Json = None
-        """What a built-in type read."""
+        """The value that a built-in type read."""
 
 
 class ChartSpot:
-    """An expansion begun at one place."""
+    """An expansion begun at one position."""
 
     __slots__ = ("begun", "ends", "part", "start", "waiting")
 
@@ -71,12 +71,12 @@ class ChartSpot:
         self.start = start
         self.ends: dict[int, Cell] = {}
         self.begun: dict[tuple[int, int], Cell] = {}
-        """How far a sequence or repeats have come: parts done and end to cell."""
+        """Progress of a sequence or of repeats: parts done and end to cell."""
         self.waiting: list[Waiting] = []
 
 
 class Waiting(NamedTuple):
-    """A request for an expansion: the spot that made it, its parts so far, and what they matched."""
+    """A request for an expansion: the requesting spot, its parts so far, and their match."""
 
     spot: ChartSpot
     done: int
@@ -93,7 +93,7 @@ class Chart:
         self.said = said.said
         self.steps_left = most_steps
         self.open = False
-        """Whether something that begins with this utterance may match."""
+        """Whether an utterance that begins with this one may match."""
         self._spots: dict[tuple[int, int], ChartSpot] = {}
         self._cells = 0
         self._todo: list[tuple[Waiting | None, ChartSpot | Cell]] = []
@@ -101,7 +101,7 @@ class Chart:
         self._todo.append((None, self._top))
 
     def run(self, prefixes: bool = False) -> Cell | None:
-        """Find all matches; give that of the whole utterance, if there is one."""
+        """Find all matches; give the match of the whole utterance, if any."""
         self._prefixes = prefixes
         todo = self._todo
         while todo:
@@ -116,7 +116,7 @@ class Chart:
         return self._top.ends.get(len(self.said))
 
     def _call(self, part: Part, start: int, waiting: Waiting) -> None:
-        """Ask for an expansion at a place."""
+        """Request an expansion at a position."""
         key = (id(part), start)
         spot = self._spots.get(key)
         if spot is None:
@@ -131,7 +131,7 @@ class Chart:
         return Cell(part, start, end, self._cells)
 
     def _finish(self, spot: ChartSpot, end: int, way: ChartWay) -> Cell:
-        """An expansion matches up to a place, in one more way."""
+        """Add a way in which an expansion matches up to a position."""
         cell = spot.ends.get(end)
         if cell is None:
             cell = spot.ends[end] = self._cell(spot.part, spot.start, end)
@@ -161,7 +161,7 @@ class Chart:
                 self._built_in(spot, part)
 
     def _resume(self, waiting: Waiting, cell: Cell) -> None:
-        """An expansion that was requested has matched."""
+        """Resume a request whose expansion has matched."""
         spot = waiting.spot
         match spot.part:
             case Alternatives(costs=costs):
@@ -204,7 +204,7 @@ class Chart:
         self.steps_left -= len(index.lengths) + len(tried)
 
     def _go_on(self, spot: ChartSpot, done: int, end: int, way: ChartWay) -> None:
-        """So many parts of a sequence have matched."""
+        """Continue a sequence after so many parts."""
         part = spot.part
         assert isinstance(part, Sequence)
         if done == len(part.parts):
@@ -217,23 +217,23 @@ class Chart:
         cell.ways.append(way)
 
     def _repeated(self, spot: ChartSpot, waiting: Waiting, cell: Cell) -> None:
-        """One more time of a repeated expansion."""
+        """Add one repetition of a repeated expansion."""
         part, done = spot.part, waiting.done
         assert isinstance(part, Repeat)
         cost = part.more if done >= part.low else 0.0
         if cell.end == cell.start:
             if done >= part.low:
                 return  # a repetition of nothing adds nothing
-            # The times that are still needed may be of nothing as well, each with its tags.
+            # The repetitions still required may be empty as well, each with its tags.
             done = done + 1 if part.low - done <= MOST_EMPTY else part.low
         else:
             done += 1
             if part.high is None or part.high > len(self.said):
-                done = min(done, part.low)  # how many more does not matter
+                done = min(done, part.low)  # any more make no difference
         self._again(spot, done, cell.end, ChartWay(0, cost, waiting.before, cell))
 
     def _again(self, spot: ChartSpot, done: int, end: int, way: ChartWay) -> None:
-        """A repeated expansion has matched so many times."""
+        """Continue after so many repetitions."""
         part = spot.part
         assert isinstance(part, Repeat)
         cell = spot.begun.get((done, end))

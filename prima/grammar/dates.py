@@ -41,7 +41,7 @@ _PASSED_OVER = {"the", "of", "on", "in", "year"} | {
 }
 DAYS = range(1, 32)
 YEARS = range(1500, 3000)
-"""Years that are understood without a month."""
+"""Years that are recognised without a month."""
 
 
 def date(text: str, folded: str) -> str | None:
@@ -59,7 +59,7 @@ def date(text: str, folded: str) -> str | None:
 
 
 def _counted(said: str | None) -> int | None:
-    """A number in Japanese; where it cannot be read 0, which no year, month or day is."""
+    """A number in Japanese; 0, which is no year, month or day, if it cannot be read."""
     return None if said is None else cardinal(said) or 0
 
 
@@ -161,7 +161,7 @@ def _past(words: list[str], part: str) -> str | None:
 
 
 def _half_of_day(named: str, after: bool) -> str:
-    """a or p for what is a little after or before noon or midnight; nothing for other times."""
+    """a or p for a time shortly after or before noon or midnight; nothing for other times."""
     if named in _NOON:
         return "p" if after else "a"
     return "" if named not in _MIDNIGHT else "a" if after else "p"
@@ -178,7 +178,7 @@ def _words(words: list[str], part: str) -> str | None:
 
 
 def _hour(words: list[str]) -> tuple[int | None, list[str]]:
-    """The hour that words begin with, of one or two of them, and the others."""
+    """The hour in the first one or two words, and the remaining words."""
     if not words:
         return None, []
     hour, rest = cardinal("zero" if words[0] in ("oh", "o") else words[0]), words[1:]
@@ -198,7 +198,7 @@ def _minutes(words: list[str]) -> int | None:
 
 
 def _clock(hour: int, minute: int, part: str) -> str | None:
-    """A time as it is written; ``part`` is a, p, h, night, or empty where it was not said."""
+    """A time as written; ``part`` is a, p, h, night, or empty if it was not said."""
     if not 0 <= minute < 60 or not 0 <= hour < 24:
         return None
     if part == "night":

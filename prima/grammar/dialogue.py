@@ -1,4 +1,4 @@
-"""The grammars that documents of PRIMA's own language hold: a part of SRGS, read into its rules."""
+"""Grammars in documents of PRIMA's own language, a subset of SRGS, read into rules."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
             hint: Hint = NO_HINT,
             **parameters: object,
         ) -> None:
-            """Note it, with what to write instead."""
+            """Note a problem, with a remedy."""
 
 
 TWO_RULES = DUPLICATE_ID.says('There are two rules "{name}".')
@@ -52,7 +52,7 @@ def read_grammar(note: Note, node: Node) -> Grammar:
 
 
 class _DialogueGrammarReader:
-    """Reads one grammar, of which the schema has been checked."""
+    """Reads one grammar, which has been checked by the schema."""
 
     def __init__(self, note: Note, node: Node) -> None:
         self.note = note
@@ -60,7 +60,7 @@ class _DialogueGrammarReader:
         self.document = GrammarDocument("", partial(node.place_of, ""), dialect="last")
 
     def grammar(self) -> Grammar:
-        """The grammar; wherever a problem is noted, a rule takes nothing."""
+        """The grammar; a rule with a problem matches nothing."""
         node, rules = self.node, self.node.all("rule")
         for rule in rules:
             self._rule(rule)
@@ -89,7 +89,7 @@ class _DialogueGrammarReader:
         return found
 
     def _rule_named(self, node: Node, name: str, attribute: str, told: bool = False) -> Rule:
-        """A rule by its name, or one that takes nothing."""
+        """A rule by its name, or one that matches nothing."""
         found = self.document.rules.get(name)
         if found is not None:
             return found
@@ -109,7 +109,7 @@ class _DialogueGrammarReader:
             reference.resolve(names[reference.uri])
 
     def _expansion(self, node: Node) -> Part:
-        """What an element holds, as often as it says."""
+        """The content of an element, repeated as it specifies."""
         parts: list[Part] = []
         for item in node.content:
             if isinstance(item, str):

@@ -1,4 +1,4 @@
-"""What can be wrong with a grammar, divided by what a caller does about it."""
+"""Errors of grammars, divided by how a caller handles them."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from collections.abc import Callable, Iterable
 from prima.errors import DocumentError, Hint, Place, Problem
 
 MOST_PROBLEMS = 100
-"""Problems of one grammar that are reported."""
+"""Maximum number of problems reported for one grammar."""
 
 
 class GrammarError(DocumentError):
-    """A grammar is not legal; ``problems`` has everything that is wrong, with places and remedies."""
+    """A grammar is not legal; ``problems`` lists what is wrong, with places and remedies."""
 
 
 class UnsupportedFormat(GrammarError):
-    """What the grammar is written in is not SRGS, or its tags are of an unknown format."""
+    """The grammar's format is not SRGS, or the format of its tags is unknown."""
 
 
 class UnsupportedLanguage(GrammarError):
-    """The grammar is in a language that the caller does not take."""
+    """The grammar is in a language that the caller does not accept."""
 
 
 class UnsupportedBuiltIn(GrammarError):
@@ -27,7 +27,7 @@ class UnsupportedBuiltIn(GrammarError):
 
 
 Where = Callable[[], Place]
-"""Gives a place on demand."""
+"""Computes a place on demand."""
 
 
 class Problems:
@@ -36,38 +36,38 @@ class Problems:
     def __init__(self) -> None:
         self.found: list[Problem] = []
         self.warnings: list[Problem] = []
-        """What is accepted and yet reported."""
+        """Warnings: what is accepted and yet reported."""
         self.kind: type[GrammarError] = GrammarError
 
     @property
     def full(self) -> bool:
-        """Whether there are so many that no more are reported."""
+        """Whether the maximum has been reached."""
         return len(self.found) >= MOST_PROBLEMS
 
     def note(self, where: Where, code: str, message: str, remedy: str | Hint = "") -> None:
-        """Note one thing; after many, no more are looked at."""
+        """Note a problem, up to the maximum."""
         if not self.full:
             self.found.append(Problem(where(), "error", code, message, remedy))
 
     def warn(self, where: Where, code: str, message: str, remedy: str | Hint = "") -> None:
-        """Note what is accepted, and yet better written in another way."""
+        """Note something accepted that is better written in another way."""
         if len(self.warnings) < MOST_PROBLEMS:
             self.warnings.append(Problem(where(), "warning", code, message, remedy))
 
     def unsupported(
         self, kind: type[GrammarError], where: Where, code: str, message: str, remedy: str = ""
     ) -> None:
-        """Note what is legal but not supported; it decides the error unless more is wrong."""
+        """Note something legal but unsupported; it determines the error unless more is wrong."""
         if not self.found:
             self.kind = kind
         self.note(where, code, message, remedy)
 
     def extend(self, problems: Iterable[Problem]) -> None:
-        """Take over what another document has."""
+        """Add the problems of another document."""
         self.found.extend(list(problems)[: MOST_PROBLEMS - len(self.found)])
 
     def check(self) -> None:
-        """End the reading if anything was noted.
+        """Stop reading if anything was noted.
 
         Raises:
             GrammarError: with all problems.

@@ -1,4 +1,4 @@
-"""A grammar that was loaded: what it takes, and what that means."""
+"""A loaded grammar: what it matches, and what that means."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ if TYPE_CHECKING:
     from prima.messages import Json
 
 MOST_ANALYSES = 64
-"""How many analyses of an utterance are looked at for different meanings."""
+"""How many analyses of an utterance are examined for different meanings."""
 MOST_WORK = 20_000
-"""How large those after the first may be together, in expansions that matched."""
+"""Maximum total size of those after the first, in matched expansions."""
 GARBAGE_SHARE = 0.5
-"""How much of the words that GARBAGE took is missing from the confidence: whoever writes GARBAGE
-means it, so that alone must not bring a match below VoiceXML's confidencelevel of 0.5."""
+"""The share of the words taken by GARBAGE that lowers the confidence: authors write GARBAGE on
+purpose, so it must not by itself bring a match below VoiceXML's confidencelevel of 0.5."""
 
 
 @dataclass(frozen=True, slots=True)
 class Match:
-    """One way in which a grammar takes an utterance."""
+    """One way in which a grammar matches an utterance."""
 
     utterance: str
-    """What was said, as it was given."""
+    """The utterance as given."""
     text: str
     """The grammar's tokens that were matched; of keys, the keys."""
     tokens: tuple[str, ...]
     interpretation: Json
-    """What it means; the text where the grammar does not say."""
+    """The interpretation; the text if the grammar gives none."""
     confidence: float
-    """1, or less where GARBAGE took a part of it."""
+    """1, or less if GARBAGE took a part of it."""
     weight: float
-    """How likely the grammar's weights make it, 1 where it has none."""
+    """Its likelihood by the grammar's weights, 1 without weights."""
     mode: str
     error: SemanticError | None = None
     """Why it has no interpretation, if a tag failed."""
@@ -55,7 +55,7 @@ class Match:
 
 
 class Grammar:
-    """Rules that take utterances; made by :func:`prima.grammar.load`."""
+    """Rules that match utterances; made by :func:`prima.grammar.load`."""
 
     def __init__(
         self,
@@ -103,8 +103,8 @@ class Grammar:
         return dict(self._document.meta)
 
     def warnings(self) -> list[Problem]:
-        """What is accepted and hardly meant: media types, and tags that cannot be run (SISR)."""
-        from prima.grammar.tags import tag_warnings  # few callers ask
+        """Accepted but probably unintended media types, and tags that cannot be run (SISR)."""
+        from prima.grammar.tags import tag_warnings  # few callers need it
 
         return [*self._warnings, *tag_warnings(self._document)]
 
@@ -124,14 +124,14 @@ class Grammar:
         now: int = 0,
         budget: Budget | None = None,
     ) -> list[Match]:
-        """What an utterance may mean, best first; nothing if the grammar does not take it.
+        """The meanings of an utterance, best first; none if the grammar does not match it.
 
         Args:
             text: the utterance.
             mode: ``voice`` or ``dtmf``.
-            most: how many matches are wanted.
-            now: the time that ``Date`` tells tags (ms since 1970, UTC).
-            budget: what the utterance may take, and has taken in other grammars; with its own time.
+            most: the maximum number of matches.
+            now: the time of ``Date`` in tags (ms since 1970, UTC).
+            budget: the utterance's budget, partly used by other grammars; it has its own time.
 
         Raises:
             GrammarError: the grammar has no root rule.
@@ -155,7 +155,7 @@ class Grammar:
         return found
 
     def _interpreted(self, analysis: RankedParse, said: MatchedUtterance, budget: Budget) -> Match:
-        """The match that an analysis is, with what it means."""
+        """The match for an analysis, with its interpretation."""
         reader = TagInterpreter(said.mode, budget)
         value: Json = None
         error = None
@@ -179,9 +179,9 @@ class Grammar:
         )
 
     def accepts_prefix(self, text: str, *, mode: str = "voice") -> bool:
-        """Whether more may follow: whether some longer utterance that begins so is taken.
+        """Whether more may follow: whether some longer utterance with this beginning matches.
 
-        It answers yes where it cannot tell for certain.
+        True in case of doubt.
         """
         said = utterance(text, mode) if self._takes(mode) else None
         if said is None:
@@ -192,10 +192,10 @@ class Grammar:
 
     @cached_property
     def _silent(self) -> bool:
-        """Whether no tags are anywhere and no tag format is named: the text is all there is.
+        """Whether there is neither a tag nor a tag format, so that the text is the interpretation.
 
-        SISR's default assignment, by which the last rule counts, is for grammars that use it;
-        the others are of the time before it: three keys of a rule ``digit`` are a number.
+        SISR's default assignment, by which the last rule counts, is for grammars that use SISR;
+        others predate it: three keys of a rule ``digit`` are a number.
         """
         seen: dict[int, GrammarDocument] = {}
         stack = [self._document]
@@ -219,7 +219,7 @@ class Grammar:
 
     @property
     def expansion(self) -> Part:
-        """What the root rule takes, as data.
+        """The root rule's expansion, as data.
 
         Raises:
             GrammarError: the grammar has no root rule.
@@ -236,7 +236,7 @@ class Grammar:
 
 
 def _analyses(top: Cell, most: int, budget: Budget) -> Iterator[RankedParse]:
-    """The best analyses of an utterance, as long as there is time to look at them."""
+    """The best analyses of an utterance, as long as there is time to examine them."""
     work = 0
     for number, analysis in enumerate(best(top, 1 if most == 1 else min(most * 4, MOST_ANALYSES))):
         work += analysis.size

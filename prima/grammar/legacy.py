@@ -1,6 +1,6 @@
 """Tags of the time before SISR 1.0, and tags without a declared format.
 
-SRGS leaves open what a tag holds where no tag format is declared. Documents of the VoiceXML 2.0
+SRGS leaves the content of a tag open if no tag format is declared. Documents of the VoiceXML 2.0
 era write slots (``city='Boston'``), the rule variable as ``$`` (``$.city = $$``), or a value by
 itself; each is recognised by its form and rewritten as a script of SISR 1.0.
 """
@@ -25,11 +25,11 @@ FORMATS = {
     "swi-semantics/1.0": "legacy",
     "lumenvox/1.0": "legacy",
 }
-"""Tag formats and how their tags are read; without a format the tags decide."""
+"""Tag formats and how their tags are read; without a format, the tags decide."""
 
 _STRING = r"""(?P<text>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*')"""
 _OWN = frozenset(["out", "rules", "meta"])
-"""Names of SISR as identifiers; those of properties are passed over."""
+"""Names of SISR as identifiers; those of properties are ignored."""
 _NAMES = ("identifier", "shorthand_property_identifier")
 _GIVES = ("assignment_expression", "augmented_assignment_expression", "variable_declarator")
 _SLOT = re.compile(r"(?s)\s*([A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*)\s*=(?!=)\s*(.+?)\s*")
@@ -41,7 +41,7 @@ _CONSTANTS = {"true", "false", "null", "undefined"}
 
 
 def settle(document: GrammarDocument) -> None:
-    """Decide how a document's tags are read; the format is one of those known."""
+    """Decide how a document's tags are read; the format is a known one."""
     dialect = FORMATS[document.tag_format]
     codes = [tag.code for tag in document.tags]
     if dialect == "script":
@@ -54,7 +54,7 @@ def settle(document: GrammarDocument) -> None:
 
 
 def _drafted(codes: list[str], globals: list[str]) -> bool:
-    """Whether tags are in the way of the drafts: with ``$`` and without any name of SISR 1.0."""
+    """Whether tags are in the style of the drafts: with ``$`` and without any name of SISR 1.0."""
     everything = [*codes, *globals]
     if not any("$" in code for code in codes) or _used(everything) & _OWN:
         return False
@@ -63,7 +63,7 @@ def _drafted(codes: list[str], globals: list[str]) -> bool:
 
 
 def _used(codes: Iterable[str]) -> set[str]:
-    """Names that are read or given values."""
+    """Names that are read or assigned."""
     names = [script_names(code) for code in codes]
     return {name for one in names for name in (*one.read, *one.written)}
 
@@ -76,7 +76,7 @@ def _guess(document: GrammarDocument, codes: list[str]) -> str:
 
 
 def _uses_sisr(code: str) -> bool:
-    """Whether code looks at a variable of SISR 1.0 or gives it a value; mere words do not."""
+    """Whether code reads or assigns a variable of SISR 1.0; mere words do not count."""
     if not any(name in code for name in _OWN):
         return False
     parsed = parse_script(code)
@@ -132,7 +132,7 @@ def translate(code: str) -> str:
 
 
 def _from_dollars(code: str) -> str:
-    """``$`` is the rule's variable, ``$$`` the last rule's value, ``$name`` that of a rule."""
+    """Translate ``$`` (the rule's variable), ``$$`` (the last rule's value) and ``$name``."""
     pieces, at = [], 0
     for start, end, name in _signs(code):
         value = {"$": "out", "$$": "rules.latest()"}.get(name, f"rules.{name[1:]}")
@@ -146,7 +146,7 @@ def _from_dollars(code: str) -> str:
 
 
 def _slots(code: str) -> list[tuple[str, str]]:
-    """The slots that a tag fills, with what; none if it is not a list of assignments."""
+    """The slots that a tag fills, with their values; none if it is not a list of assignments."""
     if _ALL_GSL.fullmatch(code):
         return [(match[1], match[2]) for match in _GSL.finditer(code)]
     if "=" not in code:
@@ -161,7 +161,7 @@ def _slots(code: str) -> list[tuple[str, str]]:
 
 
 def _pieces(code: str) -> list[str]:
-    """A tag divided at its semicolons, not those in strings or brackets."""
+    """A tag split at semicolons outside of strings and brackets."""
     pieces, depth = [""], 0
     for match in _PIECE.finditer(code):
         depth += bool(match["open"]) - bool(match["close"])
@@ -173,7 +173,7 @@ def _pieces(code: str) -> list[str]:
 
 
 def _assign(name: str, value: str) -> str:
-    """A slot filled; a value of bare words is their text."""
+    """An assignment to a slot; bare words are a text."""
     parents = name.split(".")[:-1]
     made = [".".join(parents[:end]) for end in range(1, len(parents) + 1)]
     before = "".join(f"out.{one} = out.{one} || {{}}; " for one in made)

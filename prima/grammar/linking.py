@@ -23,19 +23,19 @@ from prima.markup.uris import join, parted
 
 MOST_DOCUMENTS = 64
 MOST_BYTES = 20_000_000
-"""How many documents one grammar may be made of, and how large they may be together."""
+"""The maximum number of documents of one grammar, and their total size."""
 
 Fetch = Callable[[str], bytes]
 Refusal = Callable[[str, str], str]
-"""Gives the reason why one grammar may not refer to another, by their URIs; empty if it may."""
+"""Returns why one grammar may not refer to another, by their URIs; empty if it may."""
 Read = Callable[["Library", str, bytes, str], GrammarDocument]
-"""Reads the bytes of a URI, of a media type if it is told, into a document."""
+"""Reads the bytes of a URI, with its media type if known, into a document."""
 FAILURES = (OSError, LookupError, ValueError, PrimaError)
-"""What fetching may raise for a document that cannot be had."""
+"""Exceptions of fetching a document that is unavailable."""
 
 
 class Library:
-    """The documents that one grammar is made of, each read once."""
+    """The documents of one grammar, each read once."""
 
     def __init__(self, fetch: Fetch | None, read: Read, refusal: Refusal | None = None) -> None:
         self.problems = Problems()
@@ -69,7 +69,7 @@ class Library:
             index_choices(self._linked)
 
     def fetch(self, uri: str, media: str, where: Where) -> GrammarDocument | None:
-        """The document of a URI, fetched the first time; what is wrong is noted."""
+        """The document of a URI, fetched on first use; problems are noted."""
         found = self.documents[uri] if uri in self.documents else self._first(uri, media, where)
         if found is not None:
             check_form(self.problems, media_type(media), found.form, uri, where)
@@ -159,7 +159,7 @@ class Library:
     def _external(
         self, document: GrammarDocument, found: GrammarDocument, reference: Reference, name: str
     ) -> Rule | None:
-        """A rule of another document: its root, or one that is public."""
+        """A rule of another document: its root, or a public one."""
         note = self.problems.note
         if found.mode != document.mode:
             message = f"A grammar for {document.mode} refers to one for {found.mode}."
@@ -193,12 +193,12 @@ class Library:
 
 
 def base_of(document: GrammarDocument) -> str:
-    """What relative URIs of a document are relative to (SRGS 4.9)."""
+    """The base of a document's relative URIs (SRGS 4.9)."""
     return joined(document.uri, document.base, document.where) if document.base else document.uri
 
 
 def joined(base: str, uri: str, where: Where) -> str:
-    """A URI as it is meant at a base.
+    """A URI resolved against a base.
 
     Raises:
         GrammarError: one of them is not a URI.

@@ -44,21 +44,21 @@ def load(
     Args:
         source: a ``<grammar>`` element inside a document, the text or bytes of a whole file in
             either form of SRGS 1.0, a ``builtin:`` URI, or the name of a built-in type.
-        base: where the file is from, or the document that holds the element.
+        base: the URI of the file, or of the document that contains the element.
         lang: the language of an element or a built-in type that does not declare its own.
         mode: the mode of an element or a built-in type that does not declare its own.
-        fetch: gives the bytes of a grammar that is referred to; without it there are none.
-        refusal: gives the reason why one grammar may not refer to another, by their URIs; empty if it may.
-        type: the media type, where it is known.
+        fetch: returns the bytes of a grammar that is referred to; by default none may be.
+        refusal: returns why one grammar may not refer to another, by their URIs; empty if it may.
+        type: the media type, if known.
         rule: the rule to match in place of the root.
-        languages: whether a language is taken; without it every one is.
-        lenient: whether files without a namespace are taken for SRGS, and files without
-            ``xml:lang`` for the language given, as voice browsers do; what a grammar without
-            any tag means is the whole text then, and ``rule`` has to be a public one.
+        languages: whether a language is accepted; by default every one is.
+        lenient: whether files without a namespace are accepted as SRGS, and files without
+            ``xml:lang`` as in the given language, as voice browsers do; the interpretation of
+            a grammar without tags is then the whole text, and ``rule`` must be public.
 
     Raises:
         UnsupportedFormat: the media type, or the format of the tags, is not known.
-        UnsupportedLanguage: ``languages`` does not take the grammar's language.
+        UnsupportedLanguage: ``languages`` does not accept the grammar's language.
         UnsupportedBuiltIn: there is no such built-in type.
         GrammarError: the grammar is not legal.
     """
@@ -135,7 +135,7 @@ def _element(
         read_abnf(Inner(node), document, library.problems, where)
     else:
         read_xml(node, document, library.problems, inline=True)
-        document.base = ""  # it is in the URI already
+        document.base = ""  # the URI includes it already
         _root(document)
     check_form(library.problems, media, document.form, "", partial(node.attribute_place, "type"))
     library.add(document)
@@ -143,7 +143,7 @@ def _element(
 
 
 def _root(document: GrammarDocument) -> None:
-    """An element without root: its only rule, or its only public one, is meant."""
+    """The root of an element without one: its only rule, or its only public one."""
     if not document.root:
         public = [rule.name for rule in document.rules.values() if rule.public]
         names = public if len(public) == 1 else list(document.rules)
@@ -178,7 +178,7 @@ def _external(
 
 
 def _bytes(text: str) -> bytes:
-    """A whole file's text as the bytes of one; whatever encoding it declares, it has none."""
+    """A whole file's text as bytes; its declared encoding is irrelevant."""
     if text.startswith("#ABNF"):
         from prima.grammar.abnfheader import as_unicode
 
@@ -191,7 +191,7 @@ def _bytes(text: str) -> bytes:
 def _document(
     lang: str, lenient: bool, library: Library, uri: str, data: bytes, type: str
 ) -> GrammarDocument:
-    """The bytes of a whole file as a document; its language is its own."""
+    """The bytes of a whole file as a document, in the language that it declares."""
     media = media_type(type)
     uri, file = urldefrag(uri)[0], uri or "grammar"
     if len(data) > LIMITS.bytes:

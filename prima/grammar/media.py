@@ -1,4 +1,4 @@
-"""Media types of grammars, and the form that each says (SRGS 2.2.2 and Appendix G)."""
+"""Media types of grammars, and the form that each implies (SRGS 2.2.2 and Appendix G)."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ XML_TYPES = frozenset(
     ["application/srgs+xml", "application/grammar+xml", "application/grammar-xml"]
 )
 LOOSE_TYPE = "application/abnf"
-"""A type that is in use for the ABNF form, although SRGS does not define it."""
+"""A type in use for the ABNF form, although SRGS does not define it."""
 ABNF_TYPES = frozenset(["application/srgs", "application/grammar", LOOSE_TYPE])
 OPEN_TYPES = frozenset(
     ["", "text/xml", "application/xml", "text/plain", "application/octet-stream", "text/html"]
 )
-"""Types that do not imply a form; the content shows it."""
+"""Types that do not imply a form; the content decides."""
 OTHERS = {"#JSGF": "JSGF", ";GSL": "GSL", "#GSL": "GSL"}
-"""How formats that are not SRGS begin."""
+"""Beginnings of formats other than SRGS."""
 UNTYPED = "jsgf"
 """The type assumed for a grammar without one in VoiceXML 1.0, whose form is JSGF."""
 RIGHT_TYPES: dict[Form, str] = {"XML": "application/srgs+xml", "ABNF": "application/srgs"}
@@ -44,7 +44,7 @@ def supports(type: str) -> bool:
 
 
 def looks_like_abnf(text: str) -> bool:
-    """Whether a text that lacks the header of the ABNF form goes on as that form does."""
+    """Whether a text looks like the ABNF form apart from its missing header."""
     return _LOOKS.match(text) is not None
 
 
@@ -68,7 +68,7 @@ def check_known(media: str, place: Place, begin: str) -> None:
 
 
 def check_no_text(file: str, begin: str) -> None:
-    """Refuse a file that begins as neither form does.
+    """Refuse a file that begins like neither form.
 
     Raises:
         GrammarError: with the header to write, where the text looks like the ABNF form.
@@ -82,7 +82,7 @@ def check_no_text(file: str, begin: str) -> None:
 
 
 def check_form(problems: Problems, media: str, form: Form, file: str, where: Where) -> None:
-    """Note a media type that says the other form than a grammar has; warn of a loose one."""
+    """Note a media type of the form that a grammar does not have; warn of a loose one."""
     right = RIGHT_TYPES[form]
     types = XML_TYPES if form == "ABNF" else ABNF_TYPES
     if media in types:

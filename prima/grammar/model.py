@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from prima.messages import Json
 
 Mode = Literal["voice", "dtmf", ""]
-"""What input a grammar is for; the empty one takes both."""
+"""The input mode of a grammar; empty for both."""
 
 
 @dataclass(slots=True, eq=False)
@@ -27,7 +27,7 @@ class Words:
 
 @dataclass(slots=True, eq=False)
 class Sequence:
-    """Expansions one after another (SRGS 2.3); none at all is matched by nothing said."""
+    """Expansions one after another (SRGS 2.3); an empty one matches silence."""
 
     parts: list[Part]
 
@@ -43,9 +43,9 @@ class Alternatives:
 
 @dataclass(slots=True, eq=False)
 class Repeat:
-    """An expansion some times over (SRGS 2.5); ``high`` None is without end.
+    """A repeated expansion (SRGS 2.5); ``high`` None means unbounded.
 
-    ``more`` and ``stop`` are the costs of one more time and of no more (repeat probability).
+    ``more`` and ``stop`` are the costs of one more repetition and of stopping (repeat probability).
     """
 
     part: Part
@@ -57,9 +57,9 @@ class Repeat:
 
 @dataclass(slots=True, eq=False)
 class Reference:
-    """A rule by its URI (SRGS 2.2), and by its document and name once it was found.
+    """A rule by its URI (SRGS 2.2), and by its document and name once resolved.
 
-    It does not hold the rule itself, so that a grammar of however long a chain can be pickled.
+    It does not hold the rule itself, so that a grammar with a chain of any length can be pickled.
     """
 
     uri: str
@@ -72,11 +72,11 @@ class Reference:
 
     @property
     def rule(self) -> Rule | None:
-        """The rule, once it was found."""
+        """The rule, once resolved."""
         return self.home.rules.get(self.name) if self.home is not None else None
 
     def resolve(self, rule: Rule) -> None:
-        """Take the rule that was found."""
+        """Resolve it to a rule."""
         self.home, self.name = rule.document, rule.name
 
 
@@ -89,7 +89,7 @@ class Special:
 
 @dataclass(slots=True, eq=False)
 class Tag:
-    """What a tag holds (SRGS 2.6)."""
+    """The content of a tag (SRGS 2.6)."""
 
     code: str
     where: Where
@@ -101,7 +101,7 @@ class BuiltIn:
 
     name: str
     read: Callable[[str, str], Json]
-    """Text and mode to value; None where it does not match."""
+    """Text and mode to value; None if it does not match."""
     open: Callable[[str, str], bool]
     """Whether more may follow a text."""
 
@@ -111,17 +111,17 @@ Part = Words | Sequence | Alternatives | Repeat | Reference | Special | Tag | Bu
 
 @dataclass(slots=True)
 class PrefixIndex:
-    """The alternatives of a choice by the words that they begin with, each under all of its own."""
+    """The alternatives of a choice by their initial words, each under all of its own."""
 
     by_prefix: dict[str, list[int]]
     lengths: list[int]
     others: list[int]
-    """Those that begin with something else."""
+    """Alternatives that begin with something else."""
     ordered: list[str] = field(default_factory=list)
-    """What is looked up in ``by_prefix``, sorted."""
+    """The keys of ``by_prefix``, sorted."""
 
     def goes_on(self, text: str) -> bool:
-        """Whether some words that alternatives begin with begin with a text, and are longer."""
+        """Whether a text is a proper prefix of some alternatives' initial words."""
         place = bisect_right(self.ordered, text)
         return place < len(self.ordered) and self.ordered[place].startswith(text)
 
@@ -148,10 +148,10 @@ class GrammarDocument:
     base: str = ""
     tag_format: str = ""
     formatted: Where | None = None
-    """Where the tag format is declared, if it is."""
+    """The place of the tag format's declaration, if any."""
     rules: dict[str, Rule] = field(default_factory=dict)
     globals: list[Tag] = field(default_factory=list)
-    """Tags of the header, run once before those of rules."""
+    """Global tags of the header, run once before those of rules."""
     tags: list[Tag] = field(default_factory=list)
     references: list[Reference] = field(default_factory=list)
     lexicons: list[str] = field(default_factory=list)
@@ -159,7 +159,7 @@ class GrammarDocument:
     dialect: str = ""
     """How tags are read: ``script``, ``literals``, ``legacy``, or ``last`` (PRIMA's own language)."""
     faults: dict[str, str] = field(default_factory=dict)
-    """Scripts of tags that were needed, and why each is not well-formed by itself; empty if it is."""
+    """Scripts of tags used so far, with why each is not well-formed by itself; empty if it is."""
     form: Form = "XML"
     merges: bool = False
-    """Whether slots that referenced rules fill are those of the rule that refers."""
+    """Whether slots filled by referenced rules become slots of the referring rule."""

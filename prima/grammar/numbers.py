@@ -32,7 +32,7 @@ _BEFORE = {
     "hundred": ("digit", "teen", "a", "tens"),
     "scale": ("digit", "teen", "a", "tens", "hundred"),
 }
-"""What kind of word may come before one of each kind."""
+"""The kinds of words that may precede each kind."""
 DIGITS = {word: str(value) for word, value in ONES.items() if value < 10}
 DIGITS |= dict.fromkeys(("oh", "o", "nought", "naught"), "0")
 TIMES = {"double": 2, "triple": 3, "quadruple": 4}
@@ -55,12 +55,12 @@ _ONE_DIGIT = re.compile(
     )
 )
 MOST_FIGURES = 100
-"""Figures that a number may have."""
+"""Maximum number of digits of a number."""
 _FIGURES = re.compile(r"[0-9]{1,3}(?:,[0-9]{3})+|[0-9]+")
 _DECIMAL = re.compile(r"([0-9]{1,3}(?:,[0-9]{3})+|[0-9]*)\.([0-9]+)|([0-9]+),(?![0-9]{3}$)([0-9]+)")
-"""A decimal point, or a decimal comma where it divides no thousands."""
+"""A decimal point, or a decimal comma that is not a thousands separator."""
 _POINT = re.compile(r"(?:(.*?) )?point (.*)|([^点]*)点(.*)")
-"""What is before and after a spoken decimal point."""
+"""The parts before and after a spoken decimal point."""
 _JAPANESE = re.compile(f"[0-9{''.join([*KANJI, *_SMALL, *_LARGE])}]+")
 
 
@@ -112,7 +112,7 @@ def _dialled(said: str) -> str | None:
 
 
 def cardinal(text: str) -> int | None:
-    """A whole number in a folded text: figures, English or Japanese words; or None."""
+    """A whole number in a folded text: digits, English or Japanese words; or None."""
     if _FIGURES.fullmatch(text):
         return int(text.replace(",", "")) if len(text) <= MOST_FIGURES else None
     if _JAPANESE.fullmatch(text):
@@ -187,7 +187,7 @@ def _sign(text: str) -> tuple[str, str]:
 
 
 def _fraction(text: str) -> tuple[str, str | None]:
-    """What is before and after the decimal point; None for anything but digits after it."""
+    """The parts before and after the decimal point; None if the latter is not digits."""
     if match := _DECIMAL.fullmatch(text):
         return (match[1], match[2]) if match[2] else (match[3], match[4])
     match = _POINT.fullmatch(text)

@@ -1,4 +1,4 @@
-"""Some answers that a question takes, to offer to users who type, or to look for in what is heard."""
+"""Some answers that a question takes, to offer to users who type, or to spot in what is heard."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ DEEP = 12
 STEPS = 2000
 """Maximum number of expansions."""
 TYPES = {"boolean": ["yes", "no"]}
-"""Answers of built-in types that have few."""
+"""Answers of built-in types with few values."""
 
 
 def phrases(answers: Answers, most: int = MOST) -> list[str]:
-    """Some of what a field takes, without what speech does not carry, the shortest first."""
+    """Some answers that a field takes, folded, the shortest first."""
     found = dict.fromkeys(islice(answers.options, most))
     for grammar in answers.grammars:
         found |= dict.fromkeys(islice(_Phrases(most).of(grammar.expansion), most))

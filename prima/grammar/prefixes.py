@@ -1,6 +1,6 @@
-"""What the expansions of a grammar begin with: so that of many alternatives only few are tried.
+"""The prefixes of a grammar's expansions, so that only few of many alternatives are tried.
 
-An alternative that an index leaves out cannot match; one that it gives may.
+An alternative that an index omits cannot match; one that it returns may.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ from prima.grammar.model import (
 from prima.grammar.text import join
 
 MOST_PREFIXES = 16
-"""Beginnings of one part that are distinguished."""
+"""Maximum number of prefixes of one part."""
 MOST_LETTERS = 200
-"""Characters of a beginning up to which what follows is added to it."""
+"""Length up to which a prefix is extended by what follows."""
 MAX_DEPTH = 40
-"""Depth of parts and rules to which beginnings are looked for."""
+"""Maximum depth of parts and rules in the search for prefixes."""
 
 
 class Prefix(NamedTuple):
     """One way in which a part begins."""
 
     text: str
-    """Folded; every match that begins in this way begins with this text."""
+    """Folded; every match of this kind begins with this text."""
     whole: bool
     """Whether the text is the whole match."""
 
@@ -45,7 +45,7 @@ UNKNOWN: Prefixes = (Prefix("", False),)
 
 
 def index_choices(documents: Iterable[GrammarDocument]) -> None:
-    """Index the alternatives of all rules of some documents, whose references are resolved."""
+    """Index the alternatives of all rules of documents with resolved references."""
     for document in documents:
         finder = _Finder(document.mode == "dtmf")
         for rule in document.rules.values():
@@ -67,14 +67,14 @@ def _choices(body: Part) -> Iterator[Alternatives]:
 
 
 class _Finder:
-    """Finds the beginnings of parts, each once."""
+    """Finds the prefixes of parts, each once."""
 
     def __init__(self, keys: bool) -> None:
         self._keys = keys
         self._known: dict[int, Prefixes] = {}
 
     def index(self, parts: list[Part]) -> PrefixIndex:
-        """Alternatives by their beginnings."""
+        """Alternatives by their prefixes."""
         by_prefix: dict[str, list[int]] = {}
         others: list[int] = []
         for number, part in enumerate(parts):
@@ -88,7 +88,7 @@ class _Finder:
         return PrefixIndex(by_prefix, lengths, others, sorted(by_prefix))
 
     def _prefixes(self, part: Part, depth: int) -> Prefixes:
-        """In which ways a part begins; none at all if nothing matches it."""
+        """The prefixes of a part; none at all if it cannot match."""
         match part:
             case Words(folded):
                 return (Prefix(folded, True),)
@@ -98,13 +98,13 @@ class _Finder:
                 return ()
         known = self._known.get(id(part))
         if known is None:
-            self._known[id(part)] = UNKNOWN  # while it is looked for: it may refer to itself
+            self._known[id(part)] = UNKNOWN  # during the search: it may refer to itself
             found = UNKNOWN if depth >= MAX_DEPTH else self._composed(part, depth + 1)
             known = self._known[id(part)] = found
         return known
 
     def _composed(self, part: Part, depth: int) -> Prefixes:
-        """How a part begins that holds others."""
+        """The prefixes of a compound part."""
         match part:
             case Sequence(parts):
                 return self._in_turn(parts, depth)
@@ -122,7 +122,7 @@ class _Finder:
         return UNKNOWN
 
     def _any_of(self, parts: list[Part], depth: int) -> Prefixes:
-        """The beginnings of alternatives."""
+        """The prefixes of alternatives."""
         found: set[Prefix] = set()
         for part in parts:
             found.update(self._prefixes(part, depth))
@@ -131,7 +131,7 @@ class _Finder:
         return tuple(sorted(found))
 
     def _in_turn(self, parts: list[Part], depth: int) -> Prefixes:
-        """The beginnings of parts one after another."""
+        """The prefixes of parts one after another."""
         found: set[Prefix] = set(NOTHING)
         for part in parts:
             then = self._prefixes(part, depth)
@@ -146,7 +146,7 @@ class _Finder:
         return tuple(sorted(found))
 
     def _extended(self, found: set[Prefix], then: Prefixes) -> set[Prefix]:
-        """Beginnings of parts, with those of the next part behind whole matches."""
+        """Prefixes of parts, whole matches being followed by those of the next part."""
         longer = {one for one in found if not one.whole}
         for one in found - longer:
             for two in then:

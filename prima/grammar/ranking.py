@@ -1,8 +1,7 @@
-"""Which of the ways that a chart holds is best, and what it says in order.
+"""The best parse in a chart, and its content in order.
 
-What leaves fewer words to GARBAGE comes first, then lower costs, which are those of weights and
-repeat probabilities; of equal ones that which takes the alternative written first, and of repeats
-that which takes more.
+Parses that leave fewer words to GARBAGE come first, then those with lower costs of weights and
+repeat probabilities; among equal ones, the alternative written first and the longer repeat win.
 """
 
 from __future__ import annotations
@@ -20,28 +19,28 @@ if TYPE_CHECKING:
     from prima.messages import Json
 
 MOST_CELLS = 200_000
-"""How large an analysis may be; a few short rules can make one of any size out of nothing."""
+"""Maximum size of an analysis; a few short rules can make one of any size out of nothing."""
 
 MOST_KNOWN = 100_000
-"""How many analyses are kept of all cells together; at least the best of each is."""
+"""Maximum number of analyses of all cells together; at least the best of each is kept."""
 
 
 class RankedParse(NamedTuple):
-    """One way through a cell: how good it is, and the analyses of what it is made of."""
+    """One parse of a cell: its rank, and the analyses of its parts."""
 
     lost: int
-    """How many words GARBAGE takes in it."""
+    """The number of words that GARBAGE takes."""
     cost: float
     cell: Cell
     left: RankedParse | None
     right: RankedParse | None
     size: int
-    """How many cells it passes through, those that it passes several times included."""
+    """The number of cells on its way, repeated ones included."""
 
 
 @dataclass(slots=True)
 class RuleFrame:
-    """A rule that was matched: what was said, tagged and referred to in it, in order."""
+    """A matched rule with its words, tags and references in order."""
 
     rule: Rule
     name: str
@@ -49,7 +48,7 @@ class RuleFrame:
 
 
 class Value(NamedTuple):
-    """What a built-in type read, and from what."""
+    """The value that a built-in type read, and its text."""
 
     value: Json
     text: str
@@ -58,7 +57,7 @@ class Value(NamedTuple):
 def best(top: Cell, most: int) -> list[RankedParse]:
     """The best analyses of a cell, at most so many."""
     order, cyclic = _order(top, strict=False)
-    if cyclic:  # keep to ways made of what was there before: every cell has one
+    if cyclic:  # use only ways made of earlier cells: every cell has one
         order, _ = _order(top, strict=True)
     most = max(1, min(most, MOST_KNOWN // len(order)))
     known: dict[int, list[RankedParse]] = {}
@@ -75,9 +74,9 @@ way; the analysis."""
 def _best(
     cell: Cell, ways: list[ChartWay], known: dict[int, list[RankedParse]], most: int
 ) -> list[RankedParse]:
-    """The best analyses of a cell by those of its parts, each made only when it is next.
+    """The best analyses of a cell from those of its parts, each built only when it is next.
 
-    What follows a candidate, the next analysis of one of its parts, is never better.
+    The successor of a candidate, with the next analysis of one part, is never better.
     """
     parts = [(_known(known, way.left), _known(known, way.right)) for way in ways]
     waiting: list[Candidate] = []
@@ -133,7 +132,7 @@ def _ways(cell: Cell, strict: bool) -> Iterator[ChartWay]:
 
 
 def _order(top: Cell, strict: bool) -> tuple[list[Cell], bool]:
-    """All cells that the top one is made of, parts first; and whether some are their own parts."""
+    """All cells below the top one, parts first; and whether some contain themselves."""
     order: list[Cell] = []
     state: dict[int, bool] = {top.number: False}  # whether it is done
     stack = [(top, _parts(top, strict))]
@@ -162,7 +161,7 @@ def _parts(cell: Cell, strict: bool) -> Iterator[Cell]:
 
 
 def frames(analysis: RankedParse, said: MatchedUtterance) -> RuleFrame:
-    """What an analysis says, rule by rule."""
+    """The content of an analysis, rule by rule."""
     top: RuleFrame | None = None
     open_frames: list[RuleFrame] = []
     todo: list[RankedParse | None] = [analysis]  # None ends a frame

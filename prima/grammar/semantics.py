@@ -1,7 +1,7 @@
-"""What an utterance means: the tags of the rules that matched (SISR 1.0).
+"""The meaning of an utterance by the tags of the matched rules (SISR 1.0).
 
-Every rule that matched gives a value, those that it refers to first. Without tags it is the
-value of the last rule that it refers to, or else the text of its tokens.
+Every matched rule has a value; rules that it refers to are evaluated first. Without tags it is
+the value of the last rule that it refers to, or else the text of its tokens.
 """
 
 from __future__ import annotations
@@ -43,17 +43,17 @@ class TagFailed(Exception):
 
 @dataclass(slots=True)
 class _Result:
-    """The value of one rule that matched."""
+    """The value of one matched rule."""
 
     document: GrammarDocument
     home: GrammarDocument
-    """In whose engine the value is, if it is in one: its own, or that of a rule it was passed by."""
+    """The owner of the engine that holds the value, if any: itself, or a rule that passed it on."""
     first: int
     """Its tokens, by number."""
     last: int = 0
     value: Json = None
     box: Any = None
-    """The value inside an engine, if it is there."""
+    """The value inside an engine, if it is in one."""
 
 
 class TagInterpreter:
@@ -66,7 +66,7 @@ class TagInterpreter:
         self.valued = False
         """Whether a built-in type has given a value."""
         self.last: Tag | None = None
-        """The last tag on the way, of whatever rule."""
+        """The last tag executed, of any rule."""
         self._engines: dict[int, Any] = {}
         self._results: dict[int, _Result] = {}
 
@@ -148,7 +148,7 @@ class TagInterpreter:
         return result.value if result.box is None else self._given(result, "json")
 
     def _given(self, result: _Result, way: Literal["json", "carry"]) -> Any:
-        """What a value in an engine is outside of it."""
+        """A value of an engine as plain data."""
         engine = self._engine(result.home)
         try:
             return engine.json(result.box) if way == "json" else engine.carry(result.box)
@@ -231,7 +231,7 @@ def _check(tags: list[tuple[Tag, str]], document: GrammarDocument, engine: Any) 
         fault = known.get(code)
         if fault is None:
             fault = engine.fault(code)
-            if not fault or fault.startswith("SyntaxError"):  # anything else is lack of memory
+            if not fault or fault.startswith("SyntaxError"):  # anything else is a lack of memory
                 known[code] = fault
         if fault:
             raise _failure(tag, fault)

@@ -1,4 +1,4 @@
-"""Problems of a grammar's tags that their text shows."""
+"""Problems of a grammar's tags that are found in their text."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ LOST = "what needs it is not taken"
 
 
 def tag_warnings(document: GrammarDocument) -> list[Problem]:
-    """Tags that are no script, and names in them that nothing gives a value (SISR 1.0)."""
+    """Tags that are not scripts, and unassigned names in them (SISR 1.0)."""
     if not (document.tags or document.globals) or document.dialect == "literals":
         return []
     from prima.script.shared import IsolatedTagEngine
@@ -53,7 +53,7 @@ def _script(document: GrammarDocument, tag: Tag) -> str:
 
 
 def _unknown(document: GrammarDocument, sound: dict[int, str]) -> Iterator[Problem]:
-    """Names that are neither SISR's nor given a value by any tag of the document."""
+    """Names that are neither SISR's nor assigned by any tag of the document."""
     names = [script_names(code) for code in sound.values()]
     known = set(SISR).union(*(one.declared | one.written for one in names))
     for tag in document.globals:
@@ -76,7 +76,7 @@ def _names(tag: Tag, code: str, known: set[str]) -> Iterator[Problem]:
 
 
 def _rules(tag: Tag, code: str, rules: set[str]) -> Iterator[Problem]:
-    """Rules by name, of which the tag's own rule refers to none."""
+    """Rules that a tag names although its own rule does not refer to them."""
     for name in _rules_used(code):
         if name in rules:
             continue
@@ -86,7 +86,7 @@ def _rules(tag: Tag, code: str, rules: set[str]) -> Iterator[Problem]:
 
 
 def _rules_used(code: str) -> list[str]:
-    """The rules whose values or texts a tag looks at: ``rules.name``, ``meta.name``."""
+    """The rules whose values or texts a tag reads: ``rules.name``, ``meta.name``."""
     found: list[str] = []
     parsed = parse_script(code)
     for node in parsed.walk() if parsed is not None else ():

@@ -1,7 +1,7 @@
-"""What a person says, folded to what speech carries, and key presses.
+"""Utterances, folded to what speech conveys, and key presses.
 
-Grammars are matched on folded text: neither case, width nor punctuation is heard, and scripts
-that put no spaces between words are matched without them.
+Grammars are matched on folded text: case, width and punctuation are inaudible, and scripts
+without spaces between words are matched without them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ UNSPACED = (
 """Letters of scripts that are written without spaces, or (Korean) with loose ones."""
 _UNSPACED = f"[{UNSPACED}]"
 _LOOSE = f"(?<=[{UNSPACED}]) +| +(?=[{UNSPACED}])"
-# Patterns of so many letters take long to compile: these two are when such text comes.
+# Patterns of so many letters take long to compile: these two are compiled on first use.
 _KEPT = re.compile(r"(\d+(?:[.,:]\d+)+|(?<=[^\W\d_])[+#]+(?![\w+#]))")
 _APOSTROPHE = re.compile(r"['\u2019\u2018`\u00b4]")
 _PLAIN = re.compile(r"[a-z0-9]+(?: [a-z0-9]+)*")
@@ -29,16 +29,16 @@ KEYS = frozenset("0123456789*#ABCD")
 """The keys of a telephone (SRGS Appendix E)."""
 KEY_NAMES = {"star": "*", "pound": "#"}
 LONGEST = 10_000
-"""Characters that an utterance may have; a longer one matches nothing."""
+"""Maximum length of an utterance; a longer one matches nothing."""
 
 
 @lru_cache(maxsize=4096)
 def fold(text: str) -> str:
-    """Give text without what speech does not carry: case, width, punctuation, loose spaces."""
+    """Remove from text what speech does not convey: case, width, punctuation, loose spaces."""
     if _PLAIN.fullmatch(text):
         return text
     folded = _APOSTROPHE.sub("", wide(text).casefold())
-    # Separators inside numbers and times are kept, and what tells C++ and C# from C.
+    # Keep separators inside numbers and times, and the signs that distinguish C++ and C# from C.
     pieces = _KEPT.split(folded)
     pieces[::2] = ["".join(map(_letter, piece)) for piece in pieces[::2]]
     return _closed(" ".join("".join(pieces).split()))
@@ -52,7 +52,7 @@ def wide(text: str) -> str:
 def _letter(letter: str) -> str:
     category = unicodedata.category(letter)
     if category == "Cf" and letter != "\u200b":  # which may separate words
-        return ""  # a soft hyphen or joiner inside of a word
+        return ""  # a soft hyphen or joiner inside a word
     return " " if category[0] in "PSZC" else letter
 
 
@@ -66,7 +66,7 @@ def tokens(text: str) -> list[str] | None:
 
 
 def join(words: tuple[str, ...] | list[str]) -> str:
-    """Tokens as text: no space where the script has none."""
+    """Tokens as text, without spaces in scripts that have none."""
     return _closed(" ".join(words))
 
 
@@ -85,14 +85,14 @@ def keys(text: str) -> str | None:
 
 @dataclass(slots=True)
 class MatchedUtterance:
-    """One utterance as it is matched."""
+    """An utterance prepared for matching."""
 
     text: str
-    """As it was given."""
+    """The utterance as given."""
     said: str
     """Folded, or the keys pressed."""
     edges: list[bool]
-    """Whether a word may end at a place."""
+    """Whether a word may end at a position."""
     mode: str
     ends: list[int]
     """Where words end."""
@@ -102,7 +102,7 @@ class MatchedUtterance:
         return end + 1 if end < len(self.said) and self.said[end] == " " else end
 
     def words_from(self, start: int) -> list[int]:
-        """Where a stretch of whole words that begins at a place may end."""
+        """Where a stretch of whole words that begins at a position may end."""
         return self.ends[bisect_right(self.ends, start) :]
 
 

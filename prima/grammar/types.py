@@ -1,4 +1,4 @@
-"""The built-in types of PRIMA's own language: what VoiceXML's read, with values for ECMAScript."""
+"""The built-in types of PRIMA's own language: VoiceXML's types, with values for ECMAScript."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def read(type: str, text: str) -> Json:
-    """The value of an utterance, or None where the type does not take it."""
+    """The value of an utterance, or None if the type does not match it."""
     if type == "text":
         return " ".join(text.split()) if fold(text) else None
     value = built_in(type, "voice", "").read(text, "voice")
@@ -31,7 +31,7 @@ def _date(text: str) -> Json:
 
 
 def _time(text: str) -> Json:
-    """A time as ``21:30``; without a.m. or p.m. it is of 24 hours."""
+    """A time as ``21:30``; without a.m. or p.m. it is in 24 hours."""
     hour, part = int(text[:2]), text[4:]
     if part in ("a", "p"):
         hour = hour % 12 + (12 if part == "p" else 0)

@@ -1,4 +1,4 @@
-"""The values that both forms of SRGS write alike: repeats, weights, names, languages."""
+"""Values with the same syntax in both forms of SRGS: repeats, weights, names, languages."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import NamedTuple
 from prima.grammar.model import Alternatives, Part, PrefixIndex, Sequence
 
 LEAST = 1e-20
-"""A weight of nought counts as this: it comes after everything else."""
+"""The value used for a weight of 0, which ranks after everything else."""
 MOST_TIMES = 10**9
 RESERVED = frozenset(["NULL", "VOID", "GARBAGE"])
 MODES = ("voice", "dtmf")
@@ -26,7 +26,7 @@ _LANGUAGE = re.compile(r"[A-Za-z]{1,8}(?:-[A-Za-z0-9]{1,8})*")
 
 
 class RepeatBounds(NamedTuple):
-    """How often something is said; ``high`` None is without end."""
+    """How often something is said; ``high`` None means unbounded."""
 
     low: int
     high: int | None
@@ -36,7 +36,7 @@ def repeat(text: str) -> RepeatBounds:
     """Read ``n``, ``n-m`` or ``n-`` (SRGS 2.5).
 
     Raises:
-        ValueError: it is of no such form, or its end is before its beginning.
+        ValueError: it has another form, or its end is before its beginning.
     """
     match = _REPEAT.fullmatch(text.strip())
     if match is None:
@@ -51,7 +51,7 @@ def repeat(text: str) -> RepeatBounds:
 
 
 def decimal(text: str, kind: str) -> float:
-    """Read a weight: a number of nought or more, without exponent (SRGS 2.4.1).
+    """Read a weight: a number of 0 or more, without exponent (SRGS 2.4.1).
 
     Raises:
         ValueError: it is not such a number.
@@ -74,12 +74,12 @@ def probability(text: str) -> float:
 
 
 def cost(chance: float) -> float:
-    """The cost of something that has a chance."""
+    """The cost of something with a given probability."""
     return -math.log(max(chance, LEAST))
 
 
 def choice(parts: list[Part], weights: list[float | None]) -> Part:
-    """Alternatives; weights count in relation to the greatest, one not given is 1."""
+    """Alternatives; weights are relative to the greatest, and 1 by default."""
     if len(parts) == 1:
         return parts[0]
     given = [1.0 if weight is None else weight for weight in weights]
@@ -90,12 +90,12 @@ def choice(parts: list[Part], weights: list[float | None]) -> Part:
 
 
 def sequence(parts: list[Part]) -> Part:
-    """A sequence, or the one part that it has."""
+    """A sequence, or its only part."""
     return parts[0] if len(parts) == 1 else Sequence(parts)
 
 
 def name_problem(name: str) -> str:
-    """What is wrong with the name of a rule (SRGS 3.1), or nothing."""
+    """The problem of a rule's name (SRGS 3.1), or nothing."""
     if name in RESERVED:
         return f'"{name}" is a special rule and cannot be defined.'
     if re.fullmatch(_NAME, name) is None:

@@ -1,4 +1,4 @@
-"""The elements of SRGS's XML form: what they may hold, and what is wrong with them."""
+"""The elements of SRGS's XML form: their content and attributes, and problems of these."""
 
 from __future__ import annotations
 
@@ -33,21 +33,21 @@ VOICEXML |= {"maxstale", "accept"}
 
 
 class GrammarChecker:
-    """Notes what is wrong with elements."""
+    """Notes problems of elements."""
 
     def __init__(self, problems: Problems) -> None:
         self.problems = problems
         self.space = SRGS
-        """The namespace of the grammar that is read."""
+        """The namespace of the grammar being read."""
 
     def note(
         self, node: Node, code: str, message: str, remedy: str | Hint = "", attribute: str = ""
     ) -> None:
-        """Note one thing at an element, or at one of its attributes."""
+        """Note a problem at an element, or at one of its attributes."""
         self.problems.note(partial(node.place_of, attribute), code, message, remedy)
 
     def known(self, node: Node, parent: Node) -> bool:
-        """Whether it is an element of SRGS; those of other languages are passed over."""
+        """Whether it is an element of SRGS; those of other languages are ignored."""
         if node.namespace != self.space:
             if node.namespace in ("", SRGS):
                 message = f"<{node.tag}> is in another namespace than <{parent.tag}>."
@@ -61,7 +61,7 @@ class GrammarChecker:
         return True
 
     def attributes(self, node: Node, more: set[str]) -> None:
-        """Note unknown attributes; ``more`` are known beside those of SRGS."""
+        """Note unknown attributes; ``more`` are known besides those of SRGS."""
         if not node.attributes:
             return
         known = ATTRIBUTES[node.tag] | more

@@ -31,13 +31,13 @@ def read_xml(
 ) -> None:
     """Read a <grammar> element into a document; ``inline`` if it is part of another one.
 
-    ``lenient`` takes a file without a namespace for SRGS.
+    ``lenient`` accepts a file without a namespace as SRGS.
     """
     _Reader(document, problems, inline, lenient).grammar(node)
 
 
 class _Reader(GrammarChecker):
-    """Reads one grammar; notes what is wrong and goes on."""
+    """Reads one grammar; notes problems and continues."""
 
     def __init__(
         self, document: GrammarDocument, problems: Problems, inline: bool, lenient: bool
@@ -166,7 +166,7 @@ class _Reader(GrammarChecker):
     # Expansions (section 2)
 
     def _parts(self, node: Node, depth: int) -> list[Part]:
-        """What a rule or an item holds."""
+        """The expansions in a rule or an item."""
         if depth > MAX_DEPTH:
             self.note(node, "too-deep", f"Elements are nested more than {MAX_DEPTH} deep.")
             return []
@@ -205,7 +205,7 @@ class _Reader(GrammarChecker):
                 self.document.tags.append(tag)
                 return [tag]
             case _:
-                self._number(node, "weight")  # of no effect outside of <one-of>
+                self._number(node, "weight")  # without effect outside of <one-of>
                 return [self._item(node, depth)]
 
     def _words(self, node: Node, text: str) -> Part | None:

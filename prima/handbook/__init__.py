@@ -1,1 +1,1 @@
-"""What `prima explain` tells: the rules with their runs, and examples of every problem."""
+"""The content of `prima explain`: the rules with their runs, and examples of every problem."""

@@ -1,4 +1,4 @@
-"""Executable content as values, each with the element that it was written in."""
+"""Executable content as values, each with its element."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ Text = tuple["str | Expression | Pause", ...]
 
 @dataclass(frozen=True, slots=True)
 class Pause:
-    """A silence inside of what is said, in ms."""
+    """A silence within spoken text, in ms."""
 
     lasts: int
 
 
 def pauses_in(text: Text | None) -> int:
-    """How long all pauses of a text last together, in ms."""
+    """The total duration of a text's pauses, in ms."""
     return sum(part.lasts for part in text or () if isinstance(part, Pause))
 
 
 @dataclass(slots=True, eq=False)
 class Expression:
-    """ECMAScript, and the element and attribute that hold it."""
+    """ECMAScript code, and the element and attribute that contain it."""
 
     code: str
     node: Node
@@ -63,7 +63,7 @@ class GroupTemplate:
 
 @dataclass(slots=True, eq=False)
 class StepTemplate:
-    """A node of the tree that a run of Commands becomes (U3)."""
+    """A node of the tree built from a run of Commands (U3)."""
 
     what: CommandTemplate | GroupTemplate
     after: tuple[int, ...]
@@ -71,7 +71,7 @@ class StepTemplate:
 
 @dataclass(slots=True, eq=False)
 class CommandRun:
-    """Commands that follow one another: requested at once (O4)."""
+    """Consecutive Commands, requested at once (O4)."""
 
     steps: tuple[StepTemplate, ...]
     node: Node
@@ -219,9 +219,9 @@ class Handler:
     content: tuple[Act, ...]
     node: Node
     waits: bool = False
-    """Whether there is a Command in it, whose end is waited for."""
+    """Whether it contains a Command, whose end is waited for."""
     fresh: int | None = None
-    """For how long (ms) the reaction is worth starting (X8)."""
+    """How long (ms) the reaction is worth starting (X8)."""
 
 
 HOLDING = frozenset([If, Foreach, CommandRun])
@@ -229,7 +229,7 @@ HOLDING = frozenset([If, Foreach, CommandRun])
 
 
 def all_acts(content: Sequence[Act]) -> list[Act]:
-    """Executable content with all that it holds, in document order."""
+    """Executable content with nested content, in document order."""
     if HOLDING.isdisjoint(map(type, content)):
         return list(content)
     found: list[Act] = []
@@ -241,7 +241,7 @@ def all_acts(content: Sequence[Act]) -> list[Act]:
 
 
 def _held(act: Act) -> Iterator[Sequence[Act]]:
-    """The content that an act holds."""
+    """The content nested in an act."""
     if isinstance(act, If):
         yield from (branch for _, branch in act.branches)
     elif isinstance(act, Foreach):

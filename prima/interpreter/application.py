@@ -1,6 +1,6 @@
 """An application as a state machine without I/O or clock.
 
-An :class:`Interpreter` is told what happens (``start``, ``event``, ``notice``,
+An :class:`Interpreter` is notified of what happens (``start``, ``event``, ``notice``,
 ``sensed``, ``expire``) and appends what its application wants to ``actions``.
 Between two calls it waits; a call takes no simulated time. What it does in a form
 is :mod:`prima.interpreter.form`; how it finds handlers, :mod:`prima.interpreter.handling`.
@@ -70,7 +70,7 @@ class Interpreter(States):
         return frame is not None and bool(self.handling.takers(frame, frame.item, name))
 
     def event(self, now: int, event: Event) -> None:
-        """Something happened that concerns every application, or this one alone."""
+        """Deliver an event for every application, or for this one alone."""
         if now != self.now:
             if self.timed:
                 self._tick(now)
@@ -85,7 +85,7 @@ class Interpreter(States):
         self.cause = None
 
     def notice(self, now: int, notice: Notice) -> None:
-        """The mediator tells the fate of Commands."""
+        """The mediator reports what became of Commands."""
         self._tick(now)
         if self.over:
             return
@@ -108,12 +108,12 @@ class Interpreter(States):
 
     @staticmethod
     def _going_on_at(fiber: Fiber) -> Node:
-        """The element in which a piece of content goes on."""
+        """The element at which a piece of content continues."""
         frame = fiber.frame
         return frame.item.node if frame.item is not None else frame.form.node
 
     def sensed(self, now: int, values: Data) -> list[str]:
-        """Sensor values changed: gives the events whose conditions turned true (C6)."""
+        """Note new sensor values; gives the events whose conditions turned true (C6)."""
         self._tick(now)
         self.sensors.update(values)
         self.reports += 1
@@ -128,7 +128,7 @@ class Interpreter(States):
         raised: list[str] = []
         for watch in watches:
             self.guard(self._look, watch, raised)
-            if self.over:  # what the watch came to has ended it
+            if self.over:  # evaluating the watch has ended it
                 return []
         return raised
 
@@ -152,7 +152,7 @@ class Interpreter(States):
         return None
 
     def follow(self, now: int, link: Link, event: Event) -> None:
-        """The user has said what a link listens for."""
+        """Follow a link whose words the user has said."""
         self._tick(now)
         self.note(link.node)
         if link.event:
@@ -165,9 +165,9 @@ class Interpreter(States):
         self.cause = None
 
     def answer(self, run: int, said: Sequence[Hypothesis]) -> Understood | None:
-        """What the asking field makes of what the user said, or None if it takes no such.
+        """How the asking field interprets what the user said; None if it does not take it.
 
-        The likeliest hypothesis that it takes counts, if the recogniser is sure enough of it.
+        The most likely hypothesis that it takes counts, if its confidence is high enough.
         """
         asking = self._asking(run)
         if asking is None:
@@ -184,7 +184,7 @@ class Interpreter(States):
         return None
 
     def _no_match(self, node: Node, message: str) -> None:
-        """A tag failed, so that its grammar does not take what was said."""
+        """A tag failed, so its grammar does not take the utterance."""
         self.actions.append(Say("log", f"no match: {message}", source(node)))
 
     def listening(self) -> Sequence[Answers]:
@@ -204,7 +204,7 @@ class Interpreter(States):
         return (fiber.frame.form, item) if fiber and isinstance(item, Field) else None
 
     def expire(self, now: int) -> list[tuple[str, Data]]:
-        """Give the application's own delayed events that are due."""
+        """Raise the application's own delayed events that are due."""
         if not self.timers:
             return []
         due = sorted((t for t in self.timers if t[0] <= now), key=lambda t: t[:2])
@@ -238,7 +238,7 @@ class Interpreter(States):
         return Command("speak", text=form.words, lang=self.document.lang, source=place)
 
     def take_cause(self) -> int | None:
-        """The serial of the event that a request reacts to, which no further one does (C5)."""
+        """Take the serial of the event that a request reacts to; no later request does (C5)."""
         cause, self.cause = self.cause, None
         if isinstance(cause, str):
             self.actions.append(Promote(cause))
@@ -257,7 +257,7 @@ class Interpreter(States):
             message = f"more than {MAX_TIMERS} delayed events"
             raise Thrown.at(act.node, "error.semantic", message)
         due = self.now + max(milliseconds, 1)
-        if milliseconds <= 1:  # who sends himself one after the other loops without ever waiting
+        if milliseconds <= 1:  # sending itself one after another, it loops without ever waiting
             self.hurried = due
         timer = (due, next(self.timer_serial), act.event, data, fiber.frame.state)
         self.keep_timers([*self.timers, timer])
@@ -269,15 +269,15 @@ class Interpreter(States):
                 self.guard(self.engine.clock, self.application, now / 1000)
 
     def _resume(self, fiber: Fiber, notice: Notice) -> None:
-        """Go on with content whose Commands have met their fate."""
+        """Resume content whose Commands have ended or been cancelled."""
         fiber.waiting = None
         self.drive(fiber, notice)
 
     def arm_watches(self, frame: Frame) -> None:
-        """C6: what a form watches for counts from its entry, true already or not.
+        """C6: arm a form's watches at its entry, whether their conditions hold already or not.
 
-        Events that are raised so are handled before the form's content begins, which
-        :meth:`go_on_entering` lets begin: a handler may leave the form (O3).
+        Events raised this way are handled before :meth:`go_on_entering` begins the form's
+        content: a handler may leave the form (O3).
         """
         self.handling.forget_watches(frame.form.watches)
         if frame.form.watches and self.sensors:
@@ -296,7 +296,7 @@ class Interpreter(States):
         if frame is None or not frame.entering:
             return
         frame.entering = False
-        self.cause, self.fresh = frame.caused  # these events do not lose the reactive flag (C5)
+        self.cause, self.fresh = frame.caused  # these events keep the reactive flag (C5)
         for fiber in frame.fibers:
             if fiber.main:
                 self.guard(self.drive, fiber, Notice("done", 0))
@@ -304,7 +304,7 @@ class Interpreter(States):
 
 
 def says(step: Step) -> bool:
-    """Whether a step of a request says anything."""
+    """Whether a step of a request speaks."""
     if isinstance(step.what, Command):
         return step.what.text is not None
     return any(says(inner) for inner in step.what.steps)

@@ -1,4 +1,4 @@
-"""Reading the attributes and texts of elements, and what is wrong with them."""
+"""Reads the attributes and texts of elements, and notes what is wrong with them."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 def folded(text: str, first: bool) -> str:
-    """Text between elements, white space folded; the first one begins without space."""
+    """Text between elements, white space folded; the first one has no leading space."""
     words = " ".join(text.split())
     if not words:
         return " " if text and not first else ""
@@ -52,19 +52,19 @@ class AttributeReader:
     def __init__(self, root: Node, fetch: Fetch | None = None) -> None:
         self.root = root
         self.fetch = fetch
-        """Gives the bytes of files that the document names."""
+        """Returns the bytes of files that the document names."""
         self.outside = False
         """Whether it names any."""
         self.problems: list[Problem] = []
         self.lang = root.get("xml:lang", "en")
         self.expressions: list[Expression] = []
         self.words: list[str] = []
-        """Code and names of variables that are no expressions."""
+        """Code and names of variables other than expressions."""
         self.scripts: list[str] = []
         self.assigns_parts = self.counting = False
         self._unnamed = 0
         self._runs = 0
-        """How many runs of Commands have been built."""
+        """The number of runs of Commands built."""
 
     def problem(
         self,
@@ -126,7 +126,7 @@ class AttributeReader:
         return node.attributes.get(name, "").strip(XML_SPACE).removeprefix("#")
 
     def one_of_two(self, node: Node, first: str, second: str) -> None:
-        """Note where an element has neither or both of two attributes, or of their expressions."""
+        """Note an element that has neither or both of two attributes, or of their expressions."""
         one, other = self.written(node, first), self.written(node, second)
         if one and other:
             self.exclusive(node, one, other)
@@ -135,14 +135,14 @@ class AttributeReader:
 
     @staticmethod
     def written(node: Node, name: str) -> str:
-        """The name of an attribute if it is given, or of the expression in its place; else nothing."""
+        """The name of an attribute or of its ``-expr`` form, whichever is given; else empty."""
         if name in node.attributes:
             return name
         return f"{name}-expr" if f"{name}-expr" in node.attributes else ""
 
     @staticmethod
     def strange(node: Node) -> bool:
-        """Whether something unknown in an element has been reported, which is likely what is missing."""
+        """Whether something unknown was reported in an element: likely what is missing."""
         return not node.key or not node.attributes.keys() <= DIALOGUE.attributes[node.key].keys()
 
     def exclusive(self, node: Node, first: str, second: str) -> None:
@@ -194,7 +194,7 @@ class AttributeReader:
         return node.get("order") == "now" or (row is not None and row.now)
 
     def arguments(self, node: Node, row: CommandType) -> dict[str, Json | Expression]:
-        """A Command's motion arguments, as written or as expressions."""
+        """A Command's motion arguments, literal or as expressions."""
         args: dict[str, Json | Expression] = {}
         for key, text in node.attributes.items():
             bare = key.removesuffix("-expr")
@@ -208,7 +208,7 @@ class AttributeReader:
                 continue
             try:
                 check_argument(bare, argument, text)
-                args[bare] = text  # the mediator reads it, as it reads what an expression gives
+                args[bare] = text  # read by the mediator, like the value of an expression
             except BadValue as error:
                 if error.beyond:
                     value, spans = float(read_value(argument.kind, text)), value_span(node, key)
@@ -217,7 +217,7 @@ class AttributeReader:
         return args
 
     def check_complete(self, node: Node, row: CommandType, text: Text | None) -> None:
-        """Whether a Command has what it needs, beyond what its schema asks."""
+        """Check that a Command has what it needs, beyond its schema."""
         self.check_arguments(node, row)
         self.check_length(node, text)
         wordless = text is not None and all(isinstance(part, Pause) for part in text)
@@ -226,9 +226,9 @@ class AttributeReader:
             self.problem(ONLY_A_PAUSE if paused else SAYS_NOTHING, node, tag=node.tag)
 
     def check_arguments(self, node: Node, row: CommandType) -> None:
-        """Whether a Command has the arguments that its schema cannot ask for, and not too many.
+        """Check the required and exclusive arguments of a Command that its schema cannot express.
 
-        One with a wrong value is there: its value is told already.
+        An argument with a wrong value counts as given: the value is reported already.
         """
         written = {key.removesuffix("-expr"): key for key in node.attributes}
         choices = alternatives(row)
@@ -237,13 +237,13 @@ class AttributeReader:
             self.problem(ONLY_ONE, node, last, wrong=excluding)
         required = {name for name, item in row.arguments.items() if item.required}
         if self.strange(node) or not required <= written.keys():
-            return  # that is told already
+            return  # reported already
         if missing := missing_argument(row, written):
             hint = Hint(f'Write {min(choices)}="...", for one.' if choices else "")
             self.problem(NEEDS_ARGUMENT, node, hint=hint, wrong=missing)
 
     def check_length(self, node: Node, text: Text | None, timeout: int = 0) -> None:
-        """Note what certainly takes longer than one utterance or question may (E3, E6)."""
+        """Note an utterance or question that certainly takes too long (E3, E6)."""
         letters = sum(len(part) for part in text or () if isinstance(part, str))
         silence = pauses_in(text) + timeout
         if wrong := too_long(letters, silence):

@@ -1,4 +1,4 @@
-"""What any application may do in one instant: beyond it, the application ends."""
+"""Bounds on what an application may do in one instant: beyond them, it ends."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ if TYPE_CHECKING:
     from prima.script.isolated import AnyEngine
 
 Evaluator = TypeVar("Evaluator", bound="AnyEngine | PythonEngine")
-"""What evaluates an application's code."""
+"""The evaluator of an application's code."""
 MAX_STEPS = 20_000
-"""Pieces of content that an application may go through in one instant."""
+"""Pieces of content that an application may execute in one instant."""
 MAX_OUTPUT, MAX_WRITTEN = 1_000_000, 10_000_000
 """Characters that an application may say, log, send and pass on in one instant, and in a run."""
 MAX_RUN_STEPS, STEPS_A_SECOND = 1_500_000, 5_000
-"""Pieces of content that it may go through in a run, and for each second of the run besides."""
+"""Pieces of content that it may execute in a run, plus those for each second of the run."""
 MAX_ACTIONS, ACTIONS_A_SECOND = 20_000, 20
-"""Commands, messages and other actions that an application may ask for in a run, and for each second
-of the run besides."""
+"""Commands, messages and other actions that an application may request in a run, plus those for
+each second of the run."""
 
 BRIEF_MS, MOST_BRIEF = 50, 1_000
-"""How long waits must last on an average (ms), and how many more there may be."""
+"""How long waits must last on average (ms), and how many more there may be."""
 
 
 class ElementVisit(NamedTuple):
@@ -41,65 +41,65 @@ class ElementVisit(NamedTuple):
     """The instant (ms)."""
     what: Literal["document", "enter", "leave", "in", "true", "false", "heard"]
     """``document``: the element is the root of one that is there now; ``enter`` and ``leave``: the
-    state ``name`` is active now; ``in``: it is gone through; ``true`` and ``false``: its condition
+    state ``name`` is active now; ``in``: it is executed; ``true`` and ``false``: its condition
     was; ``heard``: the user said what it listens for."""
     node: Node | None
-    """The element; None where an application is in no state any more."""
+    """The element; None if the application is no longer in any state."""
     name: str = ""
     """The state that is active now; the path of a document."""
 
 
 class Bounds(Generic[Evaluator]):
-    """Counts what an application does; interpreters of both languages are such."""
+    """Counts what an application does; the base of the interpreters of both languages."""
 
     name: str
-    """The application's."""
+    """The application's name."""
 
     def __init__(self, engine: Evaluator) -> None:
         self.engine = engine
         self.actions: list[Action] = []
-        """What the application wants, for the session to carry out."""
+        """The application's requests, for the session to carry out."""
         self.visits: list[ElementVisit] = []
-        """What it came to, until the session drains it."""
+        """The elements that it came to, until the session drains them."""
         self.over = False
         self.deadline: int | None = None
-        """When the application wants to be called, if ever (ms)."""
+        """When the application wants to be called next, if ever (ms)."""
         self.began = moment(START)
         """When the run began by its own calendar (ms since 1970, UTC)."""
         self.now = -1
-        """The instant: so many ms after the run began."""
+        """The instant, in ms since the run began."""
         self.written = 0
         """Characters said, logged and sent since the start."""
         self.steps = 0
-        """Pieces of content gone through in this instant."""
+        """Pieces of content executed in this instant."""
         self.hurried = -1
-        """An instant that continues the previous step count: an event was sent without delay just before."""
+        """An instant that continues the previous step count, after an event sent without delay."""
         self._short = 0
-        """How much longer (ms) the waits so far should have lasted."""
+        """By how much (ms) the waits so far were too short."""
         self._waits = 0
-        """How many waits there have been since they last were long enough."""
+        """The number of waits since they were last long enough."""
         self._waited = 0
         """When the latest wait ended."""
         self._latest: Node | None = None
-        """What was gone through last."""
+        """The element executed last."""
         self._output = 0
         self._spent = 0.0
-        """Seconds of scripts in the instants before, and of tags."""
+        """Seconds spent on scripts in earlier instants, and on tags."""
         self._heard = Budget()
-        """What matching the latest utterance took."""
+        """The budget used to match the latest utterance."""
         self._gone = 0
-        """Pieces of content gone through in the instants before."""
+        """Pieces of content executed in earlier instants."""
         self.asked = 0
-        """Actions that the session has carried out."""
+        """The number of actions that the session has carried out."""
         self.exhausted = ""
-        """Why the application may go on no more."""
+        """Why the application may not continue."""
 
     def note(self, node: Node, what: Literal["in", "true", "false", "heard"] = "in") -> None:
-        """An element is gone through, or its condition has been evaluated."""
+        """Note an executed element, or its evaluated condition."""
         self.visits.append(ElementVisit(self.name, self.now, what, node))
 
     def renew(self, now: int) -> None:
-        """A new instant begins, so many ms after the run began."""
+        """Begin a new instant, so many ms after the run began."""
         self.now = now
         if now != self.hurried:
             self._gone += self.steps
@@ -115,14 +115,14 @@ class Bounds(Generic[Evaluator]):
             self.exhausted = f"its scripts took {self._spent:.1f} s of this run"
 
     def utterance(self) -> Budget:
-        """What matching one more utterance may take; what tags take counts for the run."""
+        """The budget for matching one more utterance; the time of tags counts for the run."""
         self._spent += self._heard.spent
         engine = self.engine
         self._heard = Budget(engine.now, host=getattr(engine, "host", None))
         return self._heard
 
     def count_step(self, node: Node, steps: int = 1) -> None:
-        """Bound what an application does in one instant; a document may loop for ever."""
+        """Bound the steps of one instant: a document may loop for ever."""
         self.steps += steps
         self._latest = node
         if self.steps > MAX_STEPS:
@@ -135,7 +135,7 @@ class Bounds(Generic[Evaluator]):
             self.give_up(node, self.engine.lost)
 
     def count_output(self, characters: int, node: Node) -> None:
-        """Bound what an application says, logs, sends and passes on."""
+        """Bound the text that an application says, logs, sends and passes on."""
         self._output += characters
         self.written += characters
         if self._output > MAX_OUTPUT:
@@ -149,10 +149,10 @@ class Bounds(Generic[Evaluator]):
         self.count_output(len(value if isinstance(value, str) else str(value)), node)
 
     def count_action(self) -> None:
-        """Bound what an application asks for in a run: each action makes records.
+        """Bound the actions of an application in a run: each makes records.
 
         Raises:
-            GoOut: it was too much.
+            GoOut: the bound is exceeded.
         """
         self.asked += 1
         if self.asked > MAX_ACTIONS + self.now * ACTIONS_A_SECOND // 1000 and not self.over:
@@ -161,11 +161,11 @@ class Bounds(Generic[Evaluator]):
             raise GoOut(f"error.semantic: {place}: {reason}", True, place)
 
     def count_wait(self, began: int, node: Node) -> None:
-        """Bound waits that last almost no time (ms, when the wait began), however they are mixed.
+        """Bound waits of almost no duration (ms, when the wait began), however they are mixed.
 
         Commands that fail or are refused at once, and questions or calls that time out at once,
-        make records for ever, of which a run may have so many. Longer waits make up for short ones,
-        and so does time in which nothing is waited for.
+        make records for ever, whose number is limited. Longer waits make up for short ones, and so
+        does time without a wait.
         """
         lasted = self.now - began + max(0, began - self._waited)
         self._short = max(0, self._short + BRIEF_MS - lasted)
@@ -177,7 +177,7 @@ class Bounds(Generic[Evaluator]):
             self.give_up(node, f"{reason}: let what comes again and again wait longer")
 
     def fail(self, error: Exception) -> None:
-        """E2: the interpreter itself or an engine has failed, and ends the application."""
+        """E2: end the application after a failure of the interpreter itself or of an engine."""
         place = source(self._latest) if self._latest is not None else ""
         if isinstance(error, GoOut):
             reason, place = error.reason, error.source
@@ -189,6 +189,6 @@ class Bounds(Generic[Evaluator]):
         self.actions[:] = [Say("error", reason, place), Quit(reason, True, place)]
 
     def give_up(self, node: Node, reason: str) -> NoReturn:
-        """End the application: it has gone past a limit that no handler can mend."""
+        """End the application: it exceeded a limit, which no handler can remedy."""
         place = source(node)
         raise GoOut(f"error.semantic: {place}: {reason}", True, place)

@@ -1,4 +1,4 @@
-"""From elements to a document: its forms, their items, handlers, links and watches."""
+"""Builds a document from elements: its forms, their items, handlers, links and watches."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ if TYPE_CHECKING:
     from prima.messages import Json
 
 HOLD_MS = 15_000
-"""How long a stream is held for an event unless hold-for says otherwise (X3)."""
+"""The default of hold-for: how long a stream is held for an event (X3)."""
 EVENT = re.compile(r"event|_message|\beval\b|valueOf|\\u")
-"""What code has that may look at the event that is being handled."""
+"""Words in code that may read the event being handled."""
 ItemParts = tuple[
     str,
     Expression | None,
@@ -56,11 +56,11 @@ ItemParts = tuple[
     Node,
     int | None,
 ]
-"""What all form items have, in the order of :class:`Item`'s fields."""
+"""The common parts of form items, in the order of :class:`Item`'s fields."""
 
 
 class Builder(ContentBuilder):
-    """Builds a document; what is wrong is collected in ``problems``, and building goes on."""
+    """Builds a document; collects what is wrong in ``problems`` and goes on."""
 
     # The document -------------------------------------------------------------
 
@@ -100,14 +100,14 @@ class Builder(ContentBuilder):
         return document
 
     def any_has(self, words: re.Pattern[str]) -> bool:
-        """Whether any code of the document, or a variable's name in it, has certain words."""
-        codes = {*self.words, *(one.code for one in self.expressions)}  # most are there many times
+        """Whether any code or variable name of the document contains certain words."""
+        codes = {*self.words, *(one.code for one in self.expressions)}  # most occur many times
         return any(map(words.search, codes))
 
     def form(self, node: Node) -> Form:
         """A form."""
         parts = self.parts(node)
-        return Form(  # in order: naming what is given takes as long as making it
+        return Form(  # by position: keywords would take as long as the call
             node.get("id"),
             self.items(parts),
             self.handlers(parts),
@@ -123,7 +123,7 @@ class Builder(ContentBuilder):
         )
 
     def hold(self, node: Node) -> int | None:
-        """How long a stream is held by the hints of an element (X3)."""
+        """How long a stream is held, by the hints of an element (X3)."""
         longest: int = self.value(node, "hold-for", "duration", HOLD_MS)
         return longest if node.get("stream") == "hold" else None
 
@@ -167,7 +167,7 @@ class Builder(ContentBuilder):
         return tuple(found)
 
     def grammars(self, nodes: list[Node]) -> list[Grammar]:
-        """Grammars, without those of files that cannot be used."""
+        """Grammars, except those of files that cannot be used."""
         if not nodes:
             return []
         from prima.interpreter.grammars import grammar_of  # few documents have any
@@ -204,7 +204,7 @@ class Builder(ContentBuilder):
         return tuple(made)
 
     def item(self, node: Node, parts: Parts) -> ItemParts:
-        """What all form items have."""
+        """The common parts of a form item."""
         name = node.get("name")
         self.plain_name(node, "name")
         if not name:
@@ -222,7 +222,7 @@ class Builder(ContentBuilder):
         )
 
     def field(self, node: Node) -> Field:
-        """A field, with all that it takes as an answer."""
+        """A field, with the answers that it takes."""
         parts = self.parts(node)
         prompts, answers = self.prompts(parts), self.answers(node, parts)
         return Field(
@@ -251,7 +251,7 @@ class Builder(ContentBuilder):
         return tuple(made)
 
     def answers(self, node: Node, parts: Parts) -> Answers:
-        """What a field takes as an answer."""
+        """The answers that a field takes."""
         answers = Answers(type=node.get("type"))
         for child in parts.get("option", ()):
             said = child.text
@@ -277,14 +277,14 @@ class Builder(ContentBuilder):
         )
 
     def unit(self, node: Node) -> Unit:
-        """A unit around form items; what they reach is computed once the document is complete."""
+        """A unit around form items; its reach is computed once the document is complete."""
         parts = self.parts(node)
         unit = Unit(*self.item(node, parts), items=self.items(parts))
         unit.longest = self.value(node, "longest", "duration", LONGEST_UNIT_MS)
         return unit
 
     def settle_units(self, document: Document) -> None:
-        """U5: a unit owns the devices of all that may run in it."""
+        """U5: give each unit the devices of all that may run in it."""
         finder = Finder(document)
         told: set[int] = set()
         for form, unit in units_of(document):

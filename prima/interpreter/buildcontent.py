@@ -1,4 +1,4 @@
-"""From elements of executable content to acts."""
+"""Builds acts from elements of executable content."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ from prima.script.evaluation import SCOPES
 from prima.script.globals import HANDLED, RESERVED
 
 Parts = dict[str, list[Node]]
-"""The child elements of an element by purpose: see :data:`PARTS`."""
+"""An element's children by purpose: see :data:`PARTS`."""
 PARTS = {
     **dict.fromkeys(HANDLERS, "handlers"),
     **dict.fromkeys(("var", "script"), "setup"),
     **dict.fromkeys(("block", "field", "subdialog", "iu"), "items"),
 }
-"""What elements are for that others are for as well; the rest go by their tags."""
+"""Purposes shared by several elements; the others go by their tags."""
 COMMANDS = frozenset(ACTING)
 ONLY_NEXT = frozenset(["next"])
 
@@ -102,7 +102,7 @@ class ContentBuilder(AttributeReader):
         return Declare(node.get("name"), self.expression(node), node)
 
     def plain_name(self, node: Node, attribute: str) -> None:
-        """A variable that is declared has a name without a scope's."""
+        """Check that a declared variable's name has no scope prefix."""
         name = node.get(attribute)
         if "." in name:
             self.problem(NAME_WITH_DOT, node, attribute, attribute_name=attribute, name=name)
@@ -132,7 +132,7 @@ class ContentBuilder(AttributeReader):
         sequence: list[Node] = []
         for node in nodes:
             if node.tag in COMMANDS:
-                # A Command wanted now begins a run of its own: what is before it comes first.
+                # A Command wanted now begins a run of its own, after what precedes it.
                 if sequence and self.is_now(node):
                     made.append(self.run(sequence))
                     sequence = []
@@ -158,7 +158,7 @@ class ContentBuilder(AttributeReader):
     def sequence(
         self, nodes: list[Node], after: tuple[int, ...], steps: list[StepTemplate]
     ) -> tuple[int, ...]:
-        """Add steps one after another; gives what whatever follows has to wait for."""
+        """Add steps one after another; gives the steps that the next one waits for."""
         for node in nodes:
             if node.tag == "par":
                 ends: list[int] = []
@@ -172,7 +172,7 @@ class ContentBuilder(AttributeReader):
                 if group.steps:
                     steps.append(StepTemplate(group, after))
                     after = (len(steps) - 1,)
-            elif node.key:  # what is unknown or misplaced is told already
+            elif node.key:  # unknown or misplaced ones are reported already
                 if steps and self.is_now(node):
                     self.problems.append(now_inside(node))
                 steps.append(StepTemplate(self.command(node), after))
@@ -247,7 +247,7 @@ class ContentBuilder(AttributeReader):
         return Return(self.names(node), node.get("event"), node)
 
     def assign(self, node: Node) -> Assign:
-        """An assign; what it names may be a part of a variable."""
+        """An assign, perhaps to a part of a variable."""
         name = node.get("name")
         if name in HANDLED or "." in name:
             self.words.append(name)
@@ -275,7 +275,7 @@ class ContentBuilder(AttributeReader):
 
     def goto(self, node: Node) -> Goto:
         """A goto, to a form or to an item."""
-        if node.attributes.keys() == ONLY_NEXT:  # as nearly all are
+        if node.attributes.keys() == ONLY_NEXT:  # nearly all are
             return Goto(self.target(node, "next") or None, None, node)
         form, item = self.either(node, "next"), self.either(node, "nextitem")
         self.one_of_two(node, "next", "nextitem")

@@ -46,16 +46,16 @@ from prima.messages import Command, Group, Json, Notice, Say, Step
 from prima.script.evaluation import RESULT_LIMIT, ScriptError
 
 MAX_NAME = 200
-"""Characters of an event's name that count."""
+"""Characters of an event's name that are significant."""
 MAX_REPEATS = 10_000
-"""Elements that a foreach goes through."""
+"""Maximum number of elements of a foreach."""
 
 
 class Executor(Evaluator):
     """Runs content for one application."""
 
     def run(self, content: Sequence[Act], fiber: Fiber) -> Content:
-        """Run content in document order; waits where Commands have to end (O4)."""
+        """Run content in document order, waiting for Commands to end (O4)."""
         for act in content:
             self.owner.count_step(act.node)
             simple = SIMPLE.get(type(act))
@@ -90,7 +90,7 @@ class Executor(Evaluator):
         return None
 
     def parts(self, act: Act, fiber: Fiber) -> Iterator[Sequence[Act]]:
-        """The content inside an ``if`` or ``foreach`` that is to be run now."""
+        """The content of an ``if`` or ``foreach`` to run now."""
         if isinstance(act, Foreach):
             yield from self.foreach(act, fiber)
         elif isinstance(act, If):
@@ -100,7 +100,7 @@ class Executor(Evaluator):
                     return
 
     def foreach(self, act: Foreach, fiber: Fiber) -> Iterator[Sequence[Act]]:
-        """Content once for each element of an array."""
+        """Run content once for each element of an array."""
         try:
             elements = self.engine.elements(act.array.code, self.scopes(fiber), MAX_REPEATS)
         except ScriptError as error:
@@ -117,7 +117,7 @@ class Executor(Evaluator):
         raise Thrown(name, message, source(act.node))
 
     def event_name(self, act: Throw, fiber: Fiber) -> str:
-        """The name of the event to throw; that of an expression may be none."""
+        """The name of the event to throw; an expression may give an invalid one."""
         value = self.plain(act.event, fiber)
         name = shown(value)[:MAX_NAME]
         if not isinstance(act.event, Expression):
@@ -152,7 +152,7 @@ class Executor(Evaluator):
             raise failure(error, act.expr.code, where(act.expr, error)) from None
 
     def clear(self, act: Clear, fiber: Fiber) -> None:
-        """Undefine form items and reset their counters (VoiceXML 5.3.3)."""
+        """Undefine variables and reset the counters of form items (VoiceXML 5.3.3)."""
         frame = fiber.frame
         names = act.names or [item.name for item in all_items(frame.form.items)]
         self.owner.count_step(act.node, len(names))
@@ -207,16 +207,16 @@ class Executor(Evaluator):
     def commands(self, act: CommandRun, fiber: Fiber) -> Content:
         """Request Commands as one tree and wait for their end (U3, O4)."""
         steps = self.steps(act.steps, fiber)
-        if steps:  # else it is a par or seq without Commands
+        if steps:  # otherwise a par or seq without Commands
             yield from self.await_run(self.owner.request(steps, fiber), fiber)
 
     def await_run(self, number: int, fiber: Fiber) -> Content:
-        """Wait for a run's fate; a failure becomes an event, a cancellation ends the content."""
+        """Wait for a run to end; a failure becomes an event, a cancellation ends the content."""
         notice = yield number
         self.check(notice, fiber)
 
     def check(self, notice: Notice, fiber: Fiber) -> None:
-        """Go on after a run's end, or not."""
+        """Check whether to continue after a run's end."""
         if notice.what == "failed":
             fiber.commands = (notice.command.hook if notice.command else None) or ()
             place = notice.command.source if notice.command else ""
@@ -277,4 +277,4 @@ SIMPLE: dict[type, Callable[[Executor, Any, Fiber], Transfer | None]] = {
     Log: Executor.log,
     SendOut: Executor.send,
 }
-"""How content that takes no time is run, by its kind."""
+"""How to run content that takes no time, by its kind."""

@@ -1,4 +1,4 @@
-"""What can be wrong with an application while it is built from its elements."""
+"""Diagnoses made while an application is built from its elements."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A document as values, each with the element that it was written in."""
+"""A document as values, each with its element."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Watch:
 
 @dataclass(slots=True, eq=False)
 class Filled:
-    """A filled: its fields; none means those of the form."""
+    """A filled with its fields; without any, those of the form."""
 
     mode: str
     names: tuple[str, ...]
@@ -66,7 +66,7 @@ class Prompt:
 
 @dataclass(slots=True, eq=False)
 class Item:
-    """What every form item has."""
+    """The common parts of form items."""
 
     name: str
     expr: Expression | None
@@ -134,17 +134,17 @@ class Form:
     words: str = ""
     """What is said when its stream resumes after others have spoken (X9)."""
     takers: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
-    """The handlers that take an event in it, for events that have happened: by the event's name, or by
-    the name of the item that was being visited and the event's."""
+    """The handlers that take an event in it, cached for events that have occurred: by the event's
+    name, or by the names of the visited item and the event."""
     bare: bool = False
-    """Whether there is nothing to do when it is entered but to wait for events."""
+    """Whether entering it does nothing but wait for events."""
 
     def __post_init__(self) -> None:
         self.bare = not (self.items or self.setup or self.watches)
 
 
 Holder = Handler | Filled | Block
-"""What holds executable content."""
+"""Elements with executable content."""
 Content = tuple[Form | None, tuple[Act, ...], Node]
 """A piece of executable content, with its form and the element that holds it."""
 
@@ -165,31 +165,31 @@ class Document:
     properties: dict[str, Json]
     node: Node
     expressions: list[Expression] = field(default_factory=list)
-    """All its code, but for scripts."""
+    """All its code except scripts."""
     scripts: list[str] = field(default_factory=list)
     """The code of its scripts."""
     assigns_parts: bool = False
-    """Whether something is assigned to a part of a variable."""
+    """Whether any part of a variable is assigned to."""
     counting: bool = False
-    """Whether any handler looks at how often its event has occurred."""
+    """Whether any handler depends on how often its event has occurred."""
     python: bool | None = None
-    """Whether Python can evaluate all its code; None until it is asked for."""
+    """Whether Python can evaluate all its code; None until computed."""
     curious: bool = False
-    """Whether any code may look at the event that is being handled."""
+    """Whether any code may read the event being handled."""
     sensors: tuple[frozenset[str] | None] | None = None
-    """Which sensors any code may look at; None until it is asked for: see :mod:`prima.interpreter.sensors`."""
+    """The sensors that code may read; None until computed: see :mod:`prima.interpreter.sensors`."""
     _holders: tuple[list[Form | None], list[Holder]] | None = field(
         default=None, repr=False, compare=False
     )
 
     def contents(self) -> Iterator[Content]:
         """Every piece of executable content, with its form and the element that holds it."""
-        if self._holders is None:  # every check asks again; a document does not change
+        if self._holders is None:  # used by every check; a document does not change
             self._holders = self._gather()
         return ((form, one.content, one.node) for form, one in zip(*self._holders, strict=True))
 
     def _gather(self) -> tuple[list[Form | None], list[Holder]]:
-        """What holds content, and beside it the forms that it is in."""
+        """The elements with content, each with its form."""
         holders: list[Holder] = [*self.handlers]
         forms: list[Form | None] = [None] * len(holders)
         for form in self.forms.values():
@@ -209,12 +209,12 @@ Kind = TypeVar("Kind", bound=Act)
 
 
 class Acts:
-    """The executable content of a document by kinds, gathered once, with the forms that it is in."""
+    """The executable content of a document by kinds, gathered once, with its forms."""
 
     def __init__(self, document: Document) -> None:
         self._document = document
         self._found: dict[type, tuple[list[Form | None], list[Any]]] = {}
-        """Acts by kinds, and beside them their forms: a pair for each would be many objects."""
+        """Acts by kinds, with a parallel list of forms: a pair for each would be many objects."""
         found = self._found
         for form, content, _ in document.contents():
             for act in all_acts(content):

@@ -1,4 +1,4 @@
-"""What a form does by itself once it is entered: before a question, or a wait for events."""
+"""What a form does on entry, up to a question or a wait for events."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from prima.interpreter.events import beginnings
 from prima.script.choices import choices
 
 MOST_STEPS = 100_000
-"""Ways that are followed in one application: beyond, only a goto to the form itself is seen."""
+"""Maximum number of paths followed in an application; beyond, only gotos to the same form count."""
 
 
 class FormTarget(NamedTuple):
-    """The full name of a form, or how those begin that an expression may name.
+    """The full name of a form, or the prefix of those that an expression may name.
 
-    A full name that ends with ``#`` is that of the document's first form.
+    A full name that ends with ``#`` names the document's first form.
     """
 
     name: str
@@ -37,16 +37,16 @@ class FormTarget(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class EnteredDocument:
-    """A document, and what its language means by it."""
+    """A document with the semantics of its language."""
 
     document: Document
     foreign: Callable[[str], bool]
-    """Whether an event that a handler names may come from outside, other than as an answer."""
+    """Whether a handler's event may come from outside, other than as an answer."""
     leads: Callable[[Goto | Subdialog], list[FormTarget]]
     """The forms that a goto or the call of a subdialog leads to."""
     queues: bool = False
-    """Whether what blocks say is said with the next question, and a question is not asked again
-    because a handler goes to it (VoiceXML 4.1.8, 5.3.6)."""
+    """Whether blocks are played with the next question, and a goto from a handler does not repeat
+    a question (VoiceXML 4.1.8, 5.3.6)."""
 
     def target(self, form: Form) -> FormTarget:
         """One of its forms, by its full name."""
@@ -59,7 +59,7 @@ def forms_of(sources: Iterable[EnteredDocument]) -> Iterator[tuple[EnteredDocume
 
 
 class ContentFacts:
-    """What is looked at of an application's content, and how much more of it is."""
+    """Looks up facts about an application's content, up to a limit."""
 
     def __init__(self) -> None:
         self.left = MOST_STEPS
@@ -67,7 +67,7 @@ class ContentFacts:
         self._asked: dict[int, Field | None] = {}
 
     def acts(self, content: Sequence[Act], scope: Callable[[], Sequence[Handler]]) -> list[Act]:
-        """What content does, and the handlers of its scope that take what it throws."""
+        """The acts of content, and the handlers in its scope that take what it throws."""
         found: list[Act] = []
         contents, taken = [content], set[int]()
         while contents:
@@ -113,15 +113,15 @@ class ContentFacts:
 
 @dataclass(slots=True)
 class _Entry:
-    """A form as far as entering it gets by itself: up to a question, or a call that asks one."""
+    """A form entered up to its first question, or a call that asks one."""
 
     source: EnteredDocument
     form: Form
     todo: list[Item]
-    """The items that come next, the last one first."""
+    """The items still to visit, in reverse order."""
     seen: set[int] = field(default_factory=set)
     called: set[str] = field(default_factory=set)
-    """The subdialogs that have been called, by their names, and those that have returned."""
+    """The names of the subdialogs that have been called, and of those that have returned."""
     returned: set[str] = field(default_factory=set)
     leads: dict[FormTarget, None] = field(default_factory=dict)
     waiting: dict[str, list[tuple[set[str], Filled]]] | None = None
@@ -138,7 +138,7 @@ class _Entry:
 
 
 class Entering:
-    """Enters every form; one that waits for a subdialog goes on once that is known to return."""
+    """Enters every form; one that waits for a subdialog continues once that is known to return."""
 
     def __init__(self, sources: Sequence[EnteredDocument], contents: ContentFacts) -> None:
         self._contents = contents
@@ -151,17 +151,17 @@ class Entering:
         """The forms with a goto to one."""
         self._callers: dict[FormTarget, list[tuple[_Entry, Subdialog]]] = defaultdict(list)
         self._returns: dict[FormTarget, set[str]] = defaultdict(set)
-        """How a form returns where it is called: without an event, or with which ones."""
+        """How a called form returns: without an event, or with which ones."""
         self._told: list[tuple[FormTarget, str]] = []
-        """Forms that return, and how, which is still to be told."""
+        """Forms that return, and how, still to be processed."""
 
     def exact(self, target: FormTarget) -> FormTarget:
-        """A target by the name of its form, also where that is its document's first one."""
+        """A target with the name of its form, also if that is its document's first."""
         first = self._firsts.get(target.name) if target.known else None
         return first.name if first is not None else target
 
     def onward(self) -> dict[FormTarget, list[FormTarget]]:
-        """Where each form leads to by itself."""
+        """Where each form leads on its own."""
         for entry in self._entries:
             self._advance(entry)
         while self._told:
@@ -169,7 +169,7 @@ class Entering:
         return {one.name: [*one.leads] for one in self._entries}
 
     def _tell(self, name: FormTarget, event: str) -> None:
-        """A form returns: so do those that go to it, and who calls it goes on."""
+        """A form returns: so do those that go to it, and its callers continue."""
         if event in self._returns[name]:
             return
         self._returns[name].add(event)
@@ -179,7 +179,7 @@ class Entering:
             self._advance(entry)
 
     def _come_back(self, entry: _Entry, item: Subdialog, event: str) -> None:
-        """A subdialog returns: with an event, which is thrown where it was called, or without."""
+        """A subdialog returns, with an event to throw in its caller or without."""
         if not event:
             entry.returned.add(item.name)
             return
@@ -188,7 +188,7 @@ class Entering:
         self._take(entry, self._contents.acts(taker.content if taker else (), scope))
 
     def _advance(self, entry: _Entry) -> None:
-        """Visit the items of a form up to one that waits."""
+        """Visit the items of a form until one waits."""
         while entry.todo:
             item = entry.todo[-1]
             if isinstance(item, Subdialog) and item.expr is None:
@@ -211,7 +211,7 @@ class Entering:
                 self._come_back(entry, item, event)
 
     def _visit(self, entry: _Entry, item: Item) -> None:
-        """Go through an item's content: it may leave the form, or go to another item."""
+        """Follow an item's content: it may leave the form, or go to another item."""
         contents = [item.content] if isinstance(item, Block) else [*self._answered(entry, item)]
         scope = entry.scope(item)
         acts = [act for content in contents for act in self._contents.acts(content, scope)]
@@ -223,7 +223,7 @@ class Entering:
         entry.todo += [one for one in reversed(gone) if left or isinstance(one, Block)]
 
     def _answered(self, entry: _Entry, item: Item) -> Iterator[tuple[Act, ...]]:
-        """What is done once a subdialog has returned."""
+        """What is executed once a subdialog has returned."""
         if isinstance(item, Subdialog):
             yield from (one.content for one in item.filled)
         if entry.waiting is None:
@@ -253,7 +253,7 @@ def _named(act: Goto) -> list[str]:
 
 
 def is_open(act: Goto) -> bool:
-    """Whether only a run tells to which item a goto leads."""
+    """Whether only a run determines to which item a goto leads."""
     item = act.item
     return isinstance(item, Expression) and not all(one.whole for one in choices(item.code))
 

@@ -1,4 +1,4 @@
-"""Events by name: those that a document may get, those never raised, those never handled."""
+"""Events by name: possible ones, those never raised, those never handled."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ STANDARD = frozenset(
         *(f"error.device.{device}" for device in DEVICES),
     ]
 )
-"""What the language itself raises, beside events with the name of a sensor, Command or service."""
+"""Events of the language itself, besides those with the name of a sensor, Command or service."""
 HABITS = {
     "timeout": "noinput",
     "silence": "noinput",
@@ -54,19 +54,19 @@ HABITS = {
     "done": "end",
     "finished": "end",
 }
-"""Names that authors expect, and those that the language has."""
+"""Names that authors expect, with the language's names."""
 DEFAULTS = frozenset(["noinput", "nomatch", "help"])
-"""Thrown events that end nothing where no handler takes them."""
+"""Thrown events that end nothing if unhandled."""
 MOST_PARTS = 20
-"""Dots of an event's name that are looked at."""
+"""Maximum number of dots considered in an event's name."""
 MOST_GUESSES = 200
-"""Handlers of one document that are checked for misspelt names: each guess takes time."""
+"""Maximum number of handlers of a document checked for misspelt names: each guess takes time."""
 NEAR = 0.8
-"""How alike names are of which one is taken for a slip of the other."""
+"""The similarity above which one name is taken for a misspelling of the other."""
 FIRST = frozenset(name.partition(".")[0] for name in STANDARD)
-"""How the names of standard events begin."""
+"""Prefixes of standard events."""
 OWN = ("end", "cancel", "interrupted", "expired")
-"""What begins an event of the application's own Commands."""
+"""Prefixes of events of the application's own Commands."""
 
 
 @dataclass(slots=True)
@@ -81,14 +81,14 @@ class RaisedEvent:
 
 
 def beginnings(event: str) -> Iterator[str]:
-    """The handlers' names that take an event: itself, and all that it begins with."""
+    """The names under which handlers take an event: its own, and its prefixes."""
     parts = event.split(".")
     yield from (".".join(parts[:count]) for count in range(1, min(len(parts), MOST_PARTS) + 1))
     yield event
 
 
 def near(word: str, known: Iterable[str]) -> str:
-    """The known name of which a word is most likely a slip, or nothing."""
+    """The known name of which a word is most likely a misspelling, or nothing."""
     words = guessable(word, known)
     if not words:
         return ""
@@ -102,7 +102,7 @@ def near(word: str, known: Iterable[str]) -> str:
 
 
 def slip_of(name: str, known: Iterable[str]) -> str:
-    """The event of whose name another one is most likely a slip, or nothing."""
+    """The event whose name another one most likely misspells, or nothing."""
     if found := near(name, known):
         return found
     first, _, rest = name.partition(".")
@@ -145,7 +145,7 @@ def _is_dynamic(acts: Acts) -> bool:
 
 
 def raised_by(document: Document, acts: Acts) -> Iterator[RaisedEvent]:
-    """The events that a document raises itself, where their names are written out."""
+    """The events that a document raises itself by literal names."""
     for act in acts.among(Throw, SendOut, Return):
         if isinstance(act, Throw | SendOut | Return) and isinstance(act.event, str) and act.event:
             yield RaisedEvent(act.event, act.node, "event", not isinstance(act, SendOut))
@@ -158,7 +158,7 @@ def raised_by(document: Document, acts: Acts) -> Iterator[RaisedEvent]:
 
 
 class KnownEvents:
-    """What a document knows of events, gathered once."""
+    """The events of a document, gathered once."""
 
     def __init__(self, document: Document, acts: Acts | None = None) -> None:
         acts = acts or Acts(document)
@@ -178,7 +178,7 @@ class KnownEvents:
         self._guesses = 0
         self._told: dict[str, tuple[str, str] | None] = {}
         self._near: dict[str, str] = {}
-        """What has been found out for a name: guesses take time, and names come again."""
+        """Results by name: guesses take time, and names recur."""
 
     def problems(self) -> list[Problem]:
         """Handlers of events that are never raised, and events that no handler takes."""
@@ -197,7 +197,7 @@ class KnownEvents:
         return found
 
     def _unraised(self, name: str) -> tuple[str, str] | None:
-        """What is wrong with the name of a handler, and the name that was probably meant."""
+        """The problem of a handler's event name, and the name probably meant."""
         self._guesses += name not in self._known
         if "," in name or name in self._known or self._guesses > MOST_GUESSES:
             return None
@@ -221,7 +221,7 @@ class KnownEvents:
 
     @staticmethod
     def _missing(name: str, end: str, known: Iterable[str], wrong: str) -> tuple[str, str] | None:
-        """What is wrong with a name that ends with that of a Command or service, unless it is known."""
+        """The problem of a name that ends with an unknown Command or service."""
         if any(takes(end, one) for one in known):
             return None
         nearest = near(end, known)

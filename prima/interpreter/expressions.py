@@ -56,7 +56,7 @@ class Evaluator:
         return holds
 
     def speech(self, parts: Text, fiber: Fiber, after: str = "") -> tuple[str, tuple[Cue, ...]]:
-        """What is said behind other text, with its values filled in, and its pauses as cues."""
+        """Speech following other text, with values filled in, and pauses as cues."""
         said = after
         cues: list[Cue] = []
         piece: list[str | Expression] = []
@@ -75,7 +75,7 @@ class Evaluator:
     def text(
         self, parts: Iterable[str | Expression | Pause], fiber: Fiber, most: int = MAX_TEXT
     ) -> str:
-        """Text with its values filled in, of ``most`` characters; without its pauses."""
+        """Text with values filled in, limited to ``most`` characters; without pauses."""
         said, length = [], 0
         for part in parts:
             text = self.said(part, fiber) if isinstance(part, Expression) else part
@@ -83,7 +83,7 @@ class Evaluator:
             said.append(text)
             length += len(text)
             if length > RESULT_LIMIT:
-                break  # far more than is ever said
+                break  # far more than is ever spoken
         return " ".join("".join(said).split())[:most]
 
     def said(self, expr: Expression, fiber: Fiber) -> str:

@@ -27,7 +27,7 @@ from prima.script.evaluation import ScriptError
 
 
 def confidence_level(document: Document, form: Form, field: Field | None = None) -> float:
-    """How sure a recogniser has to be of what the user said (0 to 1; VoiceXML 6.3.2)."""
+    """The minimum confidence of a recognition result (0 to 1; VoiceXML 6.3.2)."""
     nearer = field.properties if field is not None else {}
     settings = {**document.properties, **form.properties, **nearer}
     return float(settings.get("confidencelevel", USUAL_CONFIDENCE))
@@ -40,7 +40,7 @@ def holds(item: Item, name: str) -> bool:
 
 
 def _shadow(notice: Notice) -> dict[str, Json]:
-    """What is known of an utterance besides what it means."""
+    """The properties of an utterance besides its meaning."""
     utterance = notice.data.get("utterance")
     sure = notice.data.get("confidence", None if utterance is None else 1.0)
     return {"utterance": utterance, "confidence": sure}
@@ -53,7 +53,7 @@ class Algorithm:
         self.owner = owner
 
     def interpret(self, frame: Frame, fiber: Fiber, setup: bool) -> Content:
-        """Select, visit, process, until no item is left; then the form waits for events."""
+        """Select, visit and process until no item is left; then the form waits for events."""
         if frame.fresh:
             yield from self._at_once(frame, fiber, lambda: self.owner.set_up_document(frame))
         if setup and not (frame.form.bare and frame.called_by is None):
@@ -64,7 +64,7 @@ class Algorithm:
         yield from self._visit_all(frame, fiber, frame.form.items, None)
 
     def _at_once(self, frame: Frame, fiber: Fiber, act: Callable[[], None]) -> Content:
-        """Do what takes no time; an event thrown in it is handled in the same fiber."""
+        """Run content that takes no time; an event thrown in it is handled in the same fiber."""
         try:
             act()
             return
@@ -88,7 +88,7 @@ class Algorithm:
             frame.item = unit
 
     def _selected(self, frame: Frame, fiber: Fiber, items: Sequence[Item]) -> Item | Thrown | None:
-        """The next item, or a condition's error: then nothing more can be selected."""
+        """The next item; after a condition's error nothing more can be selected."""
         try:
             return self.select_item(frame, fiber, items)
         except Thrown as error:
@@ -148,7 +148,7 @@ class Algorithm:
         yield from self._process(frame, fiber, field, field.filled)
 
     def _question(self, frame: Frame, fiber: Fiber, field: Field) -> Command:
-        """A Q&A of the prompts that are said now."""
+        """A Q&A of the prompts to say now."""
         args = {**self.owner.document.properties, **frame.form.properties, **field.properties}
         text = ""
         cues: tuple[Cue, ...] = ()
@@ -157,7 +157,7 @@ class Algorithm:
             cues += more
             own = {"timeout": prompt.timeout, "bargein": prompt.bargein}
             args |= {name: value for name, value in own.items() if value is not None}
-        args.pop("confidencelevel", None)  # it is for who understands, not for who listens
+        args.pop("confidencelevel", None)  # it concerns understanding, not listening
         if "timeout" in args:
             args["timeout"] = f"{args['timeout']}ms"
         self.owner.count_output(len(text), field.node)
@@ -165,7 +165,7 @@ class Algorithm:
         return Command("q-and-a", args, text or None, lang=field.lang, source=place, cues=cues)
 
     def _prompts(self, frame: Frame, fiber: Fiber, field: Field) -> list[Prompt]:
-        """What a field says before it listens, unless it has to be quiet after an event (4.1.6)."""
+        """The prompts of a field, unless it must stay silent after an event (4.1.6)."""
         speaks, frame.reprompt = frame.reprompt, True
         if not speaks:
             return []
@@ -184,7 +184,7 @@ class Algorithm:
 
         for filled in own:
             if not is_defined(item.name):
-                break  # one before has cleared it, and it is filled no more
+                break  # an earlier one has cleared it
             fiber.local = None
             self.owner.note(filled.node)
             yield from self.owner.execute.run(filled.content, fiber)
@@ -212,7 +212,7 @@ class Algorithm:
         if pending is not None and isinstance(pending[1], GoBack) and pending[0] is inner:
             result = self._returned(inner, pending[1])
         elif pending is not None:
-            # The called form goes on elsewhere at once; this content is in the middle of
+            # The called form continues elsewhere at once; this content is in the middle of
             # being driven, so the rest happens when the driver is free again.
             result = self._chase(frame, *pending)
         if result is None:
@@ -223,7 +223,7 @@ class Algorithm:
         yield from self._process(frame, fiber, item, item.filled)
 
     def _returned(self, frame: Frame, back: GoBack) -> Notice:
-        """What a subdialog gives that returned without ever waiting."""
+        """The result of a subdialog that returned without waiting."""
         self.owner.leave(frame)
         self.owner.frame = frame.caller
         return Notice("done", 0, data={"result": back.values}, event=back.event)
@@ -246,7 +246,7 @@ class Algorithm:
         return None
 
     def _span(self, frame: Frame, fiber: Fiber, unit: Unit) -> Content:
-        """A unit around form items: opened here, concluded by whatever way it is left (U5)."""
+        """Run a unit around form items: opened here, concluded however it is left (U5)."""
         number = next(self.owner.units)
         self.owner.actions.append(
             OpenUnit(
@@ -275,7 +275,7 @@ class Algorithm:
                 self.owner.actions.append(CloseUnit(number))
 
     def _visit_unit(self, frame: Frame, fiber: Fiber, unit: Unit) -> Content:
-        """The items of a unit; a goto from one of them to another does not leave it."""
+        """Visit the items of a unit; a goto between them does not leave it."""
         while True:
             try:
                 yield from self._visit_all(frame, fiber, unit.items, unit)
@@ -286,7 +286,7 @@ class Algorithm:
                 frame.next_item, frame.reprompt = go.item, True
 
     def after_timeout(self, frame: Frame, fiber: Fiber, unit: Unit, thrown: Thrown) -> Content:
-        """U5: error.unit.timeout is thrown in the unit; then the form goes on behind it."""
+        """U5: throw error.unit.timeout in the unit; then the form continues after it."""
         yield from self.owner.handling.handle_thrown(frame, fiber, unit, thrown, 0)
         frame.item = None
         yield from self._visit_all(frame, fiber, frame.form.items, None)

@@ -1,4 +1,4 @@
-"""What is remembered of a state while it is active: scopes, counters, pieces of content."""
+"""The data of a state while it is active: scopes, counters, pieces of content."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from prima.messages import Notice
 from prima.script.evaluation import Scope
 
 Content = Generator[int, Notice, None]
-"""A piece of content as a coroutine: it yields the run it waits for and is sent its fate."""
+"""A piece of content as a coroutine: it yields the run it waits for and is sent the outcome."""
 
 
 class Frame:
     """A form that is active, or whose subdialog is (VoiceXML 2.3.4).
 
-    Frames come and go with every event: what few of them need has its value in the class.
+    Frames come and go with every event: rarely used fields have their defaults in the class.
     """
 
     caller: Frame | None = None
@@ -28,20 +28,20 @@ class Frame:
     next_item = ""
     reprompt = True
     stalled = False
-    """What the form was doing has been cancelled (O2): it waits for an event to move it."""
+    """The form's content has been cancelled (O2): it waits for an event to move it."""
     connected = False
     """Whether the state has asked for the channel (X4)."""
     fresh = False
-    """Whether the document's variables and scripts have still to be set up (VoiceXML 5.1.2)."""
+    """Whether the document's variables and scripts are still to be set up (VoiceXML 5.1.2)."""
     entering = False
-    """Whether events that were raised when the state was entered are still to be handled (C6)."""
+    """Whether events raised on entry are still to be handled (C6)."""
     caused: tuple[int | str | None, tuple[int | str, int] | None] = (None, None)
-    """To what event its content reacts once they are, and for how long that is worth it (C5, X8)."""
+    """The event its content then reacts to, and how long that is worth starting (C5, X8)."""
     asked = False
-    """Whether the mediator has heard of the state: of a Command, or a unit."""
+    """Whether the mediator knows of the state, by a Command or a unit."""
 
     counters = Counters()
-    """Of events while an item ("" for the form) was visited, and of prompts."""
+    """Counters of events, by the item visited ("" for the form), and of prompts."""
     units: tuple[tuple[int, Unit], ...] = ()
     """The units that the state is in, outermost first, each with its number."""
     fibers: tuple[Fiber, ...] = ()
@@ -54,13 +54,13 @@ class Frame:
 
 
 class Fiber:
-    """A piece of content that is under way: the form's own, or a handler's."""
+    """A piece of content in progress: the form's own, or a handler's."""
 
     content: Content | None = None
     unit: int | None = None
     waiting: int | None = None
     began = 0
-    """When it began to wait (ms)."""
+    """When it started to wait (ms)."""
 
     def __init__(
         self,
@@ -72,9 +72,9 @@ class Fiber:
         self.frame = frame
         self.main = main
         self.local = local
-        """The innermost scope, made when something first looks into it."""
+        """The innermost scope, created on first use."""
         self.commands = commands
-        """Handlers written inside the Command whose event is being handled."""
+        """Handlers inside the Command whose event is being handled."""
 
 
 class GoForm(Transfer):

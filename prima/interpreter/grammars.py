@@ -1,4 +1,4 @@
-"""Grammars that a document holds, or names by their files."""
+"""Grammars that are inline in a document, or in files that it names."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ FILE_AND_ROOT = EXCLUSIVE.says(
     "root is a rule of this document, and src names a file.", 'Write src="{file}#RULE".'
 )
 Fetch = Callable[[str], bytes]
-"""Gives the bytes of a file that a document names, by its path from the document's folder."""
+"""Returns the bytes of a file that a document names, by its path from the document's folder."""
 
 
 def grammar_of(
     node: Node, lang: str, fetch: Fetch | None, note: Note, found: list[Problem]
 ) -> Grammar | None:
-    """The grammar of an element; None where its file cannot be used, which is in ``found``."""
+    """The grammar of an element; None if its file cannot be used, as ``found`` reports."""
     if "src" not in node.attributes:
         return read_grammar(note, node)
     if _contradicts(note, node):
@@ -53,7 +53,7 @@ def grammar_of(
 
 
 def _contradicts(note: Note, node: Node) -> bool:
-    """Whether an element that names a file says more than the file's name."""
+    """Whether an element's src is not a file's name, or contradicts its content or root."""
     src = node.get("src").strip()
     if not src or src.startswith("#"):
         note(NO_FILE, node, "src")
@@ -73,7 +73,7 @@ def _base(node: Node) -> str:
 
 
 def _placed(node: Node, problem: Problem) -> Problem:
-    """A problem at its place as seen from where the document is."""
+    """A problem with its place relative to the document."""
     if problem.place.file == node.source.file:
         return problem
     file = join(dirname(node.source.file), problem.place.file)

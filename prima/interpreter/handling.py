@@ -1,4 +1,4 @@
-"""Events: which handler takes one, and how it runs beside what its state is doing."""
+"""Events: which handler takes one, and how it runs alongside its state's content."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from prima.messages import Event, Json, Notice
 from prima.script.evaluation import Scope, ScriptError
 
 MAX_FIBERS = 64
-"""Handlers that may be under way at once in a state."""
+"""Maximum number of handlers running at once in a state."""
 MOST_KEPT = 1_000
-"""Names of events for which a form keeps its handlers."""
+"""Maximum number of event names for which a form caches its handlers."""
 REPROMPTED = frozenset({"noinput", "nomatch", "help"})
-"""Events after which a field asks again unless they are handled (VoiceXML 5.2.5)."""
+"""Events after which a field asks again if unhandled (VoiceXML 5.2.5)."""
 
 
 Taking = list[Candidate[Handler]]
 Key = str | tuple[str, str]
-"""An event, by its name and that of the item, if any, that is being visited."""
+"""An event by its name and that of the item being visited, if any."""
 
 
 def key_of(item: Item | None, event: str) -> Key:
@@ -33,7 +33,7 @@ def key_of(item: Item | None, event: str) -> Key:
 
 
 def name_of(item: Item | None) -> str:
-    """Where events are counted: at the item that is visited, or at the form itself."""
+    """Where events are counted: at the visited item, or at the form itself."""
     return item.name if item is not None else ""
 
 
@@ -49,7 +49,7 @@ class Handling:
         self.owner = owner
         self._armed: dict[int, WatchState] = {}
         self._hidden: bool | None = None
-        """Whether the document declares what conditions take for granted; None until it is asked for."""
+        """Whether the document redeclares names that conditions use; None until computed."""
 
     def handle_thrown(
         self, frame: Frame, fiber: Fiber, item: Item | None, thrown: Thrown, depth: int
@@ -69,7 +69,7 @@ class Handling:
         fiber.local = None  # what the failed content has declared may have filled the memory
         fiber.local = self.event_scope(event)
         fiber.commands = ()
-        if handler.reactive is not None:  # else a throw keeps what it has (C5)
+        if handler.reactive is not None:  # otherwise a throw keeps its own (C5)
             self.allow_reaction(handler, event)
         self.owner.note(handler.node)
         try:
@@ -83,7 +83,7 @@ class Handling:
         yield from self.handle_thrown(frame, fiber, item, again, depth + 1)
 
     def dispatch(self, event: Event, frame: Frame, place: str = "") -> None:
-        """An event from outside: the handler runs beside what the state is doing (O4)."""
+        """Handle an event from outside alongside the state's content (O4)."""
         item = frame.item
         self.count_event(frame, item, event.name)
         candidates = self.takers(frame, item, event.name)
@@ -114,19 +114,19 @@ class Handling:
 
     @staticmethod
     def _enter_unit(fiber: Fiber, handler: Handler) -> None:
-        """U5: what a handler inside of a unit asks for belongs to the unit."""
+        """U5: requests of a handler inside a unit belong to the unit."""
         for number, unit in fiber.frame.units:
             if handler in unit.handlers or any(handler in one.handlers for one in unit.items):
                 fiber.unit = number
 
     def _go_along(self, fiber: Fiber, content: Content) -> None:
-        """Let content run beside what the state is doing."""
+        """Let content run alongside the state's own."""
         fiber.content = content
         fiber.frame.fibers += (fiber,)
         self.owner.drive(fiber, None)
 
     def _run_at_once(self, fiber: Fiber, handler: Handler) -> None:
-        """Run a handler that waits for nothing: no coroutine is needed."""
+        """Run a handler that never waits: it needs no coroutine."""
         frame, owner = fiber.frame, self.owner
         owner.note(handler.node)
         try:
@@ -140,7 +140,7 @@ class Handling:
             owner.go_on(frame)
 
     def recover(self, frame: Frame, handler: Handler, error: Thrown | ScriptError) -> None:
-        """Run the handler of what has failed in a handler that waits for nothing."""
+        """Handle a failure in a handler that never waits."""
         fiber = Fiber(frame)
         self._enter_unit(fiber, handler)
         self._bound_fibers(frame, handler)
@@ -158,7 +158,7 @@ class Handling:
         yield from self.handle_thrown(frame, fiber, frame.item, thrown, 0)
 
     def command_event(self, notice: Notice, kind: str) -> None:
-        """The end or cancellation of a Command, for handlers in it or in scope."""
+        """Handle the end or cancellation of a Command, by handlers in it or in scope."""
         frame, command = self.owner.frame, notice.command
         if frame is None or command is None:
             return
@@ -177,7 +177,7 @@ class Handling:
         self.owner.cause = None
 
     def unit_timeout(self, notice: Notice) -> None:
-        """The unit took too long: error.unit.timeout is thrown in it, and it ends (U5)."""
+        """End a unit that took too long: error.unit.timeout is thrown in it (U5)."""
         frame, unit = self.owner.frame, None
         while frame is not None:
             unit = next((unit for number, unit in frame.units if number == notice.run), None)
@@ -195,7 +195,7 @@ class Handling:
         self._go_along(fiber, self.owner.algorithm.after_timeout(frame, fiber, unit, thrown))
 
     def allow_reaction(self, handler: Handler, event: Event) -> None:
-        """C5: what is requested first because of the event is a reaction, or not."""
+        """C5: make the first request caused by an event a reaction, or not."""
         owner = self.owner
         if not (event.reactive if handler.reactive is None else handler.reactive):
             owner.cause = None
@@ -204,7 +204,7 @@ class Handling:
             owner.fresh = (owner.cause, handler.fresh) if handler.fresh else None
 
     def event_scope(self, event: Event) -> Scope:
-        """The scope of an event's handler, if any code of the document may look at the event."""
+        """The scope of an event's handler, if any code of the document may read the event."""
         if not self.owner.document.curious:
             return None
         data = event.data
@@ -218,7 +218,7 @@ class Handling:
         frame.counters = frame.counters.came(name_of(item), prefixes(name))
 
     def _in_scope(self, frame: Frame, item: Item | None, event: str) -> Taking:
-        """Handlers of the item, its unit, the form and the document that take an event, so ordered."""
+        """Handlers that take an event, from the item, its unit, the form and the document."""
         found = list(item.handlers) if item is not None else []
         for _, unit in reversed(frame.units):
             if unit is not item:
@@ -226,7 +226,7 @@ class Handling:
         return offers([*found, *frame.form.handlers, *self.owner.document.handlers], event)
 
     def takers(self, frame: Frame, item: Item | None, event: str) -> Taking:
-        """The handlers in scope whose names take an event; a form keeps what has been found."""
+        """The handlers in scope whose names take an event, cached in the form."""
         if frame.units:
             return self._in_scope(frame, item, event)
         kept = frame.form.takers
@@ -239,7 +239,7 @@ class Handling:
         return found
 
     def _candidates(self, frame: Frame, fiber: Fiber, item: Item | None, event: str) -> Taking:
-        """Handlers inside the Command whose event is handled, and those in scope."""
+        """Handlers inside the Command whose event is being handled, and those in scope."""
         inside = offers(fiber.commands, event) if fiber.commands else []
         return inside + self.takers(frame, item, event)
 
@@ -269,7 +269,7 @@ class Handling:
         return [*(frame.form.watches if frame else []), *self.owner.document.watches]
 
     def tell_sensors(self) -> None:
-        """Give the application's variable ``sensor`` the values that are known."""
+        """Set the application's variable ``sensor`` to the known values."""
         self.owner.untold = False
         tree: dict[str, Json] = {}
         for name, value in self.owner.sensors.items():
@@ -284,14 +284,14 @@ class Handling:
         self.owner.engine.set(self.owner.application, "sensor", tree)
 
     def forget_watches(self, watches: Iterable[Watch]) -> None:
-        """C6: what is watched for counts from here on, true already or not."""
+        """C6: arm the watches anew, whether their conditions hold already or not."""
         for watch in watches:
             self._armed.pop(id(watch), None)
 
     def check_watches(self, watches: Iterable[Watch]) -> list[str]:
-        """C6: raised when the condition turns true, armed again when it turns false.
+        """C6: raise a watch's event when its condition turns true; rearm it when it turns false.
 
-        A condition that looks at sensors alone is as it was while none of them has new values.
+        A condition on sensors alone is unchanged while none of them has new values.
         """
         raised = []
         frame = self.owner.frame
@@ -304,7 +304,7 @@ class Handling:
                 self.owner.reported.get(name, 0) <= told.report for name in looked_at
             ):
                 continue
-            told.report = self.owner.reports  # also where it fails
+            told.report = self.owner.reports  # even if it fails
             true = self.owner.execute.condition(watch.when, fiber)
             if true and not told.true:
                 raised.append(watch.name)
@@ -312,15 +312,15 @@ class Handling:
         return raised
 
     def _sensors_of(self, watch: Watch) -> frozenset[str] | None:
-        """The sensors that a watch looks at alone; None where the document has such a name itself."""
+        """The only sensors that a watch reads; None if the document declares such a name itself."""
         if self._hidden is None:
             self._hidden = hides_sensors(self.owner.document)
         return None if self._hidden else sensors_of(watch.when.code)
 
 
 class WatchState:
-    """What a watch's condition was when it was last looked at."""
+    """The last value of a watch's condition."""
 
     true = False
     report = -1
-    """After how many reports of sensors that was."""
+    """The number of sensor reports by then."""

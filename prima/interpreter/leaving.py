@@ -1,4 +1,4 @@
-"""Handlers that leave what their form says, and what it says when it comes back."""
+"""Handlers that leave a form in mid-speech, and what it says on coming back."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ from prima.markup.tree import Node
 
 @dataclass(frozen=True, slots=True)
 class Leaving:
-    """A handler of an event from outside that leaves, or goes to an item of its form."""
+    """A handler of an outside event that leaves the form, or goes to an item of it."""
 
     event: str
     count: int
     gotos: list[Goto]
     cleared: dict[str, None] | None
-    """The names of items that are visited again then; None for all."""
+    """The names of the items then visited again; None for all."""
     item: Item | None
-    """The item that has the handler, if an item has it."""
+    """The item with the handler, if it belongs to one."""
 
     def hidden(self, form: Form) -> bool:
-        """Whether a form has a handler of its own that takes the event in its stead."""
+        """Whether a form has a handler of its own that takes the event instead."""
         names = set(beginnings(self.event)) if form.handlers and self.count <= 1 else set[str]()
         return any(
             one.cond is None and one.count <= 1 and not names.isdisjoint(one.events)
@@ -42,10 +42,10 @@ class Leaving:
         )
 
     def repeated(self, item: Item) -> tuple[Node, bool] | None:
-        """What an item says first, and again when it is visited once more."""
+        """What an item says first, and repeats on another visit."""
         cleared = self.cleared is None or item.name in self.cleared
         counts = {one.count for one in item.prompts} if isinstance(item, Field) else set[int]()
-        return said_by(item) if cleared or 2 not in counts else None  # it has other words then
+        return said_by(item) if cleared or 2 not in counts else None  # its words differ then
 
 
 def cleared_by(acts: Iterable[Act]) -> dict[str, None] | None:
@@ -62,13 +62,13 @@ def goes_by(item: Item) -> bool:
 
 
 def brings_news(handler: Handler) -> bool:
-    """Whether a handler keeps data of the event, so that something else is said afterwards."""
+    """Whether a handler keeps data of the event, which may change what is said afterwards."""
     assigned = [act for act in all_acts(handler.content) if isinstance(act, Assign)]
     return any("event." in act.expr.code for act in assigned)
 
 
 def said_first(form: Form) -> tuple[Node, bool] | None:
-    """The first thing that a form says whenever it is entered, and whether it asks that."""
+    """What a form says first whenever it is entered, and whether that is a question."""
     for item in form.items:
         if item.cond is not None or item.expr is not None:
             continue
@@ -79,7 +79,7 @@ def said_first(form: Form) -> tuple[Node, bool] | None:
 
 
 def said_by(item: Item) -> tuple[Node, bool] | None:
-    """The first thing that an item says, and whether it asks that."""
+    """What an item says first, and whether that is a question."""
     if isinstance(item, Unit):
         return next(filter(None, map(said_by, item.items)), None)
     said = next(_asked(item) if isinstance(item, Field) else _told(item), None)

@@ -1,4 +1,4 @@
-"""The events that an expression may name, according to its document."""
+"""The events that an expression may name, by its document."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ WRITERS = ("var", "assign")
 
 
 def events_named(document: Document, code: str) -> frozenset[str] | None:
-    """The events that an expression may name; None where only a run tells.
+    """The events that an expression may name; None if only a run determines them.
 
-    It tells them itself, as ``old ? 'a' : 'b'``, or it is a variable that is given nothing else.
+    The names are literals in it, as ``old ? 'a' : 'b'``, or in every assignment to its variable.
     """
     name = code.strip()
     given = _given(document, name) if IDENTIFIER.fullmatch(name) else [name]
@@ -25,7 +25,7 @@ def events_named(document: Document, code: str) -> frozenset[str] | None:
 
 
 def _given(document: Document, name: str) -> list[str]:
-    """The expressions that a variable is given; none where it may be given something else."""
+    """The expressions assigned to a variable; none if it may get another value."""
     if document.node.tag != "prima" or _changes(document, name):
         return []
     nodes = [one for one in document.node.walk() if _named(one) == name]
@@ -35,12 +35,12 @@ def _given(document: Document, name: str) -> list[str]:
 
 
 def _named(node: Node) -> str:
-    """The variable that an element is about, without its scope."""
+    """The variable that an element names, without its scope."""
     return node.get("name" if node.tag != "foreach" else "item").rpartition(".")[2]
 
 
 def _changes(document: Document, name: str) -> bool:
-    """Whether scripts or expressions may give a variable a value."""
+    """Whether scripts or expressions may assign to a variable."""
     return any(
         one.opaque or name in one.declared | one.written | one.changed for one in names_in(document)
     )

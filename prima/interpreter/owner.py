@@ -1,4 +1,4 @@
-"""What the parts of an interpreter need of the whole, and of each other.
+"""What the parts of an interpreter require of the whole and of each other.
 
 An interpreter of PRIMA's language is made of three parts: one runs content
 (:mod:`~prima.interpreter.content`), one visits the items of forms
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
     from prima.script.isolated import AnyEngine
 
 FORM_STEPS = 3
-"""The work of beginning a form's own content, or a form item, in pieces of content."""
+"""Beginning a form's own content, or a form item, counts as so many pieces of content."""
 
 
 class ContentRunner(Protocol):
     """Runs content."""
 
     def run(self, content: Sequence[Act], fiber: Fiber) -> Content:
-        """Run content in document order; waits where Commands have to end (O4)."""
+        """Run content in document order, waiting for Commands to end (O4)."""
 
     def run_at_once(self, content: Sequence[Act], fiber: Fiber) -> Transfer | None:
         """Run content without Commands; gives the transfer of control that ends it."""
@@ -41,17 +41,17 @@ class ContentRunner(Protocol):
         """An expression as a condition."""
 
     def speech(self, parts: Text, fiber: Fiber, after: str = "") -> tuple[str, tuple[Cue, ...]]:
-        """What is said behind other text, and its pauses as cues."""
+        """Speech following other text, with pauses as cues."""
 
     def check(self, notice: Notice, fiber: Fiber) -> None:
-        """Go on after a run's end, or not."""
+        """Check whether to continue after a run's end."""
 
 
 class Forms(Protocol):
     """Visits the items of forms."""
 
     def after_timeout(self, frame: Frame, fiber: Fiber, unit: Unit, thrown: Thrown) -> Content:
-        """U5: throw an event in a unit that has ended, then go on behind it."""
+        """U5: throw an event in a unit that has ended, then continue after it."""
 
 
 class Handlers(Protocol):
@@ -72,7 +72,7 @@ class Owner(Protocol):
     frame: Frame | None
     """The form that is visited, if any."""
     cause: int | str | None
-    """The event that is reacted to next (C5)."""
+    """The event to which the next request reacts (C5)."""
     fresh: tuple[int | str, int] | None
     """A cause, and for how long (ms) a reaction to it is worth starting (X8)."""
     untold: bool
@@ -110,7 +110,7 @@ class Owner(Protocol):
 
     @property
     def actions(self) -> list[Action]:
-        """What its application wants."""
+        """Its application's requests."""
 
     @property
     def units(self) -> Iterator[int]:
@@ -122,7 +122,7 @@ class Owner(Protocol):
 
     @property
     def reports(self) -> int:
-        """How often sensors have had new values."""
+        """How often sensors reported new values."""
 
     @property
     def reported(self) -> Mapping[str, int]:
@@ -134,24 +134,24 @@ class Owner(Protocol):
         """An element is gone through, or its condition has been evaluated."""
 
     def count_step(self, node: Node, steps: int = 1) -> None:
-        """Bound what is done in one instant."""
+        """Bound the steps of one instant."""
 
     def count_output(self, characters: int, node: Node) -> None:
-        """Bound what is said, logged, sent and passed on."""
+        """Bound the text said, logged, sent and passed on."""
 
     def count_value(self, value: Json, node: Node) -> None:
         """Count a value that leaves its variables."""
 
     def give_up(self, node: Node, reason: str) -> NoReturn:
-        """End the application: it has gone past a limit."""
+        """End the application: it exceeded a limit."""
 
-    # What it asks for:
+    # Its requests:
 
     def request(self, steps: list[Step], fiber: Fiber) -> int:
-        """Ask for Commands; gives the number of the run."""
+        """Request Commands; gives the number of the run."""
 
     def take_cause(self) -> int | None:
-        """The serial of the event that a request reacts to, which no further one does (C5)."""
+        """Take the serial of the event that a request reacts to; no later request does (C5)."""
 
     def connects(self, frame: Frame) -> bool:
         """Whether the robot has to face the user before the state's next word (X4)."""
@@ -168,7 +168,7 @@ class Owner(Protocol):
         """A frame for a form."""
 
     def begin(self, frame: Frame, setup: bool = True) -> tuple[Frame, Transfer] | None:
-        """Start a form's own content; gives a transfer of control that it ends in at once."""
+        """Start a form's own content; gives the transfer of control if it ends at once."""
 
     def set_up_document(self, frame: Frame) -> None:
         """Declare the document's variables and run its scripts."""
@@ -177,7 +177,7 @@ class Owner(Protocol):
         """Declare the form's variables and items."""
 
     def arm_watches(self, frame: Frame) -> None:
-        """C6: what a form watches for counts from its entry."""
+        """C6: arm a form's watches at its entry."""
 
     def go_item(self, frame: Frame, transfer: GoItem) -> tuple[Frame, Transfer] | None:
         """Go on with another item of the same form."""
@@ -186,7 +186,7 @@ class Owner(Protocol):
         """Leave a state for another."""
 
     def leave(self, frame: Frame) -> None:
-        """O3: give up what a state does."""
+        """O3: give up the content of a state."""
 
     def close_units(self, frame: Frame) -> None:
         """U5: conclude every unit that a state is in."""
@@ -195,7 +195,7 @@ class Owner(Protocol):
         """Run a piece of content until it waits or ends, then carry out its transfer."""
 
     def go_on(self, frame: Frame) -> None:
-        """A handler has ended: visit items again."""
+        """Visit items again after a handler's end."""
 
     def forget(self, fiber: Fiber) -> None:
         """Give up a piece of content."""

@@ -14,10 +14,10 @@ def source(node: Node) -> str:
 
 
 def short(place: Place) -> str:
-    """A place with the name of its document alone: ``FILE:LINE:COLUMN``."""
+    """A place with its document's name without folders: ``FILE:LINE:COLUMN``."""
     return f"{place.file.replace(chr(92), '/').rpartition('/')[2]}:{place.line}:{place.column}"
 
 
 def where(expr: Expression, error: ScriptError) -> str:
-    """The document, line and column of what failed in an expression or script."""
+    """The document, line and column of a failure in an expression or script."""
     return short(expr.node.code_place(expr.attribute, error.line, error.column))

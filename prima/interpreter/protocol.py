@@ -1,7 +1,7 @@
 """How a session drives an application, whatever its language.
 
-An application is told what happens (``start``, ``event``, ``notice``, ``sensed``, ...) and
-appends what it wants to ``actions``. What a language does not have, it leaves as it is here.
+An application is notified of what happens (``start``, ``event``, ``notice``, ``sensed``, ...) and
+appends its requests to ``actions``. A language inherits the defaults here for what it lacks.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from prima.messages import (
 )
 
 Answer: TypeAlias = Fetched | Transferred
-"""What is waited for outside: a resource, or what becomes of a call."""
+"""What an application awaits from outside: a resource, or the outcome of a call."""
 
 
 class App(Bounds[Evaluator], ABC):
@@ -43,14 +43,14 @@ class App(Bounds[Evaluator], ABC):
         self.name = name
         self.kind = kind
         self.connection: Data = {}
-        """What is known of the user's connection (VoiceXML 5.1.4)."""
+        """What is known about the user's connection (VoiceXML 5.1.4)."""
         self.sensors: dict[str, Json] = {}
         self.runs = count(1)
         self.units = count(1)
         self.states = count(1)
         self._sends = count(1)
 
-    # What every application is told ---------------------------------------------------
+    # Notifications of every application -----------------------------------------------
 
     @abstractmethod
     def start(self, now: int) -> None:
@@ -62,73 +62,73 @@ class App(Bounds[Evaluator], ABC):
 
     @abstractmethod
     def event(self, now: int, event: Event) -> None:
-        """Something happened that concerns every application, or this one alone."""
+        """Deliver an event for every application, or for this one alone."""
 
     @abstractmethod
     def notice(self, now: int, notice: Notice) -> None:
-        """The mediator tells the fate of Commands."""
+        """The mediator reports what became of Commands."""
 
     @abstractmethod
     def sensed(self, now: int, values: Data) -> list[str]:
-        """Sensor values changed: gives the events whose conditions turned true (C6)."""
+        """Note new sensor values; gives the events whose conditions turned true (C6)."""
 
     def heeds(self, text: str) -> bool:
-        """Whether what the user says comes in a way that is listened to: words, or keys."""
+        """Whether the input mode of an utterance, words or keys, is listened to."""
         return True
 
     @abstractmethod
     def answer(self, run: int, said: Sequence[Hypothesis]) -> Understood | None:
-        """What the question of a run makes of what the user said, or None if it takes none of it."""
+        """How a run's question interprets what the user said; None if it takes none of it."""
 
     @abstractmethod
     def expire(self, now: int) -> list[tuple[str, Data]]:
-        """Something may be due: gives the application's own events that are."""
+        """Raise the application's own events that are due."""
 
     def stop(self) -> None:
         """The application is taken out of the robot."""
         self.quit("unloaded")
 
-    # What only some languages have ----------------------------------------------------
+    # For some languages only ----------------------------------------------------------
 
     def listens_to(self, said: Sequence[Hypothesis]) -> Link | None:
-        """The link, of those that listen all the time, that takes what the user said (V1)."""
+        """The link that takes what the user said, of those that always listen (V1)."""
         return None
 
     def follow(self, now: int, link: Link, event: Event) -> None:
-        """The user has said what a link listens for."""
+        """Follow a link whose words the user has said."""
         return
 
     def answers(self, run: int) -> Answers | None:
-        """What the question of a run takes; None if it is not this application's."""
+        """The answers that a run's question takes; None if it is not this application's."""
         return None
 
     def listening(self) -> Sequence[Answers]:
-        """What its links take that listen all the time."""
+        """What its always-listening links take."""
         return ()
 
     def open_during(self, command: Command) -> Answers | None:
-        """What the question behind a Command takes while that is carried out, if it listens then."""
+        """The answers to the question after a Command that are taken during the Command, if any."""
         return None
 
     def go_on_entering(self, state: int) -> None:
-        """The events raised on entering a state have been handled (C6)."""
+        """Continue after the events raised on entering a state have been handled (C6)."""
         return
 
     def before(self, command: Command) -> Command | None:
-        """Which of the Commands that are waited for comes before one of them, if any does."""
+        """The awaited Command before a given one, if any."""
         return None
 
     def breaks_in(
         self, now: int, command: Command, heard: Heard, said: Sequence[Hypothesis]
     ) -> bool:
-        """Whether what the user says during a Command answers the question behind it."""
+        """Whether what the user says during a Command answers the question after it."""
         return False
 
     def replied(self, now: int, answer: Answer) -> None:
-        """The answer to what was asked for outside."""
+        """The answer to an outside request."""
         return
 
-    # What both ask for ----------------------------------------------------------------
+    # Requests of both -----------------------------------------------------------------
 
     def send(self, service: str, data: Data, place: str) -> int:
         """Send something to a service, or to a URI; gives its serial."""
@@ -138,7 +138,7 @@ class App(Bounds[Evaluator], ABC):
 
     @abstractmethod
     def leave_states(self) -> None:
-        """O3: give up all that is asked for and waited for."""
+        """O3: give up all that is requested and awaited."""
 
     def quit(self, reason: str, failed: bool = False, place: str = "") -> None:
         """End the application."""
@@ -149,6 +149,6 @@ class App(Bounds[Evaluator], ABC):
         self.actions.append(Quit(reason, failed, place))
 
     def quit_unhandled(self, thrown: Thrown) -> None:
-        """End the application by an event that nothing handles (5.2.5)."""
+        """End the application by an unhandled event (5.2.5)."""
         self.actions.append(Say("error", thrown.reason, thrown.source))
         self.quit(thrown.reason, True, thrown.source)

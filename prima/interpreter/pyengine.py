@@ -1,8 +1,9 @@
-"""The evaluator of documents all of whose code Python can evaluate.
+"""The evaluator of documents whose code Python can evaluate entirely.
 
-An application that has no other (:func:`is_python`) is evaluated here: each expression is a Python
-function of the scopes that it sees (:mod:`prima.script.compile`), and scripts only declare data
-(:mod:`prima.script.data`). Any other application runs in an :class:`~prima.script.engine.Engine`.
+An application with only such code (:func:`is_python`) is evaluated here: each expression is a
+Python function of the scopes that it sees (:mod:`prima.script.compile`), and scripts only declare
+data (:mod:`prima.script.data`). Any other application runs in an
+:class:`~prima.script.engine.Engine`.
 """
 
 from __future__ import annotations
@@ -35,17 +36,17 @@ if TYPE_CHECKING:
     from prima.messages import Json
 
 LONG = 1_000
-"""Characters from which on a text counts as long."""
+"""Length from which a text counts as long."""
 MOST_HELD = 4_000_000
-"""Characters of long texts that all variables of an application may have together."""
+"""Maximum total length of the long texts in all variables of an application."""
 SECONDS = 4e-9
-"""What a character takes at most to be compared, joined or read."""
+"""The maximum time to compare, join or read a character."""
 PIECE, FEW_PIECES = 125, 20
-"""The work of a piece of an expression in characters, if it has more pieces than the second."""
+"""The work of a piece of an expression, in characters, if it has more pieces than the second."""
 COUNTED = 10
 """The work of counting a variable, in characters."""
 MOST_PIECES = 50_000
-"""Pieces of code that a document may have to be evaluated here."""
+"""Maximum number of pieces of code of a document evaluated here."""
 
 
 def is_python(document: Document) -> bool:
@@ -85,7 +86,7 @@ def weighed(found: Compiled) -> Function:
 
 
 class PythonEngine:
-    """Does what an :class:`~prima.script.engine.Engine` does, for such applications."""
+    """Replaces an :class:`~prima.script.engine.Engine` for such applications."""
 
     nothing = Scope()
     """A scope in which nothing is declared."""
@@ -94,14 +95,14 @@ class PythonEngine:
 
     def __init__(self) -> None:
         self.now = 0
-        """The time by the run's calendar: nothing here asks for it."""
+        """The time by the run's calendar: unused here."""
         self.spent = 0.0
-        """Seconds of work with long texts, by their lengths: nothing else here takes long."""
+        """Estimated seconds of work with long texts: nothing else here takes long."""
         self._long: WeakValueDictionary[int, Scope] | None = None
-        """Scopes in which a long text has been put, by their id()."""
+        """Scopes that were given a long text, by their id()."""
         self._added = 0
         self._functions: dict[str, Function] = {}
-        """The functions of expressions that have been evaluated, by their code."""
+        """The functions of expressions evaluated so far, by their code."""
 
     def _call(self, code: str) -> Function:
         found = compiled(code)
@@ -126,7 +127,7 @@ class PythonEngine:
         """Count work with so many characters.
 
         Raises:
-            ScriptError: it is too much for one instant.
+            ScriptError: the limit of one instant is exceeded.
         """
         self.spent += characters * SECONDS
         if self.spent > MAX_SCRIPT_SECONDS:
@@ -140,7 +141,7 @@ class PythonEngine:
         return Scope(event=event, _event=name, _message=said)
 
     def clock(self, scope: Scope, seconds: float) -> None:
-        """Tell a scope the time of the run, as ``session.time``."""
+        """Set a scope's ``session.time`` to the time of the run."""
         scope["session"] = {"time": float(seconds)}
 
     def set(self, scope: Scope, name: str, value: Json) -> None:
@@ -222,7 +223,7 @@ class PythonEngine:
         )
 
     def script(self, code: str, scope: Scope, _scopes: Scopes) -> None:
-        """Run a script; what it declares becomes variables of ``scope``."""
+        """Run a script; its declarations become variables of ``scope``."""
         data = declared(code)
         if data is None:
             raise ScriptError("SyntaxError: a script needs an engine")
@@ -231,17 +232,17 @@ class PythonEngine:
             self.put(scope, name, fresh(value))
 
     def put(self, scope: Scope, name: str, value: Any) -> None:
-        """Give a variable one of the values that there are here.
+        """Set a variable to a value of this engine.
 
         Raises:
-            ScriptError: the variables would hold too much.
+            ScriptError: the total of all variables would exceed the limit.
         """
         if type(value) is str and len(value) > LONG:
             self.hold(scope, value)
         scope[name] = value
 
     def hold(self, scope: Scope, value: str) -> None:
-        """Bound what all variables hold together; it is counted anew only now and then."""
+        """Bound the total size of all variables, which is recounted only now and then."""
         if self._long is None:
             self._long = WeakValueDictionary()
         self._added += len(value)

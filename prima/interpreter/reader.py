@@ -1,4 +1,4 @@
-"""Reading an application: bytes in, a document and all that is wrong with it out."""
+"""Reads an application: bytes in, a document and its problems out."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
     from prima.interpreter.grammars import Fetch
 
 WHOLE = ("dead-end", "endless", "unknown-event", "unheard-event", "no-noinput")
-"""Codes of what a whole document lacks, which may be in an element that is not understood."""
+"""Codes for what a document lacks as a whole, perhaps only because an element is unknown."""
 
 
 MOST_KEPT, MOST_KEPT_BYTES = 64, 2_000_000
-"""How many documents are kept that have been read, and how many bytes they were read from."""
+"""The maximum number of documents in the cache, and of bytes that they were read from."""
 
 
 @dataclass(slots=True)
 class _Read:
-    """What a file was when it was last read, and what was read."""
+    """A file's content when last read, and the result."""
 
     data: bytes
     limits: tuple[int, ...]
@@ -35,7 +35,7 @@ class _Read:
 
 
 _kept: dict[str, _Read] = {}
-"""Documents by their files' names, the one that was read last at the end."""
+"""Documents by file name, the most recently read last."""
 
 
 def read_document(
@@ -43,22 +43,21 @@ def read_document(
 ) -> tuple[Document, list[Problem]]:
     """Read an application and check it: schema first, then meaning.
 
-    The same bytes of the same file give the same document, as nothing changes one; only what
-    each file was last is kept, and of not too many files. One that names files is read anew.
+    The same bytes of the same file give the same document, as documents are not modified; only
+    the last content of a limited number of files is cached. One that names files is read anew.
 
     Args:
         file: the document's name, for places.
         data: its bytes.
-        fetch: gives the bytes of a file that it names; without it there are none.
+        fetch: returns the bytes of a file that it names; by default it may name none.
 
     Raises:
-        DocumentError: no document at all can be given: it is not XML, or not
-            such a document.
+        DocumentError: there is no document at all: it is not XML, or of another kind.
     """
     limits = (LIMITS.bytes, LIMITS.elements, LIMITS.attributes, LIMITS.depth)
     read = _kept.pop(file, None)
     if read is None or read.data != data or read.limits != limits:
-        read = None  # the memory of the one before is free for this one
+        read = None  # frees the previous one's memory for this one
         with few_guesses(), seldom_collected():
             document, problems, outside = _read(file, data, fetch)
         if outside:
@@ -69,7 +68,7 @@ def read_document(
 
 
 def _keep(file: str, read: _Read) -> None:
-    """Keep a document, and drop those least recently asked for."""
+    """Cache a document, dropping the least recently used."""
     if len(read.data) > MOST_KEPT_BYTES:
         return
     _kept[file] = read
@@ -82,7 +81,7 @@ def _keep(file: str, read: _Read) -> None:
 
 
 def _read(file: str, data: bytes, fetch: Fetch | None) -> tuple[Document, list[Problem], bool]:
-    """The document, what is wrong with it, and whether it names files."""
+    """The document, its problems, and whether it names files."""
     from prima.interpreter.checks import check_document
 
     root, problems = read_tree(file, data, DIALOGUE)
@@ -98,7 +97,7 @@ def _read(file: str, data: bytes, fetch: Fetch | None) -> tuple[Document, list[P
 
 
 def _follows(problem: Problem, named: set[str]) -> bool:
-    """Whether a problem most likely follows from elements that are not understood.
+    """Whether a problem most likely follows from unknown elements.
 
     ``named`` are the forms that these name.
     """

@@ -1,4 +1,4 @@
-"""What an application says a second time because an event has made it leave in the middle (O3)."""
+"""What an application says twice because an event made it leave in mid-speech (O3)."""
 
 from __future__ import annotations
 
@@ -36,18 +36,18 @@ OWN = (
     *("noinput", "nomatch", "help", "end", "cancel", "interrupted", "expired", "exit", "error"),
     "emergency",
 )
-"""What begins an event that comes of what the application itself does, or ends everything."""
+"""Prefixes of events that the application causes itself, or that end everything."""
 MOST_FOUND = 5_000
-"""Repetitions that are looked for: a list of problems ends long before."""
+"""Maximum number of repetitions searched for: a list of problems ends long before."""
 STEPS_OF_AN_ITEM = 20
-"""Steps for which it counts to look at an item."""
+"""Checking an item counts as so many steps."""
 REMEDY = "Leave out the <goto>: what is said goes on then. Or give what is said a cond."
 GUESSED = " If it never leads there, name its targets in the expression: x ? '{0}this' : '{0}that'."
 
 
 @dataclass(frozen=True, slots=True)
 class _Back:
-    """How something is said twice: an event comes meanwhile, and a goto leads back."""
+    """How something is said twice: an event interrupts it, and a goto leads back."""
 
     form: Form
     said: Node
@@ -55,11 +55,11 @@ class _Back:
     event: str
     way: Goto
     certain: bool
-    """Whether it is known without a run where the goto leads, and what it leads to."""
+    """Whether the goto's target is known without a run, and the target."""
 
 
 def source_of(document: Document) -> EnteredDocument:
-    """A document of PRIMA's own language."""
+    """The source for a document in PRIMA's own language."""
 
     def leads(act: Goto | Subdialog) -> list[FormTarget]:
         if isinstance(act.form, Expression):
@@ -74,7 +74,7 @@ def told_twice(sources: Sequence[EnteredDocument], remedy: str = REMEDY) -> Iter
     """Warn of handlers that leave a state and come back to what it says or asks.
 
     An event may come while that is being said. Where the user has been asked something else on
-    the way back, or the state waits for another event, telling it again is meant.
+    the way back, or the state waits for another event, the repetition is intended.
 
     Args:
         sources: the documents of an application.
@@ -85,14 +85,14 @@ def told_twice(sources: Sequence[EnteredDocument], remedy: str = REMEDY) -> Iter
     found = [*islice(backs, MOST_FOUND)]  # as many handlers may lead to each of as many forms
     told: set[int] = set()
     for one in sorted(found, key=lambda one: not one.certain):
-        if one.certain or id(one.way.node) not in told:  # of a guess one example will do
+        if one.certain or id(one.way.node) not in told:  # one example of a guess will do
             told.add(id(one.way.node))
             yield _problem(one, remedy)
     yield from _returning(sources)
 
 
 def _returning(sources: Sequence[EnteredDocument]) -> Iterator[Problem]:
-    """Warn of handlers that end a subdialog while it speaks, when it will be called again."""
+    """Warn of handlers that end a subdialog in mid-speech when it will be called again."""
     callers = callers_of(sources)
     for source, form in forms_of(sources) if callers else ():
         said, calls = said_first(form), callers.get(source.target(form), ())
@@ -104,7 +104,7 @@ def _returning(sources: Sequence[EnteredDocument]) -> Iterator[Problem]:
 
 
 class _Leavings:
-    """The handlers of a document by which an event from outside makes it leave what it says."""
+    """The handlers of a document that leave its speech because of an outside event."""
 
     def __init__(self, source: EnteredDocument, ways: Ways) -> None:
         self._source = source
@@ -113,9 +113,9 @@ class _Leavings:
         self._handlers = [*self._leaving(document.handlers, document.handlers)]
         """The document's own."""
         self._to_any = [one for one in self._handlers if any(way.item for way in one.gotos)]
-        """Those that go to items, of whatever form."""
+        """Those that go to items of any form."""
         self._shared: dict[FormTarget, list[tuple[Leaving, Goto, bool]]] = {}
-        """Where these lead back to, by the forms."""
+        """The targets of their gotos back, by form."""
         for one in self._handlers:
             for form, way in self._led(one).items():
                 self._shared.setdefault(form, []).append((one, *way))
@@ -169,7 +169,7 @@ class _Leavings:
         return found
 
     def _to_form(self, form: Form, own: list[Leaving]) -> Iterator[tuple[Leaving, Goto, bool]]:
-        """The handlers that may run while a form says something, and the gotos back to it."""
+        """The handlers that may run while a form speaks, and the gotos back to it."""
         goal = self._source.target(form)
         yield from (one for one in self._shared.get(goal, ()) if not one[0].hidden(form))
         for leaving in own:
@@ -186,7 +186,7 @@ class _Leavings:
     # Back to an item ------------------------------------------------------------------------
 
     def _to_items(self, form: Form, leaving: Leaving) -> Iterator[_Back]:
-        """What a handler makes a form tell twice by going to one of its items."""
+        """What a form says twice because a handler goes to one of its items."""
         for way in leaving.gotos:
             self._ways.contents.left -= STEPS_OF_AN_ITEM
             if way.item is None or self._ways.contents.left < 0:
@@ -200,7 +200,7 @@ class _Leavings:
     def _said_again(
         self, form: Form, way: Goto, leaving: Leaving, certain: bool
     ) -> tuple[Node, bool] | None:
-        """What a goto to an item makes the form say twice: an item that it names, or perhaps any."""
+        """What a goto to an item makes the form repeat: an item that it names, or perhaps any."""
         if certain:
             named = self._ways.contents.named(way, form)
             return next(filter(None, (self._again(form, one, leaving) for one in named)), None)
@@ -208,7 +208,7 @@ class _Leavings:
         return next(filter(None, (self._visited_again(one, leaving) for one in items)), None)
 
     def _again(self, form: Form, item: Item, leaving: Leaving) -> tuple[Node, bool] | None:
-        """What is said twice where a handler goes to an item: by that item, or by those after it."""
+        """What is said twice after a handler's goto to an item, by that item or by later ones."""
         said = self._visited_again(item, leaving)
         if said is not None or not goes_by(item):
             return said
@@ -223,7 +223,7 @@ class _Leavings:
         return None
 
     def _behind(self, form: Form, leaving: Leaving) -> Iterable[Item]:
-        """What is visited after the item that a handler goes to: what was asked, and what it clears."""
+        """The items visited after a handler's target: those already asked, and those it clears."""
         items = self._ways.contents.items(form)
         if leaving.cleared is None:
             return items.values()
@@ -234,12 +234,12 @@ class _Leavings:
         return sorted(found, key=lambda one: one.node.index)
 
     def _visited_again(self, item: Item, leaving: Leaving) -> tuple[Node, bool] | None:
-        """What an item says when a handler goes to it while it says that."""
+        """What an item repeats when a handler goes to it meanwhile."""
         quiet = self._source.queues and isinstance(item, Field)
         return leaving.repeated(item) if not quiet and self._heard(item, leaving) else None
 
     def _heard(self, item: Item, leaving: Leaving) -> bool:
-        """Whether a handler takes events while an item speaks: its own, or that of a form."""
+        """Whether a handler, the item's own or a form's, takes events while the item speaks."""
         queued = self._source.queues and isinstance(item, Block)
         return leaving.item is None or leaving.item is item or queued
 
@@ -274,13 +274,13 @@ def _why(back: _Back) -> str:
 
 
 def _foreign(document: Document) -> Callable[[str], bool]:
-    """Tells which events may come from outside, and are no answer to the application."""
+    """Decides which events may come from outside other than as an answer."""
     chosen = _chosen(document)
     return lambda event: chosen.isdisjoint(beginnings(event))
 
 
 def _chosen(document: Document) -> set[str]:
-    """Events that the application brings about itself, or that the user says by a link."""
+    """Events that the application causes itself, or the user by a link."""
     found = set(OWN)
     for act in Acts(document).among(SendOut, Throw):
         if isinstance(act, SendOut | Throw) and isinstance(act.event, str) and act.event:

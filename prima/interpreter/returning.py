@@ -1,4 +1,4 @@
-"""What a subdialog says a second time because a handler ends it with an event (O3).
+"""What a subdialog says twice because a handler ends it with an event (O3).
 
 The form that called it handles the event, goes on, and calls it again.
 """
@@ -27,7 +27,7 @@ CALLED_AGAIN = TOLD_TWICE.says(
 
 
 def callers_of(sources: Sequence[EnteredDocument]) -> Callers:
-    """The items by which each form is called as a subdialog."""
+    """The items that call each form as a subdialog."""
     found: Callers = defaultdict(list)
     for source, form in forms_of(sources):
         for item in all_items(form.items):
@@ -39,7 +39,7 @@ def callers_of(sources: Sequence[EnteredDocument]) -> Callers:
 
 
 def returns_of(form: Form, source: EnteredDocument) -> Iterator[tuple[str, Return]]:
-    """Events from outside at which handlers of a form return with an event, and how."""
+    """Outside events on which a form's handlers return with an event, and how."""
     inner = [handler for item in all_items(form.items) for handler in item.handlers]
     for handler in (*form.handlers, *inner):
         event = next(filter(source.foreign, handler.events), "")
@@ -49,7 +49,7 @@ def returns_of(form: Form, source: EnteredDocument) -> Iterator[tuple[str, Retur
 
 
 def calls_again(source: EnteredDocument, form: Form, item: Subdialog, event: str) -> bool:
-    """Whether a form handles an event of what it has called, and then visits the item again."""
+    """Whether a form handles an event of its subdialog, and then visits the item again."""
     names = set(beginnings(event))
     scope = (*item.handlers, *form.handlers, *source.document.handlers)
     taking = next((one for one in scope if not names.isdisjoint(one.events)), None)
@@ -65,6 +65,6 @@ def _goes_on(handler: Handler, item: Subdialog) -> bool:
 
 
 def told_again(event: str, line: int, asks: bool, way: Return) -> Problem:
-    """The warning of one way."""
+    """The warning for one of them."""
     said = "asked" if asks else "said"
     return CALLED_AGAIN.at(way.node.place, event=event, said=said, line=line, returned=way.event)

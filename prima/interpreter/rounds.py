@@ -1,4 +1,4 @@
-"""Handlers of events that an application makes for itself, and which of them lead to themselves."""
+"""Handlers of events that an application causes itself, and those that lead to themselves."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ PAUSE = "pause"
 
 
 MOST_FOLLOWED = 100_000
-"""Handlers and events that are followed for one document."""
+"""Maximum number of handlers and events followed for one document."""
 
 Raised = Callable[[Sequence[Act]], set[str]]
 """Finds the events that content raises."""
 
 
 class EventLeads:
-    """Which handlers others lead to by the events that they raise; only so many are followed.
+    """The handlers that others lead to by the events they raise; their number is limited.
 
     Args:
         raised: finds the events that content raises.
@@ -47,12 +47,12 @@ class EventLeads:
         self._raised = raised
         self._by_event: dict[str, list[Handler]] = {}
         self._events: dict[int, list[str]] = {}
-        """The names under which the events of handlers count that have been followed."""
+        """The names of the events of handlers followed so far."""
         self.left = MOST_FOLLOWED
-        """How many more handlers and events are followed; below 0 nothing is certain."""
+        """The number of handlers and events still to be followed; below 0 nothing is certain."""
 
     def among(self, handlers: Sequence[Handler]) -> None:
-        """Look only at some handlers from now on."""
+        """Consider only some handlers from now on."""
         self.left -= len(handlers)
         self._by_event = {}
         for one in handlers if self.left > 0 else ():
@@ -60,7 +60,7 @@ class EventLeads:
                 self._by_event.setdefault(event, []).append(one)
 
     def of(self, handler: Handler) -> Iterator[Handler]:
-        """The handlers of the events that a handler raises, by others perhaps, once each."""
+        """The handlers of the events that a handler raises, directly or indirectly, once each."""
         events: set[str] = set()
         found: set[int] = set()
         left = [handler]
@@ -85,12 +85,12 @@ class EventLeads:
         return self._events[handler.node.index]
 
     def round(self, handler: Handler) -> bool:
-        """Whether what a handler does leads to itself again, as far as that is followed."""
+        """Whether a handler leads to itself again, as far as that is followed."""
         return any(one is handler for one in self.of(handler)) or self.left < 0
 
 
 def raised_in(content: Sequence[Act]) -> set[str]:
-    """The events that content raises without a wait: ends of its Commands, and what it throws."""
+    """The events that content raises without a wait: ends of its Commands, and throws."""
     acts = all_acts(content)
     ends = {
         f"end.{name}" for act in acts if isinstance(act, CommandRun) for name in _types(act.steps)
@@ -109,10 +109,10 @@ def _types(steps: Sequence[StepTemplate]) -> Iterator[str]:
 
 
 def endless_reactions(document: Document) -> Iterator[Problem]:
-    """Warn of reactions to own events that lead to themselves again: nobody else has a turn (S2b).
+    """Warn of reactions to own events that lead to themselves: no other has a turn (S2b).
 
-    Only what is certain: without a condition, and with nothing in between for which a reaction of
-    another application would go first, as a question, a pause or a second Command.
+    Only certain ones: without conditions, and with nothing in between that would let a reaction of
+    another application go first, such as a question, a pause or a second Command.
     """
     told: set[int] = set()
     leads, everywhere = EventLeads(raised_first), _certain(document.handlers)
@@ -120,16 +120,16 @@ def endless_reactions(document: Document) -> Iterator[Problem]:
     for form in document.forms.values():
         before = _certain(form.handlers)
         behind = [one for item in all_items(form.items) for one in _certain(item.handlers)]
-        if before or behind or not alone:  # the document's own alone need only be looked at once
+        if before or behind or not alone:  # the document's own alone need checking only once
             leads.among([*before, *everywhere, *behind])
             yield from _endless([*before, *everywhere, *behind], leads, told)
         alone = alone or not (before or behind)
 
 
 def _endless(scope: Sequence[Handler], leads: EventLeads, told: set[int]) -> Iterator[Problem]:
-    """Those of a scope that lead to themselves, and to none that is told already."""
+    """Those of a scope that lead to themselves, and to none reported already."""
     behind: set[int] = set()
-    """Those that lead to one that is told."""
+    """Those that lead to a reported one."""
     for handler in scope:
         again = False
         for one in leads.of(handler):
@@ -145,12 +145,12 @@ def _endless(scope: Sequence[Handler], leads: EventLeads, told: set[int]) -> Ite
 
 
 def _certain(handlers: Sequence[Handler]) -> list[Handler]:
-    """Handlers whose Commands are reactions because they say so, whatever has happened."""
+    """Handlers whose Commands are reactions by declaration, whatever the event."""
     return [one for one in handlers if one.reactive and one.cond is None and one.count <= 1]
 
 
 def raised_first(content: Sequence[Act]) -> set[str]:
-    """The events that content certainly raises at once, or when its first Command has ended."""
+    """The events that content certainly raises at once or when its first Command ends."""
     found: set[str] = set()
     ran = False
     for act in content:

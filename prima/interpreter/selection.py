@@ -1,8 +1,8 @@
-"""What the Form Interpretation Algorithm decides, for both languages (VoiceXML 2.0, appendix C).
+"""Decisions of the Form Interpretation Algorithm, for both languages (VoiceXML 2.0, appendix C).
 
 Which item is visited next, which handler takes an event, which prompts are said, which
-``filled`` run. The languages differ in what items and handlers are: they are handed over
-with what counts of them.
+``filled`` run. The languages differ in their items and handlers, so only the relevant facts are
+passed.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 
 class Candidate(NamedTuple, Generic[T]):
-    """A handler with the names by which it takes events, from which occurrence on."""
+    """A handler with the names by which it takes events, and its count."""
 
     handler: T
     names: tuple[str, ...]
@@ -25,33 +25,33 @@ class Candidate(NamedTuple, Generic[T]):
 
 @dataclass(frozen=True, slots=True)
 class Counters:
-    """How often events have come, and items asked, while their dialog is active (2.1.6.1)."""
+    """How often events occurred, and items were visited, while their dialog is active (2.1.6.1)."""
 
     events: Mapping[tuple[Hashable, str], int] = field(default_factory=dict)
-    """By the item that was visited, and the name under which they count."""
+    """By the visited item, and the name counted."""
     prompts: Mapping[Hashable, int] = field(default_factory=dict)
 
     def came(self, item: Hashable, names: Iterable[str]) -> Counters:
-        """One more event while an item was visited, under each of its names (5.2.2)."""
+        """Count an event while an item was visited, under each of its names (5.2.2)."""
         more = {(item, name): self.seen(item, name) + 1 for name in names}
         return replace(self, events={**self.events, **more})
 
     def seen(self, item: Hashable, name: str) -> int:
-        """How often events of a name came while an item was visited."""
+        """How often events of a name occurred while an item was visited."""
         return self.events.get((item, name), 0)
 
     def asked(self, item: Hashable) -> Counters:
-        """One more visit of an item that asks (4.1.6)."""
+        """Count a visit of an item that asks (4.1.6)."""
         return replace(self, prompts={**self.prompts, item: self.prompts.get(item, 0) + 1})
 
     def without(self, item: Hashable, events: bool = True) -> Counters:
-        """What a clear of an item leaves (5.3.3); ``events`` says whether its events go as well."""
+        """The counters after a clear of an item (5.3.3); ``events``: its event counters as well."""
         kept = {key: times for key, times in self.events.items() if key[0] != item or not events}
         return Counters(kept, {**self.prompts, item: 0})
 
 
 def takes(handler_event: str, event: str) -> bool:
-    """Whether a handler's event name is the event's, or a prefix of it token by token."""
+    """Whether a handler's event name is the event's, or a token-wise prefix of it."""
     return not handler_event or event == handler_event or event.startswith(f"{handler_event}.")
 
 
@@ -65,12 +65,12 @@ def prefixes(event: str) -> tuple[str, ...]:
 def taking(
     handlers: Iterable[Candidate[T]], event: str, by_name: bool = False
 ) -> list[Candidate[T]]:
-    """The handlers that take an event, each with the names that do.
+    """The handlers that take an event, each with the matching names.
 
     Args:
         handlers: those in scope, innermost first.
         event: its name.
-        by_name: whether the empty name, which is for all events, does not take this one.
+        by_name: whether the empty name, which takes all events, does not take this one.
     """
     found = []
     for handler, names, least in handlers:
@@ -86,7 +86,7 @@ def select_handler(
     """The handler of an event among those that take it (5.2.4).
 
     Those whose condition does not hold are left out; of the rest, those with the highest
-    count that the occurrences have reached remain, and the first of them it is.
+    count that the occurrences have reached remain, and the first of them is selected.
     """
     fitting = (
         (one.least, one.handler)
@@ -99,12 +99,12 @@ def select_handler(
 def select_prompts(
     prompts: Iterable[tuple[int, T]], asked: int, holds: Callable[[T], bool]
 ) -> list[T]:
-    """What an item says that is visited for the time ``asked``, of prompts and counts (4.1.6)."""
+    """The prompts of an item's ``asked``-th visit, from prompts with counts (4.1.6)."""
     return of_highest_count((least, one) for least, one in prompts if least <= asked and holds(one))
 
 
 def of_highest_count(found: Iterable[tuple[int, T]]) -> list[T]:
-    """What has the highest count, in document order."""
+    """Those with the highest count, in document order."""
     counted = list(found)
     highest = max((count for count, _ in counted), default=0)
     return [one for count, one in counted if count == highest]
@@ -117,14 +117,14 @@ def select_item(
     first_undefined: Callable[[Sequence[T]], int],
     holds: Callable[[T], bool],
 ) -> T | None:
-    """The item to visit: that a goto names, or the first that is open (2.1.6.2).
+    """The item to visit: the one that a goto names, or the first open one (2.1.6.2).
 
     Args:
         items: form items, and units with items inside.
         wanted: the name of one of these.
         named: whether an item has a name, or is a unit around the one that has.
         first_undefined: the index of the first item whose variable is undefined, or their number.
-        holds: whether an item's condition holds; it may change what is defined.
+        holds: whether an item's condition holds; evaluating it may define items.
     """
     if wanted:
         return next((item for item in items if named(item, wanted)), None)

@@ -1,4 +1,4 @@
-"""The sensors that a document reads, by the first part of their names, as ``position``."""
+"""The sensors that a document reads, by the first part of their names, such as ``position``."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from prima.script.names import Names, expression_names, script_names
 from prima.script.parse import Code, Node, parse_expression, parse_script
 
 TAKEN = CONSTANTS | {"sensor"}
-"""Names that conditions take for granted."""
+"""Names that conditions use without declaration."""
 NOTHING_READ: frozenset[str] = frozenset()
-"""What :func:`sensors_read` gives for a document that depends on no sensor."""
+"""The result of :func:`sensors_read` for a document that depends on no sensor."""
 
 
 def hides_sensors(document: Document) -> bool:
-    """Whether the document may have a variable of its own by a name that conditions look at."""
+    """Whether the document may declare a variable with a name that conditions use."""
     return any(
         node.attributes.get("name", "").strip() in TAKEN for node in document.node.walk()
     ) or any(
@@ -34,9 +34,9 @@ def names_in(document: Document) -> Iterator[Names]:
 
 @lru_cache(maxsize=1000)
 def sensors_of(code: str) -> frozenset[str] | None:
-    """The sensors that a condition looks at.
+    """The sensors that a condition reads.
 
-    None where it may depend on anything else, or where which ones cannot be told.
+    None if it may depend on anything else, or if they cannot be determined.
     """
     names = expression_names(code)
     if names.opaque or not names.read.keys() <= TAKEN:
@@ -45,7 +45,7 @@ def sensors_of(code: str) -> frozenset[str] | None:
 
 
 def sensors_read(document: Document) -> frozenset[str] | None:
-    """All sensors on which what a document does may depend; None where these cannot be told.
+    """All sensors that may affect a document's behaviour; None if they cannot be determined.
 
     A condition that depends on other things too is looked at whenever any sensor changes, and so is
     what turned true while a subdialog had the place of the form that watches for it.
@@ -68,7 +68,7 @@ def _sensors_read(document: Document) -> frozenset[str] | None:
 
 
 def _watches_are_clear(document: Document) -> bool:
-    """Whether the sensors that watches look at can be told, and are looked at in time."""
+    """Whether the sensors that watches read can be determined, and are checked in time."""
     inner = [watch for form in document.forms.values() for watch in form.watches]
     watches = [*document.watches, *inner]
     if inner and any(node.tag == "subdialog" for node in document.node.walk()):
@@ -79,7 +79,7 @@ def _watches_are_clear(document: Document) -> bool:
 
 
 def _looked_at(code: Code | None) -> frozenset[str] | None:
-    """The sensors that code looks at; None where it may look at others without saying so."""
+    """The sensors that code reads; None if it may read others indirectly."""
     if code is None or not code.sound:
         return None
     read = set()
@@ -92,7 +92,7 @@ def _looked_at(code: Code | None) -> frozenset[str] | None:
 
 
 def _sensor(code: Code, node: Node) -> str | None:
-    """The sensor that a name looks at; empty if it is another name, None if it may be any."""
+    """The sensor that a name reads; empty for another name, None if it may be any."""
     text = code.of(node)
     if node.type == "this" or text == "eval" or STRANGE in text or "\\" in text:
         return None
@@ -113,11 +113,11 @@ NAMED = frozenset(
         "escape_sequence",
     ]
 )
-"""Nodes that may name a sensor, or anything else."""
+"""Nodes that may name a sensor or anything else."""
 
 
 def _member(code: Code, node: Node | None) -> str:
-    """The member of a node's value that is read; empty if none is, or a method."""
+    """The member read of a node's value; empty if none is read, or a method."""
     parent = node.parent if node is not None else None
     if parent is None or parent.type != "member_expression" or parent.children[0] != node:
         return ""

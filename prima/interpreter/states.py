@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 
 
 class States(App["AnyEngine | PythonEngine"]):
-    """One document with the form that it is in, and what waits there.
+    """One document with its active form, and the content waiting there.
 
     Args:
         document: what it runs.
         arguments: the motion arguments of the robot's own Commands.
-        engines: makes what evaluates the document's code, if it needs one.
+        engines: makes the evaluator of the document's code, if it needs one.
     """
 
     execute: Executor
@@ -55,27 +55,27 @@ class States(App["AnyEngine | PythonEngine"]):
         """Delayed events: when, serial number, name, data, and the state they belong to."""
         self.timer_serial = count(1)
         self.untold = False
-        """Whether the variable ``sensor`` has old values: it gets the new ones when code runs."""
+        """Whether the variable ``sensor`` is outdated: it is updated when code runs."""
         self.reports = 0
-        """How often sensors have had new values."""
+        """How often sensors reported new values."""
         self.reported: dict[str, int] = {}
-        """Which of the reports was the latest, by the first part of a sensor's name."""
+        """The number of the latest report, by the first part of a sensor's name."""
         self.cause: int | str | None = None
-        """The event to which what is requested next reacts: its serial, or the name of an own one (C5)."""
+        """The event that the next request reacts to: its serial, or the name of an own one (C5)."""
         self.fresh: tuple[int | str, int] | None = None
         """A cause, and for how long (ms) a reaction to it is worth starting (X8)."""
         self.timed = "session" in document.node.source.text
-        """Whether the document looks at the clock at all."""
+        """Whether the document reads the clock at all."""
 
     def guard(self, act: Callable[..., object], *given: Any) -> None:
-        """Do something for the application."""
+        """Do something for the application, handling its errors."""
         try:
             act(*given)
         except (Thrown, ScriptError, GoOut) as error:
             self._rescue(error)
 
     def _rescue(self, error: Thrown | ScriptError | GoOut) -> None:
-        """Seek a handler of an event; one that nobody handles ends the application (5.2.5)."""
+        """Find a handler of an event; an unhandled one ends the application (5.2.5)."""
         try:
             if isinstance(error, GoOut):
                 raise error
@@ -86,7 +86,7 @@ class States(App["AnyEngine | PythonEngine"]):
             self.quit(out.reason, out.failed, out.source)
 
     def _seek_handler(self, thrown: Thrown) -> None:
-        """An error outside all content, as in a condition of a handler, has handlers too."""
+        """Find a handler of an error outside all content, as in a handler's condition."""
         frame = self.frame
         if thrown.sought or frame is None:
             raise thrown
@@ -122,7 +122,7 @@ class States(App["AnyEngine | PythonEngine"]):
             self.transfer(fiber.frame, transfer)
 
     def go_on(self, frame: Frame) -> None:
-        """A handler has ended: a form that was waiting looks for items to visit again."""
+        """Continue after a handler's end: a waiting form looks for items to visit again."""
         if (
             not frame.form.items
             or frame is not self.frame
@@ -140,7 +140,7 @@ class States(App["AnyEngine | PythonEngine"]):
             frame.fibers = tuple(one for one in frame.fibers if one is not fiber)
 
     def transfer(self, frame: Frame, transfer: Transfer) -> None:
-        """Leave a state for another; goto chains go round here, not deeper."""
+        """Leave a state for another; chains of gotos loop here instead of nesting."""
         while self.frame is not frame and self.frame is not None:
             self.leave(self.frame)  # a subdialog that the state had called
             self.frame = self.frame.caller
@@ -160,7 +160,7 @@ class States(App["AnyEngine | PythonEngine"]):
                 pending = self._go_back(frame, transfer)
 
     def go_item(self, frame: Frame, transfer: GoItem) -> tuple[Frame, Transfer] | None:
-        """Go on with another item of the same form; the form's own content starts anew there."""
+        """Go to another item of the same form; the form's own content restarts there."""
         if any(fiber.main for fiber in frame.fibers):
             # A handler leaves what the state was doing: O3 for the item instead of the form.
             self.leave(frame)
@@ -170,7 +170,7 @@ class States(App["AnyEngine | PythonEngine"]):
         return self.begin(frame, setup=False)
 
     def _go_back(self, frame: Frame, transfer: GoBack) -> tuple[Frame, Transfer] | None:
-        """Come back from a subdialog, with values or an event (VoiceXML 2.3.4, 5.3.10)."""
+        """Return from a subdialog, with values or an event (VoiceXML 2.3.4, 5.3.10)."""
         caller = frame.caller
         if caller is None:
             raise GoOut("return")
@@ -193,7 +193,7 @@ class States(App["AnyEngine | PythonEngine"]):
         return None
 
     def forget(self, fiber: Fiber) -> None:
-        """Give up a piece of content, with whatever it waited for."""
+        """Give up a piece of content, with everything that it waits for."""
         if fiber.waiting is not None:
             self.waiting.pop(fiber.waiting, None)
         self._drop(fiber)
@@ -201,10 +201,10 @@ class States(App["AnyEngine | PythonEngine"]):
             try:
                 fiber.content.close()
             except ValueError:
-                pass  # it is the fiber that brought us here
+                pass  # the fiber that is running this
 
     def leave(self, frame: Frame) -> None:
-        """O3: the state's content ends, its units are concluded, its Commands are given up."""
+        """O3: end the state's content, conclude its units, give up its Commands."""
         outer = frame.caller.form if frame.caller is not None and not self.over else None
         name = outer.id if outer is not None else ""
         self.visits.append(
@@ -219,7 +219,7 @@ class States(App["AnyEngine | PythonEngine"]):
             self.close_units(frame)
         if self.timers:
             self.keep_timers([timer for timer in self.timers if timer[4] != frame.state])
-        if frame.asked:  # else the mediator knows nothing of the state
+        if frame.asked:  # otherwise the mediator does not know the state
             self.actions.append(LeaveState(frame.state))
 
     def close_units(self, frame: Frame) -> None:
@@ -254,7 +254,7 @@ class States(App["AnyEngine | PythonEngine"]):
         return self.engine.named("document")
 
     def set_up_document(self, frame: Frame) -> None:
-        """Declare the document's variables and run its scripts; they see no dialog."""
+        """Declare the document's variables and run its scripts, which see no dialog."""
         frame.fresh = False
         alone = Frame(frame.form, frame.state, frame.document, self.engine.nothing)
         self._set_up(self.document.setup, frame.document, Fiber(alone))
@@ -267,7 +267,7 @@ class States(App["AnyEngine | PythonEngine"]):
                 self.execute.script(act, scope, fiber)
 
     def begin(self, frame: Frame, setup: bool = True) -> tuple[Frame, Transfer] | None:
-        """Start a form's own content; gives a transfer of control that it ends in at once."""
+        """Start a form's own content; gives the transfer of control if it ends at once."""
         self.frame, form = frame, frame.form
         self.visits.append(ElementVisit(self.name, self.now, "enter", form.node, form.id))
         self.note(form.node)
@@ -312,5 +312,5 @@ class States(App["AnyEngine | PythonEngine"]):
 
 
 def evaluator_of(document: Document, engines: Engines) -> AnyEngine | PythonEngine:
-    """What evaluates a document's code: Python where that is all it needs."""
+    """The evaluator of a document's code: Python if that is all it needs."""
     return PythonEngine() if is_python(document) else engines.engine(document.id, document.kind)

@@ -1,4 +1,4 @@
-"""What a document says of its surroundings, beside a world, a robot and a scenario that has it."""
+"""Checks what a document names against the world, the robot and the scenario."""
 
 from __future__ import annotations
 
@@ -19,29 +19,29 @@ NO_VOICE = NO_SUCH_NAME.says('The robot has no voice for "{name}".', severity="w
 NOT_THERE = NO_SUCH_NAME.says('{whose} no {what} "{name}".', severity="warning")
 
 PLACED = {"to": "place", "toward": "place or thing", "name": "gesture"}
-"""Arguments of Commands that name something of the surroundings."""
+"""Arguments of Commands that name something in the surroundings."""
 FEW = 8
-"""Names that are listed where no guess can be made."""
+"""Maximum number of names listed if no guess can be made."""
 
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """The names that a world and a robot have."""
+    """The names that a world and a robot define."""
 
     places: frozenset[str]
     things: frozenset[str]
     gestures: frozenset[str]
     sensors: frozenset[str]
     voices: frozenset[str] = frozenset()
-    """The languages that the robot speaks; none where its profile does not say."""
+    """The languages that the robot speaks; none if its profile does not list them."""
     points: frozenset[str] = frozenset()
     """Places and things."""
 
 
 def check_surroundings(document: Document, names: Surroundings) -> list[Problem]:
-    """Places, things, gestures, touch sensors and voices that are not there: warnings.
+    """Warn of places, things, gestures, touch sensors and voices that do not exist.
 
-    At run time they are errors of devices, which a document may handle; a text is said anyway.
+    At run time they cause device errors, which a document may handle; a text is spoken anyway.
     """
     problems = list(_voices(document.node, names.voices)) if names.voices else []
     for command in commands_of(document):
@@ -55,7 +55,7 @@ def check_surroundings(document: Document, names: Surroundings) -> list[Problem]
 
 
 def check_sensor(node: Node, event: str, names: Surroundings) -> list[Problem]:
-    """A warning if a handler names the event of a touch sensor that is not there."""
+    """Warn of a handler that names the event of a missing touch sensor."""
     first, _, sensor = event.partition(".")
     if first != "touch" or not sensor or sensor in names.sensors:
         return []
@@ -77,11 +77,11 @@ def _voices(root: Node, voices: frozenset[str]) -> Iterator[Problem]:
 
 
 def check_name(node: Node, name: str, value: str, names: Surroundings) -> list[Problem]:
-    """A warning if an argument of a Command, one of :data:`PLACED`, names what is not there."""
+    """Warn of an argument of a Command, one of :data:`PLACED`, that names something missing."""
     what = PLACED[name]
     known = {"to": names.places, "toward": names.points, "name": names.gestures}[name]
     if what == "gesture" and not known:
-        return []  # the robot has no arm, which is told already
+        return []  # the robot has no arm, which is reported already
     if value.strip() in known:
         return []
     whose = "The robot knows" if what == "gesture" else "The world has"
@@ -109,10 +109,10 @@ def commands_of(document: Document) -> list[CommandTemplate]:
 
 
 class Sayings:
-    """What some applications say: their texts, gathered once.
+    """The texts that some applications speak, gathered once.
 
-    Of a text with expressions only the rest is known: it holds words with which it shares one, and
-    perhaps others.
+    Of a text with expressions only the rest is known: words may be in it if they share one with
+    that rest.
     """
 
     def __init__(self, texts: Iterable[Sequence[object]]) -> None:
@@ -123,12 +123,12 @@ class Sayings:
         shared = [set(fold(_joined(text)).split()) for text in opened]
         self._shared: set[str] = set().union(*shared)
         self._open = not all(shared)
-        """Whether some text is known only in a run."""
+        """Whether only a run determines some text."""
         self.certain = not opened
-        """Whether all of it is known before a run."""
+        """Whether everything is known before a run."""
 
     def may_hold(self, words: str) -> bool:
-        """Whether words may ever be said; so as not to err, yes where that cannot be told."""
+        """Whether words may ever be said; true in case of doubt."""
         folded = fold(words)
         return self._open or folded in self._all or not self._shared.isdisjoint(folded.split())
 
@@ -139,7 +139,7 @@ def _joined(text: Sequence[object]) -> str:
 
 
 def texts_of(document: Document, asked: bool) -> list[Text]:
-    """What a document's questions ask, and if not ``asked`` what its Commands say as well."""
+    """The texts of a document's questions and, unless ``asked``, of its Commands."""
     found: list[Text] = []
     for form in document.forms.values():
         for item in all_items(form.items):

@@ -1,4 +1,4 @@
-"""What ends a piece of content in either language: events thrown in it, transfers of control."""
+"""Events and transfers of control, which end a piece of content in either language."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from prima.messages import Event, Json
 from prima.script.evaluation import EngineLost, ScriptError
 
 MAX_DEPTH = 32
-"""Subdialogs inside each other, and events thrown while one is handled."""
+"""Maximum nesting of subdialogs, and of events thrown while one is handled."""
 NO_DATA: Mapping[str, Json] = MappingProxyType({})
 
 
@@ -19,12 +19,12 @@ class Thrown(Exception):
     """An event thrown in the application (VoiceXML 5.2.1)."""
 
     sought = False
-    """Whether its handlers have been looked for in vain."""
+    """Whether no handler was found for it."""
     shared = False
-    """Whether it is of the robot or its surroundings, for every application: in VoiceXML only
-    handlers that name it take it, as that knows no such events (5.2)."""
+    """Whether it comes from the robot or its surroundings, for every application: in VoiceXML,
+    which has no such events, only handlers that name it take it (5.2)."""
     outside = False
-    """Whether it has come from outside while the application waited for something else."""
+    """Whether it arrived from outside while the application waited for something else."""
 
     def __init__(
         self, name: str, message: str = "", source: str = "", data: Mapping[str, Json] = NO_DATA
@@ -34,22 +34,22 @@ class Thrown(Exception):
         self.message = message
         self.source = source
         self.data = data
-        """What PRIMA's handlers find beside its message."""
+        """Data for PRIMA's handlers besides its message."""
 
     @classmethod
     def at(cls, node: Node, name: str, message: str) -> Thrown:
-        """An event that something wrong at an element throws; its message has the place."""
+        """The event for an error at an element; its message includes the place."""
         place = source(node)
         return cls(name, f"{place}: {message}", place)
 
     @property
     def event(self) -> Event:
-        """The same as an event of the application's own, which nothing reacts to (C5)."""
+        """The same as an event of the application's own, to which nothing is a reaction (C5)."""
         return Event(self.name, 0, {"message": self.message, **self.data}, reactive=False)
 
     @property
     def reason(self) -> str:
-        """Why the application ends, if nothing handles it (5.2.5)."""
+        """Why the application ends if it is unhandled (5.2.5)."""
         place, message = self.source, self.message
         if place and not message.startswith(place):
             message = f"{place}: {message}" if message else place
@@ -57,7 +57,7 @@ class Thrown(Exception):
 
 
 class Transfer(Exception):
-    """Control leaves the content: a dialog, an item, a return, or the end."""
+    """Control leaves the content: to a dialog or an item, by a return, or at the end."""
 
 
 class GoItem(Transfer):
@@ -79,7 +79,7 @@ class GoBack(Transfer):
 
 
 class GoOut(Transfer):
-    """An exit, or the end that a limit or an unhandled event makes."""
+    """An exit, or the end caused by a limit or an unhandled event."""
 
     def __init__(self, reason: str = "exit", failed: bool = False, source: str = "") -> None:
         super().__init__(reason)
@@ -89,10 +89,10 @@ class GoOut(Transfer):
 
 
 def thrown_of(error: Thrown | ScriptError) -> Thrown:
-    """An error of the engine itself is an event as well.
+    """The event for an exception, including an error of the engine itself.
 
-    What was thrown forgets where: content that handles it may wait, and would keep all that
-    led to it, what was thrown before included, without end.
+    Its traceback is dropped: content that handles it may wait, and would keep alive all that led
+    to it, including earlier exceptions.
 
     Raises:
         GoOut: the engine is lost.
@@ -118,17 +118,17 @@ def failure(error: ScriptError, code: str, place: str) -> Thrown:
 
 
 def undeclared(node: Node, name: str) -> Thrown:
-    """What a clear of a variable throws that no scope has (5.3.3)."""
+    """The event of a clear of an undeclared variable (5.3.3)."""
     return Thrown.at(node, "error.semantic", f'the variable "{name}" is not declared')
 
 
 def no_item(node: Node, name: str) -> Thrown:
-    """What a goto to an item throws that the form does not have (5.3.7)."""
+    """The event of a goto to an item that the form lacks (5.3.7)."""
     return Thrown.at(node, "error.badfetch", f'there is no form item "{name}"')
 
 
 def check_depth(depth: int, node: Node) -> None:
-    """Bound subdialogs inside each other.
+    """Bound the nesting of subdialogs.
 
     Raises:
         Thrown: there are too many.

@@ -1,4 +1,4 @@
-"""What a unit around form items can come to ask for (rule U5).
+"""What a unit around form items may request (rule U5).
 
 An event that is thrown in a unit is handled in it, by whatever handler takes it: of the item, the
 unit, the form or the document. What such a handler asks for belongs to the unit as well. An event
@@ -51,29 +51,29 @@ NOW_BEHIND_OTHERS = NOW_INSIDE.says(
 CANNOT_BE_IN_UNIT = NOT_IN_UNIT.says("{why}; it cannot stand in a unit.", "{remedy}")
 
 LONGEST_UNIT_MS = 60_000
-"""The longest duration of a unit unless ``longest`` says otherwise."""
+"""The default of ``longest``, a unit's longest duration."""
 LONG_UNIT_MS = 20_000
-"""A unit whose speech alone takes longer than this cannot be reacted in."""
+"""The duration of a unit's speech above which no reaction is possible in it."""
 MS_A_LETTER = 70
 MS_A_SYLLABLE = 125
-"""Speech of a letter, and of one of a script of syllables or words, as the robots here speak."""
+"""The time to speak a letter, and one of a script of syllables or words, at these robots' speed."""
 SYLLABLES = ("ja", "zh", "ko")
 QUESTION = "q-and-a"
 UNANSWERED = ("noinput", "nomatch")
-"""What a question throws in itself."""
+"""The events that a question throws in itself."""
 
 
 @dataclass(slots=True)
 class Reached:
-    """A Command that may run in a unit, and how it comes to do so."""
+    """A Command that may run in a unit, and how it is reached."""
 
     command: CommandTemplate
     inside: bool
-    """Whether it is written inside of the unit."""
+    """Whether it is written inside the unit."""
     event: str = ""
-    """The event whose handler outside of the unit asks for it, if any does."""
+    """The event whose handler outside the unit requests it, if any."""
     code: str = ""
-    """The expression that may name that event, where only a run tells which one it names."""
+    """The expression that may name that event, if only a run determines it."""
 
 
 @dataclass(slots=True)
@@ -81,13 +81,13 @@ class Reach:
     """All that may run in a unit."""
 
     commands: list[Reached]
-    """Each Command once, in the order in which they are found."""
+    """Each Command once, in the order found."""
     asks: bool
-    """Whether there is a question among its items."""
+    """Whether its items include a question."""
 
     @property
     def devices(self) -> frozenset[str]:
-        """The devices of all of it, as Table 4.2 has them; a robot may add Commands of its own."""
+        """All its devices according to Table 4.2; a robot may add Commands of its own."""
         found = TABLE_4_2[QUESTION].devices if self.asks else frozenset()
         for one in self.commands:
             row = TABLE_4_2.get(one.command.type)
@@ -97,7 +97,7 @@ class Reach:
 
     @property
     def types(self) -> tuple[str, ...]:
-        """The types of its Commands, by name, questions excluded."""
+        """The types of its Commands by name, except questions."""
         return tuple(sorted({one.command.type for one in self.commands}))
 
 
@@ -113,19 +113,19 @@ def units_of(document: Document) -> Iterator[tuple[Form, Unit]]:
 
 
 def lasts(text: Text | None, lang: str) -> int:
-    """About how long (ms) it takes to say a text."""
+    """The approximate time (ms) to say a text."""
     letters = sum(len(part) for part in text or () if isinstance(part, str))
     syllables = lang.lower().startswith(SYLLABLES)
     return letters * (MS_A_SYLLABLE if syllables else MS_A_LETTER) + pauses_in(text)
 
 
 def speak(commands: Iterable[CommandTemplate], lang: str) -> int:
-    """About how long (ms) Commands speak, one after another."""
+    """The approximate time (ms) that Commands speak, one after another."""
     return sum(lasts(one.text, lang) for one in commands)
 
 
 def unit_speaks(unit: Unit, lang: str) -> int:
-    """About how long (ms) a unit around items speaks where each of them is visited once."""
+    """The approximate time (ms) that a unit around items speaks if each is visited once."""
     total = 0
     for item in unit.items:
         if isinstance(item, Field):
@@ -136,13 +136,13 @@ def unit_speaks(unit: Unit, lang: str) -> int:
 
 
 def long_unit(node: Node, ms: int) -> Iterator[Problem]:
-    """Warn of a unit that speaks for so long that it cannot be reacted in."""
+    """Warn of a unit that speaks so long that no reaction is possible in it."""
     if ms > LONG_UNIT_MS:
         yield SPEAKS_LONG.at(node.place, seconds=ms // 1000)
 
 
 def not_in_unit(row: CommandType) -> str:
-    """Why a Command cannot run in a unit (U4), if it cannot."""
+    """Why a Command cannot run in a unit (U4), if so."""
     if row.leaves:
         return "leaves the user"
     return "works in a feedback loop" if row.feedback else ""
@@ -151,7 +151,7 @@ def not_in_unit(row: CommandType) -> str:
 def unit_problem(
     one: Reached, row: CommandType | None, unit: Unit | None = None, prefix: str = ""
 ) -> Problem | None:
-    """What is wrong with a Command of such a row in a unit (U4, U5), if anything is.
+    """The problem of a Command of such a row in a unit (U4, U5), if any.
 
     ``prefix`` is that of Commands' elements in the document, with its colon.
     """
@@ -178,7 +178,7 @@ def unit_problem(
 
 
 def now_inside(node: Node, prefix: str = "") -> Problem:
-    """A Command wanted now that comes after others in a unit, or beside them (O2)."""
+    """A Command wanted now after or alongside others in a unit (O2)."""
     return NOW_BEHIND_OTHERS.at(node.place, p=prefix, tag=node.tag)
 
 
@@ -189,7 +189,7 @@ def commands_of(content: Sequence[Act]) -> list[CommandTemplate]:
 
 
 class UnitPiece:
-    """Executable content of a unit or a handler: its Commands and what it throws."""
+    """Executable content of a unit or a handler: its Commands and thrown events."""
 
     __slots__ = ("commands", "computed", "throws")
 
@@ -199,7 +199,7 @@ class UnitPiece:
         self.throws: set[str] = set()
         """Names of events."""
         self.computed: set[str] = set()
-        """Expressions that name events, where only a run tells which."""
+        """Expressions that name events which only a run determines."""
         for act in acts:
             if isinstance(act, Throw):
                 self._throw(act.event, document)
@@ -226,16 +226,16 @@ def failures(command: CommandTemplate) -> set[str]:
 
 
 class _Raised(NamedTuple):
-    """An event in a unit, the first one on the way to it, and the expression that may name that."""
+    """An event in a unit, the first event that led to it, and an expression that may name that."""
 
     event: str | None
-    """None where only a run tells."""
+    """None if only a run determines it."""
     first: str = ""
     code: str = ""
 
 
 class Finder:
-    """Finds what units of a document reach; what handlers hold is looked at once."""
+    """Finds what units of a document reach; examines each handler once."""
 
     def __init__(
         self, document: Document, thrown: Callable[[Item], Iterable[str | None]] | None = None
@@ -251,7 +251,7 @@ class Finder:
         self._thrown = thrown or thrown_by
         self._pieces: dict[int, UnitPiece] = {}
         self._taking: dict[tuple[str, str | None], list[Handler]] = {}
-        """The handlers of a form and of the document that take an event, by both names."""
+        """The handlers of a form and the document that take an event, by both names."""
 
     def reach(self, form: Form, unit: Unit) -> Reach:
         """All that may run in a unit of a form."""
@@ -288,7 +288,7 @@ class Finder:
     def _take_in(
         piece: UnitPiece, inside: bool, by: _Raised, found: dict[int, Reached]
     ) -> list[_Raised]:
-        """Take in a piece of content, and what it throws in turn."""
+        """Add a piece of content, and the events that it throws in turn."""
         for command in piece.commands:
             found.setdefault(id(command), Reached(command, inside, by.first, by.code))
         named = [_Raised(name, by.first, by.code) for name in sorted(piece.throws)]
@@ -308,7 +308,7 @@ class Finder:
     def _takers(
         self, form: Form, inner: tuple[Handler, ...], event: str | None
     ) -> Iterator[Handler]:
-        """The handlers that may take an event in an item, but those that others always go before."""
+        """The handlers that may take an event in an item, without those never reached."""
         key = (form.id, event)
         if key not in self._taking:
             outer = (*form.handlers, *self._document.handlers)
@@ -335,14 +335,14 @@ def _own(item: Item) -> list[tuple[Act, ...]]:
 
 
 def _answered(form: Form, item: Item) -> Iterator[Filled]:
-    """What the form does with the answer to an item."""
+    """The content run with the answer to an item."""
     if isinstance(item, Field) and form.filled:
         asking = {one.name for one in all_items(form.items) if isinstance(one, Field | Subdialog)}
         yield from (one for one in form.filled if item.name in (one.names or asking))
 
 
 def thrown_by(item: Item) -> Iterator[str]:
-    """What visiting an item of a unit may throw by itself."""
+    """The events that visiting an item of a unit may throw."""
     yield "error.semantic"
     if isinstance(item, Field):
         yield from UNANSWERED

@@ -1,4 +1,4 @@
-"""Where control goes by itself from one state to others, without a question or a wait."""
+"""How control passes between states without a question or a wait."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from functools import cached_property
 from prima.interpreter.entering import ContentFacts, EnteredDocument, Entering, FormTarget
 
 Onward = Mapping[FormTarget, Sequence[FormTarget]]
-"""Where forms lead to, and the expressions that name forms."""
+"""The targets of forms, and the expressions that name forms."""
 
 
 class Ways:
-    """The forms of an application and what entering one leads to; each is looked at once."""
+    """The forms of an application and what entering one leads to; each is examined once."""
 
     def __init__(self, sources: Sequence[EnteredDocument]) -> None:
         self.contents = ContentFacts()
@@ -22,9 +22,9 @@ class Ways:
         self._ranks: dict[bool, dict[FormTarget, int]] = {}
 
     def lead(self, target: FormTarget, form: FormTarget, guess: bool) -> bool:
-        """Whether a target leads to a form, at once or by way of others.
+        """Whether a target leads to a form, directly or indirectly.
 
-        With ``guess`` also where only a run tells what an expression names.
+        With ``guess`` also if only a run determines what an expression names.
         """
         start = self._entering.exact(target)
         if not start.known and not guess:
@@ -48,7 +48,7 @@ class Ways:
         onward = self._guessed if guess else self._known
         found = [target] if target in onward else self._matching(target) if guess else []
         reached = set(found)
-        for one in found:  # which grows meanwhile
+        for one in found:  # grows meanwhile
             more = [to for to in onward[one] if to not in reached] if one in onward else ()
             found += more
             reached.update(more)
@@ -66,12 +66,12 @@ class Ways:
 
     @cached_property
     def _known(self) -> dict[FormTarget, list[FormTarget]]:
-        """Where each form certainly leads to by itself; expressions lead on only by guess."""
+        """Where each form certainly leads on its own; expressions lead on only by guess."""
         return self._entering.onward()
 
     @cached_property
     def _guessed(self) -> Onward:
-        """Where each form may lead to by itself, and each expression."""
+        """Where each form and each expression may lead on its own."""
         unknown = {to for leads in self._known.values() for to in leads if not to.known}
         return self._known | {to: self._matching(to) for to in unknown}
 
@@ -89,7 +89,7 @@ class Ways:
 
 
 class Ranks:
-    """Numbers of targets: alike where they lead to each other; none leads to a higher one.
+    """Numbers of targets: equal for those that lead to each other; none leads to a higher one.
 
     It is Tarjan's search for strongly connected components, without recursion.
     """
@@ -98,9 +98,9 @@ class Ranks:
         self.found: dict[FormTarget, int] = {}
         self._onward = onward
         self._entered: dict[FormTarget, int] = {}
-        """In which order they have been come to."""
+        """The order in which they were reached."""
         self._lowest: dict[FormTarget, int] = {}
-        """The earliest one that is known to be led back to."""
+        """The earliest one known to be reachable from each."""
         self._edges: dict[FormTarget, Iterator[FormTarget]] = {}
         self._path: list[FormTarget] = []
         for root in onward:
@@ -128,7 +128,7 @@ class Ranks:
         return node
 
     def _next(self, node: FormTarget) -> FormTarget | None:
-        """Nodes that a node leads to and that have not been visited."""
+        """Unvisited nodes that a node leads to."""
         for to in self._edges[node]:
             if to not in self._entered:
                 return to
@@ -137,7 +137,7 @@ class Ranks:
         return None
 
     def _close(self, node: FormTarget) -> None:
-        """Give those a number that lead to a node and that it leads to."""
+        """Number the nodes that lead to a node and back."""
         number = len(self.found)
         while node not in self.found:
             self.found[self._path.pop()] = number

@@ -1,6 +1,6 @@
-"""The Command types of the thesis's Table 4.2 as data: the words applications ask in.
+"""The Command types of the thesis's Table 4.2 as data: the vocabulary of requests.
 
-Nothing here acts. The interpreter's elements, the mediator's rules and the
+This module is pure data. The interpreter's elements, the mediator's rules and the
 robot's controllers all read this one table; a robot profile may add rows to a
 copy of it (thesis 5.3 (6)).
 """
@@ -35,12 +35,12 @@ profile says otherwise."""
 LONGEST_TURN_MS = 600_000
 """How long one utterance, or one question, may keep the speaker without another application (rule E3)."""
 LETTER_MS = 50
-"""How long a letter counts in that: less than it takes, so that whatever is refused is too long."""
+"""The duration counted per letter: less than it takes, so that only speech too long is refused."""
 PATIENCE_MS = 60_000
 """How long an application may keep another from the speaker, by one utterance or question or by
 many (rule E6), unless the run says otherwise."""
 LATE_MS = 2_000
-"""How long after a question's timeout the user may begin to answer it still (rule X10)."""
+"""How long after a question's timeout the user may still begin to answer it (rule X10)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -311,7 +311,7 @@ def too_long(letters: int, silence: float, most: int = LONGEST_TURN_MS) -> str:
         most: how long it may last (ms).
 
     Returns:
-        What is wrong; empty if nothing is.
+        The problem; empty if there is none.
     """
     lasts = letters * LETTER_MS + silence
     if lasts <= most:

@@ -1,8 +1,8 @@
-"""Distributions as they are written, and what is drawn from them by seed.
+"""Distributions as written in documents, and values drawn from them by seed.
 
 ``normal(5s,1s)``: mean and standard deviation; ``lognormal(5s,0.4)``: median and the standard
 deviation of the logarithm; ``uniform(0s,20s)`` or ``0s..20s``; ``exponential(5s)``: mean;
-``empirical(delays.csv)``: a value a line, or a column as ``delays.csv:seconds``.
+``empirical(delays.csv)``: one value per line, or a column as ``delays.csv:seconds``.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from prima.language.values import LONGEST_MS, read_value
 MEASURED = ("duration", "number", "integer")
 """Kinds that may be drawn."""
 MOST_VALUES = 1_000_000
-"""Values that a distribution's file may have."""
+"""Maximum number of values in a distribution's file."""
 MOST_BYTES = 100_000_000
-"""Size of such a file."""
+"""Maximum size of such a file."""
 RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^/]+)(?:/(?P<step>.+))?")
 CALL = re.compile(r"(?P<name>[a-z]+)\((?P<arguments>.*)\)")
 EDGE = 1e-9
@@ -60,13 +60,13 @@ class Distributions:
         high: float | None = None,
         folder: str | None = "",
     ) -> None:
-        """Set what may be written.
+        """Set the kind and bounds.
 
         Args:
             kind: one of :data:`MEASURED`.
             low: the least value (ms for times); by default the kind's own.
             high: the greatest value (ms for times); by default the kind's own.
-            folder: where files of values are; None where none may be named.
+            folder: the folder of files of values; None if none may be named.
         """
         self.kind = kind
         self.folder = folder

@@ -1,7 +1,7 @@
 """The simple types that attributes and arguments have, and how text becomes a value.
 
-A *kind* is the name of a type: it says how a text is read, what Python value it
-gives, and which XML Schema type describes it. Times are integer milliseconds
+A *kind* is the name of a type: it determines how a text is read, its Python value, and the XML
+Schema type that describes it. Times are integer milliseconds
 everywhere; lengths are metres, angles degrees.
 """
 
@@ -22,8 +22,8 @@ Value = str | int | float | bool
 class BadValue(ValueError):
     """A text is not of a kind; ``wrong`` continues a sentence that begins with the text.
 
-    ``right`` is the text that was most likely meant, or nothing; ``beyond`` says that a number is
-    out of its bounds.
+    ``right`` is the text that was most likely meant, or nothing; ``beyond`` means that a number
+    is out of its bounds.
     """
 
     def __init__(
@@ -141,7 +141,7 @@ def _list(pattern: str, what: str, none: str, remedy: str) -> Callable[[str], st
 
 
 def _date(text: str) -> str:
-    from datetime import datetime  # costs a start some of its time, and is rarely needed
+    from datetime import datetime  # slows down the start, and is rarely needed
 
     if re.fullmatch(r"[0-9]{4}-[0-9]{2}-[0-9]{2}(T[0-9]{2}:[0-9]{2}(:[0-9]{2})?)?", text) is None:
         raise BadValue("is not a date.", 'Write it as "2005-03-01T10:00:00".')
@@ -288,7 +288,7 @@ def milliseconds(text: str, default: int) -> int:
 
 
 def shown(value: object) -> str:
-    """A value in ECMAScript's words, for a message."""
+    """A value in ECMAScript notation, for a message."""
     if value is None:
         return "undefined"
     if isinstance(value, bool):
@@ -305,12 +305,12 @@ def shown(value: object) -> str:
 
 
 def quoted(value: object) -> str:
-    """A value in quotation marks; null and undefined, which are one in plain data, without."""
+    """A value in quotation marks; null and undefined, the same in plain data, without."""
     return "(null or undefined)" if value is None else f'"{shown(value)}"'
 
 
 def outside(kind: str, low: float | None, high: float | None) -> str:
-    """Say that a number is beyond its bounds, these in the unit that an author writes."""
+    """The message for a number out of its bounds, which are in the unit that authors write."""
     if low is not None and high is not None:
         return f"is out of range: from {_written(kind, low)} to {_written(kind, high)}."
     if low is not None:
@@ -337,5 +337,5 @@ def _written(kind: str, value: float) -> str:
 
 
 def within(value: float, low: float | None, high: float | None) -> bool:
-    """Whether a number is neither below ``low`` nor above ``high``, where those are given."""
+    """Whether a number is neither below ``low`` nor above ``high``, if given."""
     return (low is None or value >= low) and (high is None or value <= high)

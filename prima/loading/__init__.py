@@ -1,7 +1,7 @@
-"""Loading: files and what they name, read and checked together.
+"""Loading: reads and checks files together with those that they name.
 
-This room and :mod:`prima.api` alone open documents; everything below works on text and values.
-What one use needs and another does not is imported where it is used: most commands are short.
+Only this package and :mod:`prima.api` open documents; everything below works on text and values.
+Modules that not every use needs are imported where they are used: most commands are short.
 """
 
 from __future__ import annotations

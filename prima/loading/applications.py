@@ -1,4 +1,4 @@
-"""Applications of both languages, with the files of their folder that they name."""
+"""Loads applications of both languages, with the files of their folder that they name."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 Taken = Callable[[str, bytes], object]
-"""Is told the name and the bytes of each file that a document takes in."""
+"""Receives the name and the bytes of each file that a document includes."""
 
 
 def read_application(
@@ -44,19 +44,19 @@ def read_application(
 ) -> tuple[AnyDocument, list[Problem]]:
     """Read an application of either language; a VoiceXML document is named after its file.
 
-    ``kind`` is ``fa`` or ``ea`` where the run says so; it counts, whatever the document says.
-    ``site`` says where a VoiceXML document and its folder are served. ``taken`` is called with
+    ``kind`` is ``fa`` or ``ea`` if the run specifies it; it overrides the document's.
+    ``site`` is where a VoiceXML document and its folder are served. ``taken`` is called with
     each grammar that a document of PRIMA's own language names.
 
     Raises:
-        DocumentError: no document at all can be given.
+        DocumentError: there is no document at all.
     """
     if not is_voicexml(data):
         native, problems = read_native(path, data, taken)
         if kind and native.kind != kind:
             from dataclasses import replace
 
-            native = replace(native, kind=kind)  # others may run the same document as it is
+            native = replace(native, kind=kind)  # others may run the same document unchanged
         return native, problems
     from prima.voicexml.document import VoiceDocument
     from prima.voicexml.reading import read_page
@@ -73,7 +73,7 @@ def read_application(
 def read_native(
     path: str, data: bytes, taken: Taken | None = None
 ) -> tuple[Document, list[Problem]]:
-    """An application in PRIMA's own language, with the grammars of its folder that it names."""
+    """Read an application in PRIMA's own language, with the grammars in its folder."""
 
     def fetch(uri: str) -> bytes:
         found = fetcher(path_of(path).parent)(uri)
@@ -98,7 +98,7 @@ def load(path: str | Path) -> Document:
 
 
 def fetcher(folder: Path, site: Site | None = None) -> Callable[[str], bytes]:
-    """Gives the bytes of grammars in a folder, of one that was copied from a site by their URIs."""
+    """Returns the bytes of grammars in a folder, by their URIs if it was copied from a site."""
     from prima.voicexml.document import FetchError
 
     def fetch(uri: str) -> bytes:
@@ -111,7 +111,7 @@ def fetcher(folder: Path, site: Site | None = None) -> Callable[[str], bytes]:
 
 
 def in_folder(folder: Path, problem: Problem) -> Problem:
-    """A problem of a file that is named by its place in a folder."""
+    """A problem of a file, with the file's path in a folder."""
     return problem._replace(place=problem.place._replace(file=str(folder / problem.place.file)))
 
 
@@ -123,7 +123,7 @@ def digest(data: bytes) -> str:
 
 
 def load_services(path: str) -> tuple[list[Endpoint], str]:
-    """Load a document of services; gives its digest, too.
+    """Load a document of services; gives its digest as well.
 
     Raises:
         DocumentError: with all its problems.
@@ -155,13 +155,13 @@ def services_of(path: str, data: bytes) -> list[Endpoint]:
 
 
 MOST_BESIDE = 300
-"""How many files of a folder are looked at for one that was meant."""
+"""How many files of a folder are considered in a guess."""
 
 
 def nearby(path: Path, *spans: Span, listed: dict[Path, list[Path]]) -> Hint:
-    """The file beside that a name which leads nowhere most likely means: its ending says little.
+    """The file in the same folder that a wrong name most likely means; its suffix counts little.
 
-    ``listed`` keeps what is in each folder: a document may name very many files.
+    ``listed`` caches each folder's files: a document may name very many.
     """
     folder = path.parent
     if folder not in listed:

@@ -1,4 +1,4 @@
-"""What can be wrong with the files that documents name, and with what a scenario says of them."""
+"""Diagnoses of the files that documents name, and of how scenarios use them."""
 
 from __future__ import annotations
 

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 
 class Files(Protocol):
-    """What counts in place of files on the disk."""
+    """Replacements of files on the disk."""
 
     @property
     def folder(self) -> str:
-        """From where relative paths lead; empty for the current folder."""
+        """The base of relative paths; empty for the current folder."""
 
     def text(self, path: Path) -> bytes | None:
         """The content of a file by its absolute path, or None to read it from the disk."""
@@ -33,7 +33,7 @@ class Files(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class GivenFiles:
-    """Contents in place of files: documents of an editor, or of another machine."""
+    """Contents that replace files: documents of an editor, or of another machine."""
 
     texts: Mapping[Path, bytes]
     """By absolute paths."""
@@ -41,7 +41,7 @@ class GivenFiles:
     folder: str = ""
 
     def text(self, path: Path) -> bytes | None:
-        """The content of a file; links on the disk count as the file that they lead to."""
+        """The content of a file; links on the disk are followed."""
         if not self.texts:
             return None
         text = self.texts.get(path)
@@ -57,7 +57,7 @@ _files: ContextVar[Files | None] = ContextVar("files", default=None)
 
 @contextmanager
 def in_place_of_files(files: Files) -> Iterator[None]:
-    """Let contents count in place of files on the disk."""
+    """Use contents in place of files on the disk."""
     token = _files.set(files)
     try:
         yield
@@ -66,7 +66,7 @@ def in_place_of_files(files: Files) -> Iterator[None]:
 
 
 def path_of(path: str | Path) -> Path:
-    """A path as one object; whatever reads a file by its name does without these modules."""
+    """A path as an object; code that reads a file by its name does not import these modules."""
     from pathlib import Path
 
     return Path(path)
@@ -80,13 +80,13 @@ def paths_of(given: str | Path | Iterable[str | Path]) -> list[str]:
 
 
 def _absolute(path: str | Path) -> Path:
-    """A path without links followed; relative paths lead from where the documents were."""
+    """An absolute path without following links; relative ones start at the documents' folder."""
     files = _files.get()
     return path_of(abspath(join(files.folder if files else "", path)))
 
 
 def _open_text(path: str | Path) -> bytes | None:
-    """What counts in place of a file, if anything does."""
+    """The replacement of a file, if any."""
     files = _files.get()
     if files is None:
         return None
@@ -147,7 +147,7 @@ def read_head(path: Path) -> tuple[bytes, int]:
 
 @dataclass(frozen=True, slots=True)
 class Folder:
-    """The folder of a VoiceXML application, which may name its files and no others."""
+    """The folder of a VoiceXML application, which may name only files in it."""
 
     path: str
 
@@ -168,7 +168,7 @@ class Folder:
             raise FetchError(error.problems[0].message) from None
 
     def glance(self, uri: str) -> tuple[bytes, int]:
-        """The first ``HEADER_BYTES`` of a file, and how many it has.
+        """The first ``HEADER_BYTES`` of a file, and its size.
 
         Raises:
             FetchError: there is no such file in the folder.
@@ -183,7 +183,7 @@ class Folder:
             raise FetchError(str(error)) from None
 
     def _inside(self, uri: str) -> Path:
-        """Where a file of the folder is; nothing else is looked at."""
+        """The path of a file in the folder; others are refused."""
         from urllib.parse import unquote, urlsplit
 
         from prima.voicexml.document import FetchError
@@ -195,7 +195,7 @@ class Folder:
         target = path_of(normpath(root / unquote(parts.path).lstrip("/")))
         try:
             inside = target.resolve().is_relative_to(root.resolve())
-        except (OSError, ValueError, RuntimeError) as error:  # a NUL, links that lead round
+        except (OSError, ValueError, RuntimeError) as error:  # a NUL, cyclic links
             raise FetchError(f"it names no file: {error}") from None
         if not inside or not target.is_relative_to(root):
             raise FetchError("it is outside the application's folder")

@@ -14,10 +14,10 @@ VERSION = "1.0.0"
 
 
 def chosen_policy(name: str, loaded: Loaded) -> Policy:
-    """The policy of a name, for the applications of a run.
+    """The policy with a name, for the applications of a run.
 
     Raises:
-        UsageError: there is none, or it names an application that is not there.
+        UsageError: there is none, or it names a missing application.
     """
     try:
         chosen = policy_named(name)
@@ -31,10 +31,10 @@ def chosen_policy(name: str, loaded: Loaded) -> Policy:
 def run_record(
     loaded: Loaded, policy: str, bound: int | None, patience: int, more: Mapping[str, Json] = {}
 ) -> Record:
-    """The first record of a run: all that is needed to run it again.
+    """The first record of a run: everything needed to run it again.
 
     Args:
-        loaded: what runs.
+        loaded: what is run.
         policy: the policy's name.
         bound: rule E4's bound on loops.
         patience: rule E6's bound (ms).
@@ -63,7 +63,7 @@ def run_record(
 
 
 def check_files(head: Record, loaded: Loaded, name: str) -> None:
-    """See whether files are those that a transcript was made with.
+    """Check that files are those that a transcript was made with.
 
     Args:
         head: its first record.
@@ -71,7 +71,7 @@ def check_files(head: Record, loaded: Loaded, name: str) -> None:
         name: the transcript's.
 
     Raises:
-        UsageError: a file is another one, or not there.
+        UsageError: a file differs or is missing.
     """
     files = head["data"].get("files", {})
     if not isinstance(files, dict):

@@ -1,4 +1,4 @@
-"""What a file is, as far as its beginning tells."""
+"""The kind of a file, judged by its beginning."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ from prima.loading.files import read_file
 from prima.markup.sniff import root_of
 
 VOICEXML = re.compile(rb"<(?:[\w.-]+:)?vxml[\s>/]")
-"""How the root element of VoiceXML begins."""
+"""The beginning of VoiceXML's root element."""
 
 
 GRAMMAR = re.compile(rb"<(?:[\w.-]+:)?grammar[\s>/]")
-"""How the root element of a grammar begins that is a file of its own."""
+"""The beginning of the root element of a grammar file."""
 
 
 GRAMMAR_FILES = (".gram", ".abnf", ".grxml", ".srgs")
-"""How the names of files end that are nothing but grammars."""
+"""Suffixes of files that are certainly grammars."""
 
 
 MOST_BEGUN = 2000
-"""Characters of a file that are looked at to tell what it is."""
+"""How many characters of a file are examined to determine its kind."""
 
 
 OTHER_FORMS = (b"#ABNF", b"#JSGF", b";GSL", b"#GSL")
-"""How grammars begin that are no XML."""
+"""Beginnings of grammars that are not XML."""
 
 
 def is_voicexml(data: bytes) -> bool:
-    """Whether a file's root element is VoiceXML's, as far as its beginning tells."""
+    """Whether a file's root element is VoiceXML's, judged by its beginning."""
     return VOICEXML.match(root_of(data)) is not None
 
 
 def is_surely_ours(data: bytes) -> bool:
-    """Whether a file begins so that it need not be parsed to know it for our language's."""
+    """Whether a file is certainly in our language, judged by its beginning without parsing."""
     tag, _, _ = root_of(data).partition(b">")
     before, found, _ = tag.partition(b'xmlns="%s"' % DIALOGUE.namespace.encode())
     apart = before[6:7].isspace() and before[-1:].isspace()
@@ -46,7 +46,7 @@ def is_surely_ours(data: bytes) -> bool:
 
 
 def is_application(path: str) -> bool:
-    """Whether a file is an application of either language, as far as its beginning tells."""
+    """Whether a file is an application of either language, judged by its beginning."""
     try:
         data = read_file(path)
     except (DocumentError, UsageError):
@@ -55,7 +55,7 @@ def is_application(path: str) -> bool:
 
 
 def is_grammar(data: bytes) -> bool:
-    """Whether a file is a grammar, as far as its beginning tells; it may lack its header."""
+    """Whether a file is a grammar, judged by its beginning; its header may be missing."""
     root = root_of(data)
     if root.startswith(OTHER_FORMS) or GRAMMAR.match(root) is not None:
         return True

@@ -1,4 +1,4 @@
-"""What a scenario names: read, with all that is wrong with it."""
+"""Reads the documents that a scenario names, and collects their problems."""
 
 from __future__ import annotations
 
@@ -54,28 +54,28 @@ if TYPE_CHECKING:
 Made = TypeVar("Made")
 
 STAGE = "stage.xml"
-"""The name of the scenario that is made for applications without one: nobody has such a file."""
+"""The name of the scenario made for applications without one: no file has this name."""
 
 
 @dataclass(slots=True)
 class Reading:
-    """What has been read of a scenario, and all that is wrong with it."""
+    """The documents of a scenario read so far, and their problems."""
 
     path: Path
     files: dict[str, str]
     problems: list[Problem] = field(default_factory=list)
     documents: list[AnyDocument] = field(default_factory=list)
     whole: bool = False
-    """Whether all documents of VoiceXML applications are looked into, not only the first."""
+    """Whether all documents of VoiceXML applications are checked, not only the first."""
     answered: tuple[str, ...] = ()
-    """How URIs begin that the scenario's services answer."""
+    """Prefixes of URIs that the scenario's services answer."""
     _listed: dict[Path, list[Path]] = field(default_factory=dict)
-    """What stands in folders in which a document was looked for in vain."""
+    """Files of the folders in which a document was missing."""
 
     def read(self, name: str, place: Place, made_of: Callable[[str, bytes], Made]) -> Made | None:
-        """A document that the scenario names, or None where it cannot be had."""
+        """A document that the scenario names, or None if it cannot be read."""
         if not name:
-            return None  # told already, as a problem of the schema
+            return None  # reported already by the schema
         target = path_of(normpath(self.path.parent / name))
         content = b""
         try:
@@ -99,7 +99,7 @@ class Reading:
 
     def application(self, src: str, place: Place, node: Node | None = None) -> AnyDocument | None:
         """An application, with its problems."""
-        said = node.get("kind") if node is not None else "ea"  # what a place offers is an EA
+        said = node.get("kind") if node is not None else "ea"  # a place offers EAs
         own = (node.get("id") if node is not None else "", said or "ea")
         site = self.site(src, node) if node is not None else None
 
@@ -131,7 +131,7 @@ class Reading:
         return document
 
     def site(self, src: str, node: Node) -> Site | None:
-        """Where an application is served, if the scenario says so; a wrong one is a problem."""
+        """Where an application is served, if the scenario says so; a wrong URI is a problem."""
         from prima.voicexml.site import site_of
 
         uri, folder = node.get("uri").strip(), node.get("folder")
@@ -162,7 +162,7 @@ class Reading:
         return world, profile
 
     def offers(self, scenario: Scenario, world: Map) -> list[tuple[Area, str]]:
-        """The applications that a world's areas offer, but those that the scenario runs itself."""
+        """The applications that a world's areas offer, except those the scenario runs itself."""
         if not world.areas:
             place = scenario.node.attribute_place("entrances")
             self.problems.append(NO_AREA.at(place, world=world.id))
@@ -173,7 +173,7 @@ class Reading:
             folder = posixpath.dirname(scenario.world)
             name = posixpath.normpath(posixpath.join(folder, area.src))
             if name in beside:
-                continue  # the scenario itself says when it runs
+                continue  # the scenario determines when it runs
             if name not in known:
                 known[name] = self.offered(name, area)
             document = known[name]
@@ -182,7 +182,7 @@ class Reading:
         return made
 
     def users(self, scenario: Scenario) -> None:
-        """The documents of how persons behave."""
+        """The documents of the behaviour of persons."""
         from prima.sim.user import read_user
 
         wrong: set[str] = set()
@@ -191,12 +191,12 @@ class Reading:
                 place = person.node.attribute_place("user")
                 user = self.read(person.user, place, partial(read_user, person=person.name))
                 if user is None:
-                    wrong.add(person.user)  # told once
+                    wrong.add(person.user)  # reported once
                 else:
                     scenario.take(person.name, user)
 
     def replies(self, scenario: Scenario) -> None:
-        """What services answer fetches with."""
+        """The answers of services to fetches."""
         for service in scenario.services:
             for reply in service.replies:
                 if reply.src and reply.node is not None:
@@ -204,7 +204,7 @@ class Reading:
                     reply.body = self.read(reply.src, place, lambda _, data: data) or b""
 
     def offered(self, name: str, area: Area) -> AnyDocument | None:
-        """What an area offers: an EA."""
+        """The EA that an area offers."""
         place = area.node.attribute_place("application")
         document = self.application(name, place)
         if document is not None:
@@ -213,7 +213,7 @@ class Reading:
         return document
 
     def check_commands(self, robot: Profile) -> None:
-        """Commands that the robot cannot do."""
+        """Check for Commands that the robot cannot carry out."""
         for document in self.documents:
             if isinstance(document, Document):
                 self.problems += check_commands(document, robot.commands, robot.devices)
@@ -242,18 +242,18 @@ class Reading:
 def other_kind(
     document: AnyDocument, name: str, who: str, place: Place, remedy: str
 ) -> list[Problem]:
-    """Warn of a document that says it is of another kind than the run does, which counts."""
+    """Warn of a document that declares another kind than the run, which takes precedence."""
     own = document.node.get("kind")
     if not isinstance(document, Document) or own not in {"ea", "fa"} - {document.kind}:
-        return []  # what is neither is told at the document
+        return []  # any other is reported at the document
     kind = document.kind.upper()
     return [RUNS_AS_OTHER.at(place, Hint(remedy), name=name, own=own.upper(), who=who, kind=kind)]
 
 
 def _named_wrongly(name: str, place: Place, problem: Problem, content: bytes) -> Problem:
-    """A document of another kind than the scenario needs is the mistake of who names it.
+    """Report a document of the wrong kind where the scenario names it.
 
-    Where no author wrote the scenario, it is told at the document.
+    If the scenario was generated, it is reported at the document.
     """
     if place.file == STAGE:
         return problem
@@ -263,13 +263,13 @@ def _named_wrongly(name: str, place: Place, problem: Problem, content: bytes) ->
 
 
 FAVOURITE = "fixed:APP prefers the application APP."
-"""What to write for a policy that prefers one application."""
+"""The remedy for a policy that prefers one application."""
 
 
 def favourite_problem(
     policy: str, documents: list[AnyDocument], node: Node | None = None
 ) -> tuple[str, Hint] | None:
-    """What is wrong with the application that ``fixed:APP`` names, and what was meant."""
+    """The problem of the application that ``fixed:APP`` names, and the one meant."""
     kind, _, first = policy.partition(":")
     names = [document.id for document in documents]
     if kind != "fixed" or not first or first in names:

@@ -52,7 +52,7 @@ def load_text(path: str | Path, data: bytes, robot: str = "") -> Loaded:
     """Load a scenario from memory; see :func:`load_scenario`.
 
     Args:
-        path: the file whose folder its paths begin at; it is not read.
+        path: the file whose folder is the base of its paths; it is not read.
         data: the scenario's text.
         robot: the path of another robot than the scenario's.
 
@@ -63,7 +63,7 @@ def load_text(path: str | Path, data: bytes, robot: str = "") -> Loaded:
 
 
 def with_scenario(loaded: Loaded, path: str | Path, data: bytes) -> Loaded:
-    """What was loaded, with another text of its scenario that names the same files.
+    """A loaded scenario with another text that names the same files.
 
     Raises:
         DocumentError: the text has errors.
@@ -83,7 +83,7 @@ def with_scenario(loaded: Loaded, path: str | Path, data: bytes) -> Loaded:
 
 
 def with_robot(loaded: Loaded, data: bytes) -> Loaded:
-    """What was loaded, with another text of its robot's document.
+    """A loaded scenario with another text of its robot's document.
 
     Raises:
         DocumentError: the text has errors.
@@ -99,7 +99,7 @@ def with_robot(loaded: Loaded, data: bytes) -> Loaded:
 
 
 def seeded(loaded: Loaded, seed: int | None) -> Loaded:
-    """What was loaded, drawn by another seed; None for the scenario's own."""
+    """A loaded scenario with another seed; None for its own."""
     from dataclasses import replace
 
     if seed is None:
@@ -109,7 +109,7 @@ def seeded(loaded: Loaded, seed: int | None) -> Loaded:
 
 
 def without_ignored(loaded: Loaded) -> Loaded:
-    """What has been loaded, without the problems that authors ignore."""
+    """A loaded scenario without the problems that authors ignore."""
     loaded.problems = Ignores(read_file).left(loaded.problems)
     return loaded
 
@@ -117,7 +117,7 @@ def without_ignored(loaded: Loaded) -> Loaded:
 @few_guesses()
 @seldom_collected()
 def load_whole(path: Path, data: bytes, whole: bool = False, robot: str = "") -> Loaded:
-    """Load a scenario; ``whole`` looks into all documents of its VoiceXML applications as well."""
+    """Load a scenario; with ``whole`` also check all documents of its VoiceXML applications."""
     from prima.devices.profile import read_robot
     from prima.sim.devices import Cast
     from prima.sim.hearing import check_hearing

@@ -36,7 +36,7 @@ def stage(
         world: path of another world; the robot is at its first place.
         robot: path of another robot's profile.
         maps: folders of VoiceXML documents and where they are served, as ``URI=FOLDER``.
-        entrances: whether the robot takes up what areas of the world offer.
+        entrances: whether the robot takes up the applications that areas of the world offer.
 
     Raises:
         DocumentError: with the problems of all files, if any is an error.
@@ -64,7 +64,7 @@ def stage(
 
 
 def _other_kinds(given: list[tuple[str, str]], loaded: Loaded) -> Iterator[Problem]:
-    """Documents of another kind than their options say."""
+    """Documents of another kind than their options."""
     for (kind, _), document in zip(given, loaded.cast.documents, strict=False):
         own, place = document.node.get("kind"), document.node.attribute_place("kind")
         remedy = f'Name it with --{own}, or write kind="{kind}".'
@@ -72,7 +72,7 @@ def _other_kinds(given: list[tuple[str, str]], loaded: Loaded) -> Iterator[Probl
 
 
 def _scenario(world: str, robot: str, entrances: bool, inside: str) -> bytes:
-    """A scenario's text."""
+    """The text of the scenario."""
     from html import escape
 
     taken_up = ' entrances="open"' if entrances else ""
@@ -127,10 +127,10 @@ def _standing(world: str) -> str:
 
 
 def _served(paths: list[str], maps: Iterable[str]) -> dict[str, str]:
-    """What a scenario says of applications whose folders are mapped to URIs.
+    """Attributes of applications whose folders are mapped to URIs.
 
     Raises:
-        UsageError: a mapping is none, or no application is in its folder.
+        UsageError: a mapping is invalid, or no application is in its folder.
     """
     from html import escape
 
@@ -145,10 +145,10 @@ def _served(paths: list[str], maps: Iterable[str]) -> dict[str, str]:
 
 
 def _refuse_same_id(given: list[tuple[str, str]]) -> None:
-    """Name the two applications of one id, by their options: the stage's own text is no file.
+    """Refuse two applications with one id, naming their options: the stage has no file.
 
     Raises:
-        UsageError: there are two.
+        UsageError: two have the same id.
     """
     seen: dict[str, str] = {}
     for kind, path in given:

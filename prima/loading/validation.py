@@ -32,17 +32,17 @@ if TYPE_CHECKING:
 
 
 def validate(paths: str | Path | Iterable[str | Path], maps: Iterable[str] = ()) -> list[Problem]:
-    """Give all problems of documents of any kind; a scenario's also those of what it names.
+    """Give all problems of documents of any kind, for a scenario also of the documents it names.
 
-    Those that authors ignore, in a document or in ``prima.toml``, are left out. Of very many the
-    last says only how many there are more (:func:`prima.errors.listed`).
+    Those that authors ignore, in a document or in ``prima.toml``, are omitted. If there are very
+    many, the last one counts those omitted (:func:`prima.errors.listed`).
 
     Args:
         paths: the documents, or one.
         maps: folders of VoiceXML documents and where they are served, as ``URI=FOLDER``.
 
     Raises:
-        UsageError: a file cannot be read, or a mapping is none.
+        UsageError: a file cannot be read, or a mapping is invalid.
     """
     named = paths_of(paths)
     validation = Validation(mappings(maps, named))
@@ -51,7 +51,7 @@ def validate(paths: str | Path | Iterable[str | Path], maps: Iterable[str] = ())
 
 
 def once(problems: Iterable[Problem]) -> list[Problem]:
-    """Problems once each: an error in a file is not repeated as a warning of the documents that name it."""
+    """Remove duplicates: an error in a file is not repeated as a warning of its referrers."""
     found = dict.fromkeys(problems)
     warned = {one.place for one in found if one.severity != "error"}
     errors = {
@@ -63,7 +63,7 @@ def once(problems: Iterable[Problem]) -> list[Problem]:
 
 
 class Validation:
-    """Checks documents one after the other, and in the end what their authors ignore.
+    """Checks documents one after the other, and finally their ignores.
 
     Args:
         maps: folders of VoiceXML documents by the URIs at which they are served.
@@ -74,7 +74,7 @@ class Validation:
         self._ignores = Ignores(read_file)
 
     def problems(self, path: str | Path) -> list[Problem]:
-        """The problems of a document that nobody ignores.
+        """The problems of a document that are not ignored.
 
         Raises:
             UsageError: the file cannot be read.
@@ -85,7 +85,7 @@ class Validation:
         return in_order(found)
 
     def ignored(self) -> list[Problem]:
-        """What is wrong with ignores of the documents checked: no reason, or nothing to ignore."""
+        """The problems of ignores in the documents checked: no reason, or nothing to ignore."""
         return in_order(self._ignores.told())
 
 
@@ -153,7 +153,7 @@ def _application_problems(path: str, data: bytes) -> list[Problem]:
 
 
 def _grammar_problems(path: Path, data: bytes) -> list[Problem]:
-    """What is wrong with a grammar, and with those of its folder that it refers to."""
+    """The problems of a grammar, and of those in its folder that it refers to."""
     from prima.grammar import load
 
     try:
@@ -164,7 +164,7 @@ def _grammar_problems(path: Path, data: bytes) -> list[Problem]:
 
 
 def _prices(document: Document) -> list[Problem]:
-    """What an application's units cost others, on the demo's robot, as notes."""
+    """The cost of an application's units to others, on the demo's robot, as notes."""
     from prima.checks.prices import notes
     from prima.devices.profile import read_robot
 

@@ -1,4 +1,4 @@
-"""What is wrong with a VoiceXML document and with those that it leads to."""
+"""Problems of VoiceXML documents and of those that they lead to."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 
 
 def mappings(maps: Iterable[str], paths: Iterable[str]) -> dict[str, str]:
-    """Folders by the URIs at which they are served, of ``URI=FOLDER``.
+    """Folders by the URIs at which they are served, from ``URI=FOLDER``.
 
     Raises:
-        UsageError: a mapping is none, or none of the applications is in its folder.
+        UsageError: a mapping is invalid, or none of the applications is in its folder.
     """
     from prima.voicexml.site import mapped, mapping_of
 
@@ -64,7 +64,7 @@ def voicexml_problems(
 ) -> Iterator[Problem]:
     """The problems of a VoiceXML document, and of those of its folder that it leads to.
 
-    URIs that begin like one of ``answered`` are a service's.
+    URIs with a prefix in ``answered`` are a service's.
     """
     from prima.voicexml.caught import check_caught
     from prima.voicexml.document import FetchError
@@ -101,17 +101,17 @@ NAMING_FILES = {
     "next": frozenset(["goto", "link", "choice", "submit"]),
     "application": frozenset(["vxml"]),
 }
-"""Attributes of VoiceXML elements that name a file, where they name nothing else."""
+"""Attributes of VoiceXML elements that name a file, unless they name something else."""
 
 
 SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:|//")
-"""How a URI begins that is no file's name."""
+"""URI schemes that do not name a file."""
 
 
 def _not_there(
     page: Page, folder: Path, answered: tuple[str, ...], missing: set[int]
 ) -> Iterator[Problem]:
-    """Warn of files that a VoiceXML document names and that are not in its folder.
+    """Warn of files that a VoiceXML document names but its folder lacks.
 
     The indices of the elements that name them are put into ``missing``.
     """
@@ -121,13 +121,13 @@ def _not_there(
             continue
         spans = value_span(node, name, file.rpartition("/")[2])
         missing.add(node.index)
-        few = len(missing) <= LIMITS.problems  # what is not listed needs no hint
+        few = len(missing) <= LIMITS.problems  # problems that are not listed need no hint
         hint = nearby(folder / file, *spans, listed=listed) if few else Hint()
         yield NO_FILE_HERE.at(node.attribute_place(name), hint, file=file[:80])
 
 
 def _files_named(page: Page, answered: tuple[str, ...]) -> Iterator[tuple[Node, str, str]]:
-    """The files that elements name, with the attribute, but what is ``answered`` from elsewhere."""
+    """The files that elements name, with the attribute, except URIs ``answered`` by services."""
     from urllib.parse import unquote
 
     for node in page.root.walk():
@@ -143,7 +143,7 @@ def _files_named(page: Page, answered: tuple[str, ...]) -> Iterator[tuple[Node, 
 
 
 def _grammars_of(page: Page, folder: Path, missing: set[int]) -> Iterator[Problem]:
-    """What is wrong with the grammars in files that a VoiceXML document names, if they are there."""
+    """Problems of the existing grammar files that a VoiceXML document names."""
     from prima.voicexml.checks import grammar_problems
 
     site = page.site
@@ -159,5 +159,5 @@ def _grammars_of(page: Page, folder: Path, missing: set[int]) -> Iterator[Proble
                 file = problem.place.file
                 place = problem.place._replace(file=site.name(file) if site else file)
                 yield in_folder(folder, problem._replace(place=place))
-            elif problem.code != "no-such-file":  # which is told already
+            elif problem.code != "no-such-file":  # which is reported already
                 yield problem

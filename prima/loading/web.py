@@ -1,8 +1,8 @@
-"""Real HTTP for a run that allows it, by host: nothing else in the package uses the network.
+"""Real HTTP for runs that allow it, by host: nothing else in the package uses the network.
 
-What a host answers takes no simulated time, so the run waits for it, in real time: an
-application is kept waiting for a host that is silent once, and others in the same instant
-wait with it and not behind it. Simulated time never waits.
+An answer takes no simulated time, so the run waits for it in real time: each application waits
+only once for a silent host, and others in the same instant wait at the same time, not one after
+the other. Simulated time never waits.
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ from prima.script.ecmascript import inward, stringify
 from prima.sim.services import Answering, answer, host_of, not_allowed
 
 REAL_SECONDS = 10.0
-"""How long (s) a host may take for all of an answer, redirections included, in real time."""
+"""How long (s) a host may take for a complete answer, redirections included, in real time."""
 MOST_REDIRECTIONS = 5
-"""Redirections of one fetch that are followed."""
+"""Maximum number of redirections followed in one fetch."""
 MOST_FETCHES = 1000
-"""Fetches of a run, each redirection counted; each application has an equal share."""
+"""Maximum number of fetches in a run, including redirections; applications share them equally."""
 MOST_BYTES = 50_000_000
-"""Bytes of a run's answers; each application has an equal share."""
+"""Maximum size of a run's answers in bytes; each application has an equal share."""
 MOST_SECONDS = 120.0
 """How long (s) a run waits for answers, in real time; each application has an equal share."""
 MOVED = frozenset([301, 302, 303, 307, 308])
@@ -58,9 +58,9 @@ MOVED = frozenset([301, 302, 303, 307, 308])
 
 
 class Hosts:
-    """Asks the hosts that a run allows, as ``HOST`` or ``HOST:PORT``, and no others.
+    """Sends requests only to the hosts that a run allows, as ``HOST`` or ``HOST:PORT``.
 
-    ``sharing`` is how many applications share what the run may fetch.
+    ``sharing`` is how many applications share the run's limits.
     """
 
     def __init__(self, allowed: Iterable[str], sharing: int) -> None:
@@ -70,10 +70,10 @@ class Hosts:
         self._bytes: Counter[str] = Counter()
         self._waited: defaultdict[str, float] = defaultdict(float)
         self._silent: set[tuple[str, str]] = set()
-        """Applications, each with a host that has kept it waiting in vain."""
+        """Applications, each with a host that did not answer it."""
 
     def __call__(self, app: str, uri: str, method: str, values: Data) -> Answering:
-        """Begin to fetch a URI by a method with values; gives what waits for its answer."""
+        """Begin to fetch a URI by a method with values; returns what waits for its answer."""
         if problem := self._refusal(app, uri):
             return partial(Fetched, app, 0, uri, problem=problem)
         asking = _Fetching(self, app, uri)
@@ -84,17 +84,17 @@ class Hosts:
         """Count a request of an application.
 
         Raises:
-            ValueError: it has made as many as it may.
+            ValueError: it has reached its limit.
         """
         self._made[app] += 1
         if self._made[app] > MOST_FETCHES // self.sharing:
             _refuse(_used_up(f"{MOST_FETCHES // self.sharing} fetches"))
 
     def check(self, uri: str) -> None:
-        """Refuse what is not of an allowed host.
+        """Refuse a request to a host that is not allowed.
 
         Raises:
-            ValueError: with what to do.
+            ValueError: with a remedy.
         """
         host = host_of(uri)
         if urlsplit(uri).scheme not in ("http", "https"):
@@ -107,14 +107,14 @@ class Hosts:
         return max(MOST_BYTES // self.sharing - self._bytes[app], 0)
 
     def took(self, app: str, uri: str, seconds: float, size: int | None) -> None:
-        """Note how long an answer was waited for, and its size; None where there was none."""
+        """Note how long the wait for an answer took, and its size; None without an answer."""
         self._waited[app] += seconds
         self._bytes[app] += size or 0
         if size is None:
             self._silent.add((app, host_of(uri)))
 
     def _refusal(self, app: str, uri: str) -> str:
-        """Why an application may not ask for a URI any more; nothing if it may."""
+        """Why an application may not request a URI any more; empty if it may."""
         if (app, host_of(uri)) in self._silent:
             return f"the host has kept the application waiting for {REAL_SECONDS:g} s before"
         if not self.left(app):
@@ -142,7 +142,7 @@ class _Fetching:
     held: list[socket.socket] = field(default_factory=list)
 
     def wait(self) -> Fetched | None:
-        """The answer; None where there is none by the deadline."""
+        """The answer; None if there is none by the deadline."""
         began = time.monotonic()
         told = self.done.wait(max(self.ends - began, 0)) and self.found is not None
         self.hosts.took(self.app, self.uri, time.monotonic() - began, self.size if told else None)
@@ -151,7 +151,7 @@ class _Fetching:
         return self.found if told else None
 
     def run(self, method: str, values: Data) -> None:
-        """Ask, and keep what is answered or what is wrong."""
+        """Send the request, and keep the answer or the error."""
         try:
             data = self._body(form_request(self.uri, method, values))
             self.size = len(data)
@@ -191,7 +191,7 @@ class _Fetching:
         self.hosts.count(self.app)
 
     def _read(self, response: HTTPResponse) -> bytes:
-        """An answer's body: as long as a document may be, and as it is."""
+        """An answer's body, unmodified, up to the maximum length of a document."""
         most = min(LIMITS.bytes, self.hosts.left(self.app))
         data = read_plain(response, most + 1)
         if len(data) > LIMITS.bytes:
@@ -211,10 +211,10 @@ def follow(
     """The bytes of the answer to a request, wherever it is moved to.
 
     Args:
-        request: what is asked.
+        request: the request.
         check: refuses a request (ValueError), or adds headers to it.
         read: reads the body of an answer.
-        held: gets the connections, so that they can be ended.
+        held: receives the connections, so that they can be ended.
         seconds: how long (s) a host may be silent.
 
     Raises:
@@ -235,7 +235,7 @@ def follow(
 
 
 def read_plain(response: HTTPResponse, most: int) -> bytes:
-    """At most so many bytes of an answer that is not compressed.
+    """At most so many bytes of an uncompressed answer.
 
     Raises:
         ValueError: it is compressed.
@@ -254,25 +254,25 @@ def end_connections(held: Iterable[socket.socket]) -> None:
 
 
 def silence(reason: object) -> str:
-    """Why a host does not answer, for an error of urllib."""
+    """Why a host does not answer, from an error of urllib."""
     told = str(reason)
     return told if isinstance(reason, ValueError) else f"the host does not answer: {told}"
 
 
 class _Stays(HTTPRedirectHandler):
-    """Follows no redirection by itself, nor reads what comes along with one."""
+    """Neither follows a redirection nor reads its body."""
 
     def _stays(
         self, req: Request, fp: IO[bytes], code: int, msg: str, headers: HTTPMessage
     ) -> None:
-        """Let it be an error, as other statuses are."""
+        """Treat it as an error, like other statuses."""
 
     http_error_301 = http_error_302 = http_error_303 = _stays
     http_error_307 = http_error_308 = _stays
 
 
 def _opener(held: list[socket.socket]) -> OpenerDirector:
-    """What opens http and https, and nothing else; ``held`` gets its connections."""
+    """An opener for http and https only; ``held`` receives its connections."""
 
     class Plain(HTTPConnection):
         def connect(self) -> None:
@@ -301,7 +301,7 @@ def _opener(held: list[socket.socket]) -> OpenerDirector:
 
 
 def _moved(request: Request, status: int, where: str) -> Request:
-    """A request for where a host says that something is (RFC 9110, 15.4)."""
+    """The request for a redirection's target (RFC 9110, 15.4)."""
     uri = urljoin(request.full_url, where)
     if status in (307, 308):
         headers = {"User-Agent": "PRIMA"}
@@ -324,7 +324,7 @@ def form_request(uri: str, method: str, values: Data) -> Request:
 
 
 def _text(value: Json) -> str:
-    """A value as ECMAScript's text of it; data as JSON."""
+    """A value as text, as in ECMAScript; data as JSON."""
     if isinstance(value, str):
         return value
     return "undefined" if value is None else stringify(inward(value))

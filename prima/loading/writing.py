@@ -1,7 +1,7 @@
-"""Files that are there as a whole or not at all, and what killed processes have left of them.
+"""Writes files as a whole or not at all, and removes leftovers of killed processes.
 
-What is being written stands beside its place under a name of its own, locked by the process that
-writes it. The system takes the lock off when the process ends, however it ends.
+A file is written beside its destination under a temporary name, locked by the writing process.
+The system releases the lock when the process ends, however it ends.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from prima.errors import UsageError
 
 try:
     import fcntl
-except ImportError:  # a system without such locks: nothing is cleaned up there
+except ImportError:  # a system without such locks, where nothing is cleaned up
     fcntl = None  # type: ignore[assignment]
 
 PARTS = ".prima-"
-"""How the names of files and folders begin that hold what is being written."""
+"""The prefix of temporary files and folders."""
 LOCK = "lock"
-"""A folder's file that is locked as long as its process lives."""
+"""The file in a folder that is locked as long as its process lives."""
 
 
 @contextmanager
 def whole(path: str | Path) -> Iterator[IO[bytes]]:
-    """A file to write to, which has its name when all is written; until then the old one has it.
+    """A file to write to, which replaces the old one when it is complete.
 
-    What is no file, as ``/dev/null``, is written to as it is.
+    A device, such as ``/dev/null``, is written to directly.
 
     Raises:
         UsageError: it cannot be written.
@@ -68,7 +68,7 @@ def _opened(real: str) -> Iterator[IO[bytes]]:
     clean_up(folder)
     part, stream = _beside(real)
     try:
-        with stream:  # and so its lock is held until it is closed
+        with stream:  # so its lock is held until it is closed
             yield stream
         if there:
             os.chmod(part, stat.S_IMODE(os.stat(real).st_mode))
@@ -80,13 +80,13 @@ def _opened(real: str) -> Iterator[IO[bytes]]:
 
 
 def _beside(real: str) -> tuple[str, IO[bytes]]:
-    """A new file in the same folder, locked, with the rights that a new file has."""
+    """A new file in the same folder, locked, with the default permissions."""
     folder, name = os.path.split(real)
     short = os.fsdecode(os.fsencode(name)[:100])
     while True:
         part = os.path.join(folder, f"{PARTS}{os.getpid()}-{short}")
         with suppress(FileNotFoundError):
-            os.unlink(part)  # of a process that had the same number
+            os.unlink(part)  # of an earlier process with the same id
         stream = open(part, "xb")  # noqa: SIM115
         if _locked(stream.fileno()) and os.path.exists(part):
             return part, stream
@@ -95,10 +95,10 @@ def _beside(real: str) -> tuple[str, IO[bytes]]:
 
 @contextmanager
 def parts_folder(folder: str) -> Iterator[str]:
-    """A new folder inside another for what is being written there; it is gone afterwards.
+    """A temporary folder inside another for files being written there.
 
     Raises:
-        OSError: there cannot be one.
+        OSError: it cannot be created.
     """
     os.makedirs(folder, exist_ok=True)
     clean_up(folder)
@@ -117,11 +117,11 @@ def _new_folder(folder: str) -> tuple[str, int]:
             lock = os.open(os.path.join(parts, LOCK), os.O_CREAT | os.O_RDWR, 0o600)
             if _locked(lock) and os.path.exists(os.path.join(parts, LOCK)):
                 return parts, lock
-            os.close(lock)  # another process has just taken it for left over
+            os.close(lock)  # another process has just taken it for a leftover
 
 
 def clean_up(folder: str) -> None:
-    """Remove from a folder what processes were writing that have been killed."""
+    """Remove leftovers of killed processes from a folder."""
     if fcntl is None:
         return
     with suppress(OSError):
@@ -145,7 +145,7 @@ def _remove_if_left(path: str, is_folder: bool) -> None:
 
 
 def _locked(file: int) -> bool:
-    """Lock an open file; whether nobody else has it."""
+    """Lock an open file; gives whether it was free."""
     if fcntl is None:
         return True
     try:

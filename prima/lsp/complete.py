@@ -234,7 +234,7 @@ class _Completion:
                 yield Proposal(name, "event", *span, name, doc=doc)
 
     def _occurring(self, tag: ScannedTag) -> dict[str, str]:
-        """Events of the language, and of what the robot and its services can do."""
+        """Events of the language, the robot and its services."""
         voice = dialect(self.page) == "voicexml"
         known = dict(VOICEXML_EVENTS | EVENTS if voice else EVENTS)
         for kind, begin in EVENTS_OF:

@@ -72,7 +72,7 @@ def definitions(workspace: Workspace, path: Path, offset: int) -> list[NameSpot]
 
 
 def _begun(workspace: Workspace, path: Path, mark: Mark) -> list[FoundName]:
-    """What raises an event, or defines the name in it: ``touch.head`` belongs to a sensor."""
+    """The definition of an event, or of the name in it: ``touch.head`` belongs to a sensor."""
     known = workspace.known(path, ("event",), anywhere=False)
     found = [one for one in known if one.mark.name.startswith(f"{mark.name}.")]
     begin, _, last = mark.name.rpartition(".")

@@ -37,7 +37,7 @@ SEVERITIES = {
 }
 
 IDS = (str, int, float)
-"""What the id of a request may be."""
+"""Types of the id of a request."""
 NO_MESSAGE = "This is not a JSON-RPC 2.0 message."
 logger = logging.getLogger("prima.lsp")
 
@@ -103,7 +103,7 @@ class Protocol(LanguageServerProtocol):
             self.refused(message.id, error)
 
     def refused(self, asked: Any, error: JsonRpcException) -> JsonRpcException:
-        """Send an error as the answer to what was asked by an id, which may be none; give it."""
+        """Answer a request, by its id (perhaps none), with an error, and return that."""
         known = asked if isinstance(asked, IDS) else None
         told = {"code": error.code, "message": error.message}
         self._send_data({"jsonrpc": self.VERSION, "id": known, "error": told})

@@ -1,4 +1,4 @@
-"""What editors know of the languages: the elements and attributes allowed at a place."""
+"""The languages as editors need them: the elements and attributes allowed at a place."""
 
 from __future__ import annotations
 

@@ -27,8 +27,8 @@ class Lines:
         self.starts = [0, *(match.end() for match in LINE_END.finditer(text))]
         self._ascii = text.isascii()
         self._wide: tuple[int, str, list[int], list[int]] = (-1, "", [], [])
-        """Of the line in which a column was looked for last: behind which letters columns are not
-        characters any more, and by how many units so far."""
+        """For the line in which a column was looked up last: after which letters columns differ
+        from characters, and by how many units so far."""
 
     def _end(self, line: int) -> int:
         """The end of a line, without its line break."""

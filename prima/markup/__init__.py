@@ -1,1 +1,1 @@
-"""Reading XML that a stranger wrote: hardened, with exact places, against a table of elements."""
+"""Hardened reading of untrusted XML, with exact places, checked against a table of elements."""

@@ -1,4 +1,4 @@
-"""Well-formed text as nodes, by expat: fast, and without messages."""
+"""Parses well-formed text to nodes with expat: fast, and without messages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ PREFIXES = {
     "http://www.w3.org/XML/1998/namespace": "xml:",
     "http://www.w3.org/2001/XMLSchema-instance": "xsi:",
 }
-"""Namespaces of attributes that documents write with these prefixes."""
+"""Namespaces of attributes with predefined prefixes."""
 
 
 class LimitReached(Exception):
@@ -39,7 +39,7 @@ class Unclear(Exception):
 
 
 def attribute_name(name: str) -> str:
-    """An attribute's name as documents write it, of expat's ``URI}NAME``."""
+    """An attribute's name as documents write it, from expat's ``URI}NAME``."""
     namespace, mark, local = name.rpartition("}")
     if not mark:
         return name
@@ -48,13 +48,13 @@ def attribute_name(name: str) -> str:
 
 
 Start = Callable[[str, dict[str, str]], None]
-"""Takes a start tag: the element's name and its attributes."""
+"""A handler of start tags: the element's name and its attributes."""
 
 
 def _starter(source: Source, opened: list[Node]) -> Start:
-    """Makes nodes of start tags; ``opened`` are the elements that are open.
+    """A handler that makes nodes of start tags; ``opened`` are the open elements.
 
-    It is called for every element: hence the variables of this function.
+    It is called for every element; local variables of this function make it fast.
     """
     names: dict[str, tuple[str, str]] = {}
     plain: set[str] = set()  # attributes without a namespace
@@ -94,10 +94,10 @@ def build(source: Source, doctype: bool = False) -> Node:
     """The root element of a document's text; ``doctype`` says whether it may have a DOCTYPE.
 
     Raises:
-        TooMuch: it is beyond a limit.
-        Unclear: it is not well-formed, or has a DOCTYPE that it may not have.
+        TooMuch: it exceeds a limit.
+        Unclear: it is not well-formed, or has a DOCTYPE that is not allowed.
     """
-    if "\0" in source.text:  # by which expat would guess another encoding
+    if "\0" in source.text:  # from which expat would guess another encoding
         raise Unclear
     data = source.text.encode()
     top = Node("", source, -1, {})

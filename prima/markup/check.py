@@ -1,4 +1,4 @@
-"""Schema problems in the author's words, from the same table that makes the schema."""
+"""Schema problems in the author's terms, from the same table as the schema."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ DOCUMENTS = {
     "urn:prima:scenario:1": "a scenario",
     "urn:prima:user:1": "a user",
 }
-"""What documents are, by their namespaces."""
+"""Kinds of documents by their namespaces."""
 VOICEXML = "a VoiceXML document"
 
 OTHER_ROOT = WRONG_ROOT.says(
@@ -64,7 +64,7 @@ def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
     """Find the vocabulary of a document by its root element's namespace.
 
     Raises:
-        DocumentError: it belongs to no vocabulary of these.
+        DocumentError: it belongs to none of these vocabularies.
     """
     for vocabulary in vocabularies:
         if root.namespace == vocabulary.namespace:
@@ -115,7 +115,7 @@ def _as_application(root: Node) -> str:
 
 
 def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem]) -> None:
-    """Give every node its table key, and add the problems that the table of elements shows."""
+    """Give every node its table key, and add the problems found by the table of elements."""
     namespace = vocabulary.namespace
     known: dict[str, _Rules] = {}
     read: dict[str, set[str]] = {}
@@ -144,7 +144,7 @@ def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem]) -> N
 
 
 class _Rules:
-    """The table's rules for elements of one key, kept for all of them in a document."""
+    """The table's rules for elements of one key, cached for a document."""
 
     def __init__(self, vocabulary: Vocabulary, key: str, read: dict[str, set[str]]) -> None:
         self.element = vocabulary.elements[key]
@@ -152,9 +152,9 @@ class _Rules:
         self.children = vocabulary.children(key)
         self.required = [item for item in self.element.attributes if item.required]
         self.values: dict[str, tuple[set[str], Callable[[str], object] | None]] = {}
-        """Correct values by attributes, and what reads others, if others are allowed.
+        """Correct values by attribute, and the reader of other values, if others are allowed.
 
-        Values that have been read are kept by kinds in ``read``: most occur many times."""
+        Values are cached by kinds in ``read``: most occur many times."""
         for name, (item, is_expression) in self.known.items():
             kind = "expression" if is_expression else item.kind
             if item.choices and not is_expression:
@@ -163,7 +163,7 @@ class _Rules:
                 self.values[name] = read.setdefault(kind, set()), KINDS[kind].read
 
     def allow(self, attributes: dict[str, str]) -> bool:
-        """Whether these are attributes that the element may have, and all that it needs."""
+        """Whether the element may have these attributes, and needs no others."""
         for name, text in attributes.items():
             values = self.values.get(name)
             if values is None:
@@ -180,7 +180,7 @@ class _Rules:
         return not self.lacking(attributes)
 
     def lacking(self, attributes: dict[str, str]) -> list[Attribute]:
-        """The attributes that an element with these still needs."""
+        """The missing attributes of an element with these."""
         return [
             item
             for item in self.required
@@ -199,7 +199,7 @@ def _misplaced(child: Node, parent: Node, vocabulary: Vocabulary) -> Problem:
 
 
 def _known_instead(child: Node, parent: Node, vocabulary: Vocabulary) -> Hint:
-    """The element to write instead of one that the language lacks."""
+    """The element to write instead of an unknown one."""
     hint = vocabulary.hints.get(child.tag)
     if isinstance(hint, Instead):
         return renamed(str(hint), child, hint.tag)
@@ -217,7 +217,7 @@ def _stray_text(node: Node, vocabulary: Vocabulary) -> Problem:
 
 
 def _text_place(node: Node) -> Place:
-    """Where an element's own text begins, if it can be told for certain; else the element."""
+    """Where an element's own text begins, if that is certain; else where the element does."""
     before: Node | None = None
     for item in node.content:
         if isinstance(item, Node):
@@ -264,7 +264,7 @@ def _bad_value(node: Node, name: str, bad: BadValue) -> Problem:
 
 
 def _unknown_attribute(node: Node, name: str, rules: _Rules, missing: list[Attribute]) -> Problem:
-    """The problem of an unknown attribute; a missing one that it means is no longer missing."""
+    """The problem of an unknown attribute; a missing one that it means is not reported as well."""
     known = list(rules.known)
     hint = _other_attribute(node, name, rules) or _missing_attribute(node, name, known, missing)
     if not hint and rules.element.text and name in TEXTS:
@@ -281,7 +281,7 @@ def _unknown_attribute(node: Node, name: str, rules: _Rules, missing: list[Attri
 
 
 def _other_attribute(node: Node, name: str, rules: _Rules) -> Hint:
-    """What to write instead of an attribute as other languages have it."""
+    """The remedy for an attribute of other languages."""
     if name == "xml:lang":
         return Hint("Only the root element may have it.")
     if name == "lang" and node.index == 0:
@@ -292,7 +292,7 @@ def _other_attribute(node: Node, name: str, rules: _Rules) -> Hint:
 
 
 def _missing_attribute(node: Node, name: str, known: list[str], missing: list[Attribute]) -> Hint:
-    """The missing attribute that an unknown one means; it is taken from those that are missing."""
+    """The missing attribute that an unknown one means; it is removed from those missing."""
     names = [item.name for item in missing]
     right = f"{name[:-4]}-expr"
     if name.endswith("expr") and right in known:

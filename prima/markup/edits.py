@@ -13,7 +13,7 @@ DECLARATION = re.compile(r"\A<\?xml[^>]*\?>")
 
 
 class TextEdit(NamedTuple):
-    """Characters of a document's text, from one offset to another, and what replaces them."""
+    """Characters of a document's text, from one offset to another, and their replacement."""
 
     start: int
     end: int
@@ -21,7 +21,7 @@ class TextEdit(NamedTuple):
 
 
 def set_attribute(node: Node, name: str, value: str) -> TextEdit:
-    """Give an attribute a value; an empty one takes the attribute away."""
+    """Set an attribute; an empty value removes it."""
     text, quoted = node.source.text, escape(value, {'"': "&quot;", "\n": "&#10;", "\t": "&#9;"})
     if name not in node.attributes:
         tag = NAME.match(text, node.source.tag(node.index))
@@ -34,10 +34,10 @@ def set_attribute(node: Node, name: str, value: str) -> TextEdit:
 
 
 def set_text(node: Node, value: str) -> TextEdit:
-    """Give an element that holds nothing but text another text; an empty one takes it away.
+    """Set the text of an element that contains only text; an empty one removes the element.
 
     Raises:
-        ValueError: it holds elements.
+        ValueError: it contains elements.
     """
     if node.nodes:
         raise ValueError(f"<{node.tag}> holds elements, so its text cannot be varied.")
@@ -55,7 +55,7 @@ def set_text(node: Node, value: str) -> TextEdit:
 def edited(text: str, edits: Iterable[TextEdit]) -> bytes:
     """A document's text with edits, in UTF-8.
 
-    Edits inside an element that another one takes away go with it. The declaration of XML goes,
+    Edits inside an element that another edit removes are dropped. The XML declaration is removed,
     as it may name another encoding.
     """
     whole: list[TextEdit] = []

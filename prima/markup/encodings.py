@@ -1,4 +1,4 @@
-"""Bytes of a document as text, in one of the accepted encodings."""
+"""Decodes documents in one of the accepted encodings."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MARKS = (
     (b"<\0?\0", "utf-16-le"),
     (b"\0<\0?", "utf-16-be"),
 )
-"""How files of some encodings begin (XML 1.0, appendix F)."""
+"""Initial bytes of files in some encodings (XML 1.0, appendix F)."""
 LATE_DECLARATION = re.compile(rb"(?:\xef\xbb\xbf)?\s+<\?xml\s")
 
 
@@ -33,8 +33,8 @@ def decode(file: str, data: bytes) -> str:
     """Give a document's text.
 
     Raises:
-        DocumentError: it is too large, in an encoding that is not accepted, or not in the one
-            that it declares.
+        DocumentError: it is too large, its encoding is not accepted, or differs from the declared
+            one.
     """
     if len(data) > LIMITS.bytes:
         raise too_large(file, len(data))
@@ -42,7 +42,7 @@ def decode(file: str, data: bytes) -> str:
     try:
         text = data.decode("utf-8-sig" if encoding == "utf-8" else encoding)
     except UnicodeDecodeError as error:
-        if LATE_DECLARATION.match(data):  # the parser reports it; its encoding counts for nothing
+        if LATE_DECLARATION.match(data):  # the parser reports it; its encoding is ignored
             return data.decode("iso-8859-1")
         message = f"A byte here is not {encoding.upper()}."
         remedy = "Save it as UTF-8, or declare the encoding it has."
@@ -51,7 +51,7 @@ def decode(file: str, data: bytes) -> str:
 
 
 def _encoding(file: str, data: bytes) -> str:
-    """The encoding that a file's first bytes show; else the one that it declares, or UTF-8."""
+    """The encoding by a file's first bytes, or the declared one, or UTF-8."""
     marked = next((name for mark, name in MARKS if data.startswith(mark)), "")
     declaration = ENCODING.match(data)
     declared = declaration[1].decode().lower() if declaration else ""
@@ -68,7 +68,7 @@ def _encoding(file: str, data: bytes) -> str:
 
 
 def _codec(encoding: str) -> str:
-    """Python's name of an encoding; nothing for an unknown one."""
+    """Python's name of an encoding; empty for an unknown one."""
     try:
         return codecs.lookup(encoding).name
     except LookupError:
@@ -76,11 +76,11 @@ def _codec(encoding: str) -> str:
 
 
 def with_line_feeds(text: str) -> str:
-    """Text whose lines end in line feeds, whatever they end in in the file (XML 1.0, 2.11)."""
+    """Text with all line ends normalised to line feeds (XML 1.0, 2.11)."""
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def byte_place(file: str, encoding: str, error: UnicodeDecodeError) -> Place:
-    """The place of the byte that is not in a file's encoding; columns count characters."""
+    """The place of the byte that is invalid in a file's encoding; columns count characters."""
     before = with_line_feeds(error.object[: error.start].decode(encoding, errors="ignore"))
     return Place(file, before.count("\n") + 1, len(before) - before.rfind("\n"))

@@ -1,4 +1,4 @@
-"""Hints for authors: values and elements as they were most likely meant."""
+"""Hints for authors: the values and elements most likely meant."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ UNITS = {
     "S": 1000,
     "MS": 1,
 }
-"""Units of time that documents do not have, in ms."""
-# Compiled when they are used: most documents have no mistakes.
+"""Units of time that documents do not support, in ms."""
+# Compiled on first use: most documents have no mistakes.
 MEASURE = r"\s*([0-9]+(?:[.,][0-9]+)?|[.,][0-9]+)\s*([A-Za-z]*)\s*"
 NUMBER = r"\s*([+-]?(?:[0-9]+(?:[.,][0-9]+)?|[.,][0-9]+))\s*[A-Za-z/°%]*[²2]?\s*"
 TRUTHS = {"yes": "true", "1": "true", "on": "true", "no": "false", "0": "false", "off": "false"}
@@ -32,18 +32,18 @@ INSIDE = {
     "value": 'Write an expression: <value expr="..."/>.',
     "goto": "Remove it; the tag ends with />.",
 }
-"""Where text belongs that is directly in an element."""
+"""Where text directly in an element belongs."""
 INSTEAD = {
     "prompt": "Write <speak>; a <prompt> is what a <field> asks.",
     "option": "It is an answer that a <field> takes.",
 }
-"""What to write instead of an element that makes no sense in its place."""
+"""Remedies for elements that make no sense in their place."""
 TEXTS = ("text", "value", "say", "content", "message", "name")
-"""Attributes that authors give to what holds its text inside."""
+"""Attributes that authors give to elements whose text belongs inside."""
 
 
 def half(text: str) -> str:
-    """Text in characters of half width, as keyboards for English give."""
+    """Text converted to half-width characters."""
     straight = re.sub("[“”„«»]", '"', text)
     import unicodedata  # needed for problems only
 
@@ -51,12 +51,12 @@ def half(text: str) -> str:
 
 
 def meant_value(kind: str, text: str, usual: str = "") -> str:
-    """A value of a kind that a wrong text most likely means, or nothing.
+    """The value of a kind that a wrong text most likely means, or nothing.
 
     Args:
         kind: the kind.
         text: the text.
-        usual: the default, if there is one: it tells seconds from milliseconds.
+        usual: the default, if any: it distinguishes seconds from milliseconds.
     """
     if len(text) > LONG:
         return ""
@@ -71,8 +71,8 @@ def meant_value(kind: str, text: str, usual: str = "") -> str:
 
 
 LONG_SECONDS = 100
-"""A time without a unit from this number on most likely means milliseconds, unless such seconds
-are usual."""
+"""The number from which a time without a unit most likely means milliseconds, unless so many
+seconds are usual."""
 
 
 def _guess(kind: str, text: str, usual: str) -> str:
@@ -93,7 +93,7 @@ def _guess(kind: str, text: str, usual: str) -> str:
 
 
 def text_remedy(node: Node, spoken: bool) -> str:
-    """Where the text belongs that an element may not hold; ``spoken`` in an application."""
+    """Where text that an element may not contain belongs; ``spoken`` in an application."""
     if node.tag in INSIDE and (spoken or node.tag == "when"):
         return INSIDE[node.tag]
     return "Say it with <speak>, or remove it." if spoken else "Remove it."
@@ -103,16 +103,16 @@ PAUSES = {
     "break": 'Between Commands write <pause time="1s"/>; a <break> is a pause inside of a text.',
     "pause": 'Inside of a text write <break time="1s"/>; a <pause> stands between Commands.',
 }
-"""The two kinds of pauses, each in the place of the other."""
+"""The two kinds of pauses, each where the other belongs."""
 
 
 def inside_itself(tag: str) -> str:
-    """What to do with an element in another one of its name, which most likely is not closed."""
+    """The remedy for an element inside another of its name, which is most likely unclosed."""
     return f"Close the first <{tag}> before this one."
 
 
 def _holder(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
-    """The element that may stand in the parent and hold another; nothing if several could."""
+    """The element allowed in the parent that may contain another; none if several could."""
     inside = [
         one
         for one in vocabulary.children(parent.key)
@@ -122,7 +122,7 @@ def _holder(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
 
 
 def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
-    """What to do with an element in a place where it is not allowed."""
+    """The remedy for a misplaced element."""
     allowed = vocabulary.parents(tag)
     if tag in PAUSES and "break" in vocabulary.tags:
         return PAUSES[tag]

@@ -1,4 +1,4 @@
-"""Limits on documents, which users may raise, and the errors of documents beyond them."""
+"""Limits on documents, which users may raise, and the errors for exceeding them."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from prima.errors import MOST_TOLD, DocumentError, Hint, Place, Problem
 
 @dataclass(slots=True)
 class Limits:
-    """Limits on one document. A document beyond one of them is refused."""
+    """Limits on one document. A document that exceeds one is refused."""
 
     bytes: int = 2_000_000
     elements: int = 200_000
     attributes: int = 64
     """Of one element."""
     depth: int = 100
-    """Elements inside each other."""
+    """Maximum nesting of elements."""
     problems: int = MOST_TOLD
-    """Problems listed; the others are counted. No document is refused for them."""
+    """Number of problems listed; the others are counted. No document is refused for it."""
 
 
 HIGHEST = Limits(1_000_000_000, 20_000_000, 10_000, 200, 20_000_000)
-"""How far the limits can be raised: beyond, the machine itself gives in."""
+"""How far the limits can be raised, within the capacity of the machine."""
 LIMITS = Limits()
 """The limits of this process."""
 

@@ -1,7 +1,7 @@
 """Hardened reading: bytes in, a tree of nodes or a list of problems out.
 
-What a stranger's file may do is bounded before it is parsed: its size, its encoding, and its
-DOCTYPE, which may name an external identifier (never fetched) and nothing else.
+An untrusted file is restricted before it is parsed: its size, its encoding, and its DOCTYPE,
+which may name an external identifier (never fetched) and nothing else.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ def parse(file: str, data: bytes, vocabularies: Sequence[Vocabulary] = ()) -> No
         vocabularies: languages to which a misspelt opening tag may belong.
 
     Raises:
-        DocumentError: not well-formed, or beyond a limit.
+        DocumentError: it is not well-formed, or exceeds a limit.
     """
     text = decode(file, data)
     end = text.find(">") + 1
     if text.startswith("<?xml") and text[:end].endswith("?>"):
-        text = " " * end + text[end:]  # the text is what it is, whatever it declares
+        text = " " * end + text[end:]  # the text is decoded, whatever it declares
     source = Source(file, text)
     try:
         try:
@@ -64,7 +64,7 @@ def _beyond(much: LimitReached) -> DocumentError:
 
 
 def read_tree(file: str, data: bytes, *vocabularies: Vocabulary) -> tuple[Node, list[Problem]]:
-    """Read a document of one of the vocabularies; give it with the problems that its schema shows.
+    """Read a document of one of the vocabularies; gives it with its schema problems.
 
     Raises:
         DocumentError: it is not XML, or not such a document at all.

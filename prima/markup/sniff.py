@@ -1,4 +1,4 @@
-"""The beginning of a file, which shows what kind of document it is."""
+"""The beginning of a file, which shows the kind of document."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import re
 BOMS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
 DOCTYPE = re.compile(rb"<!DOCTYPE(?:\"[^\"]*\"|'[^']*'|[^\[>\"'])*+(?:\[.*?\]\s*)?>", re.DOTALL)
 PIECES = ((b"<?", b"?>"), (b"<!--", b"-->"))
-"""How processing instructions and comments begin and end."""
+"""Delimiters of processing instructions and comments."""
 
 
 def root_of(data: bytes) -> bytes:
-    """A file from where its root element seems to begin: past the prolog, without parsing it.
+    """A file from the apparent beginning of its root element, past the prolog, without parsing.
 
-    No file is refused: one that is not XML is given without leading white space, text in UTF-16
+    No file is refused: one that is not XML is returned without leading white space, UTF-16 text
     with one byte for each letter.
     """
     if b"\0" in data[:4]:
@@ -31,7 +31,7 @@ def root_of(data: bytes) -> bytes:
 
 
 def _past(data: bytes, at: int) -> int:
-    """Where the instruction, comment or DOCTYPE ends that begins here; -1 if none does."""
+    """The end of the instruction, comment or DOCTYPE that begins here; -1 if none does."""
     for begin, close in PIECES:
         if data.startswith(begin, at):
             found = data.find(close, at + len(begin))

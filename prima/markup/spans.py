@@ -1,4 +1,4 @@
-"""Pieces of a document's text that fixes change: values, names, and where missing ones go."""
+"""Pieces of a document's text that fixes change: values, names, and places of missing ones."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from prima.markup.tree import MARKUP, NAME, WORD, Node
 from prima.markup.vocabulary import Attribute
 
 LONG = 1_000
-"""Characters of a value beyond which only whole words are found in it."""
+"""Length of a value above which only whole words are found in it."""
 
 BY_NAME = {"version": "2.1", "array": "[]", "expr": "''", "cond": "true"}
 BY_KIND = {
@@ -20,15 +20,15 @@ BY_KIND = {
     "events": "touch",
     "language": "en",
 }
-"""Values to begin with, of attributes by their names, or else by their kinds."""
+"""Initial values of attributes by their names, or else by their kinds."""
 NUMBERS = ("number", "integer", "quantity")
 NAMES = ("id", "variable", "event")
 GIVEN = ("id", "name", "item")
-"""Attributes that give something a name; others name what is elsewhere."""
+"""Attributes that define a name; others refer to one."""
 
 
 def value_span(node: Node, attribute: str, word: str = "") -> tuple[Span, ...]:
-    """The value of an attribute as written, or a word in it where it has that; none without it."""
+    """The value of an attribute as written, or a word in it if present; none if it is missing."""
     source = node.source
     first = source.offset(node.index, attribute, value=True)
     if first <= source.tag(node.index):
@@ -41,7 +41,7 @@ def value_span(node: Node, attribute: str, word: str = "") -> tuple[Span, ...]:
 
 
 def _found(text: str, word: str, first: int, last: int) -> int:
-    """Where a word stands that may be the beginning of a longer name, such as ``a`` of ``a.b``; or -1."""
+    """The position of a word that may begin a longer name, such as ``a`` of ``a.b``; or -1."""
     at = text.find(word, first, last)
     while at >= 0 and (
         WORD.match(text[at - 1]) or re.match(r"[\w\-]", text[at + len(word) : at + len(word) + 1])
@@ -68,7 +68,7 @@ def name_spans(node: Node) -> tuple[Span, ...]:
 
 
 def behind_name(node: Node) -> Span:
-    """Where one more attribute goes: behind the name in an element's start tag."""
+    """Where another attribute goes: after the name in an element's start tag."""
     start = node.source.tag(node.index)
     begin = NAME.match(node.source.text, start)
     at = begin.end() if begin else start + 1
@@ -81,7 +81,7 @@ def renamed(text: str, node: Node, tag: str) -> Hint:
 
 
 def added(text: str, node: Node, item: Attribute) -> Hint:
-    """A sentence, with a fix that adds an attribute to an element if a value is likely."""
+    """A sentence, with a fix that adds an attribute to an element if its value can be guessed."""
     value = _likely(node, item)
     if value is None:
         return Hint(text)
@@ -90,7 +90,7 @@ def added(text: str, node: Node, item: Attribute) -> Hint:
 
 
 def _likely(node: Node, item: Attribute) -> str | None:
-    """A value to begin with, which is right where it stands; None if only the author knows one."""
+    """An initial value valid in its place; None if it depends on other elements."""
     if item.default or item.choices:
         return item.default or item.choices[0]
     if value := BY_NAME.get(item.name) or BY_KIND.get(item.kind):
@@ -101,8 +101,8 @@ def _likely(node: Node, item: Attribute) -> str | None:
 
 
 def _new_name(node: Node, item: Attribute) -> str | None:
-    """A name that nothing has yet; None if the attribute names what is elsewhere."""
-    given = item.name in GIVEN and node.tag != "assign"  # which names what is declared elsewhere
+    """An unused name; None if the attribute refers to a name."""
+    given = item.name in GIVEN and node.tag != "assign"  # which refers to a declared name
     if item.kind not in NAMES or not (given or item.kind == "event"):
         return None
     name = node.tag if given else item.name
@@ -116,7 +116,7 @@ def with_namespace(text: str, node: Node, namespace: str) -> Hint:
 
 
 def instead(text: str, node: Node, attribute: str, name: str, value: str) -> Hint:
-    """A sentence, with a fix that writes another attribute in an attribute's place."""
+    """A sentence, with a fix that replaces an attribute by another."""
     spans = value_span(node, attribute)
     if not spans:
         return Hint(text)
@@ -126,9 +126,9 @@ def instead(text: str, node: Node, attribute: str, name: str, value: str) -> Hin
 
 
 class Declarations:
-    """Where variables of a document may be declared: at the beginning of a form, or of all.
+    """Where variables may be declared: at the beginning of a form, or of the document.
 
-    Only as many problems have fixes as are listed of a document.
+    Only as many problems get fixes as are listed for a document.
     """
 
     def __init__(self, root: Node) -> None:
@@ -165,7 +165,7 @@ class Declarations:
 
 
 def first_inside(node: Node) -> Span | None:
-    """Where an element's content begins; nothing where its tag ends at once."""
+    """Where an element's content begins; None for an empty-element tag."""
     found = MARKUP.match(node.source.text, node.source.tag(node.index))
     if found is None or found[0].endswith("/>"):
         return None

@@ -8,7 +8,7 @@ from typing import Any
 MOST_CHARACTERS = 2_000_000
 """Characters of a text that is read."""
 MOST_PARTS = 100
-"""Parts of a dotted key: reading one takes the square of their number."""
+"""Maximum number of parts of a dotted key: reading one takes quadratic time."""
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+"""
 _LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:\.[ \t]*+{_PART}){{{MOST_PARTS}}}")
 
@@ -29,7 +29,7 @@ def parse_toml(text: str) -> dict[str, Any]:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError:
         raise
-    except ValueError:  # Python's own bound on the digits of a number
+    except ValueError:  # Python's own limit on the digits of a number
         raise ValueError("a number in it has too many digits") from None
     except RecursionError:
         raise ValueError("it holds values inside values without end") from None

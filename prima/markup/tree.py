@@ -1,4 +1,4 @@
-"""A document as a tree of plain nodes that know their places."""
+"""A document as a tree of plain nodes with their places."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*("[^"]*"|'[^']*')""")
 PIECE = re.compile(
     r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[(?P<kept>.*?)\]\]>|&[^;]*;|(?P<plain>[^<&]+)|.", re.DOTALL
 )
-"""A piece of text as written: it gives no character, several as they are, or one."""
+"""A piece of text as written: it stands for no character, one, or several unchanged ones."""
 
 AS_IT_IS = re.compile(r"[^<&]+\Z")
 """Text without references and markup."""
 NEAR = 100
-"""Characters of a text up to which one of them is looked for anew each time."""
+"""Length of a text up to which each character is searched for anew."""
 WORD = re.compile(r"[\w.\-]+")
 """A word of a value, such as a name."""
 
@@ -41,12 +41,12 @@ class Source:
     lines: list[int] | None = None
     """Where every line begins."""
     _attributes: tuple[int, dict[str, tuple[int, int]]] = (-1, {})
-    """The element whose attributes were looked for last: where each begins, and its value."""
+    """The element whose attributes were located last: where each begins, and its value."""
     _words: tuple[int, int, dict[str, int]] = (-1, -1, {})
-    """The value in which words were looked for last: where it begins and ends, and where each does."""
+    """The value in which words were located last: where it and each word begins and ends."""
     _closes: dict[int, int] | None = None
     _written: _Written | None = None
-    """The text or value in which a character was looked for last: problems often come in groups."""
+    """The text or value in which a character was located last: problems often come in groups."""
 
     def tag(self, index: int) -> int:
         """Where the start tag of element number ``index`` begins in the text."""
@@ -57,7 +57,7 @@ class Source:
 
     @property
     def closes(self) -> dict[int, int]:
-        """Where the name in each element's end tag begins; elements without one are not there."""
+        """Where the name in each element's end tag begins, for elements with an end tag."""
         if self._closes is None:
             self._closes = dict(self._end_tags())
         return self._closes
@@ -93,7 +93,7 @@ class Source:
         return text if value else name
 
     def words(self, first: int) -> tuple[int, dict[str, int]]:
-        """Where a value ends that begins at ``first``, and where each word in it begins."""
+        """The end of the value that begins at ``first``, and where each word in it begins."""
         if self._words[0] != first:
             last = self.text.find(self.text[first - 1], first)
             found: dict[str, int] = {}
@@ -109,7 +109,7 @@ class Source:
             yield match[1], (match.start(1), match.start(2) + 1)
 
     def inside(self, index: int, attribute: str, characters: int) -> Place:
-        """Where a character of an attribute's value was written; without one, of the text."""
+        """The position of a character of an attribute's value or, without one, of the text."""
         if self._written is None or self._written.of != (index, attribute):
             offset = self.offset(index, attribute, value=True)
             if not attribute:
@@ -131,19 +131,19 @@ class Source:
 
 
 class _Written:
-    """A text as it is written, read as far as its characters are asked for."""
+    """A text as written, read as far as needed."""
 
     def __init__(self, of: tuple[int, str], text: str, offset: int) -> None:
         self.of = of
         self._text = text
         self._given = [0]
-        """How many characters there are before each piece."""
+        """The number of characters before each piece."""
         self._offsets = [offset]
         """The offset of each piece's first character; the last one is that of the unread text."""
         self._end = offset
 
     def offset(self, characters: int) -> int:
-        """The offset of a character in the document's text, or of what follows the last one."""
+        """The offset of a character in the document's text, or of the end."""
         while self._given[-1] <= characters and (piece := PIECE.match(self._text, self._end)):
             self._take(piece)
         at = bisect_right(self._given, characters) - 1
@@ -153,7 +153,7 @@ class _Written:
         return self._offsets[at] + (characters - self._given[at] if gives > 1 else 0)
 
     def _take(self, piece: re.Match[str]) -> None:
-        """Read on by a piece."""
+        """Read another piece."""
         kind = piece.lastgroup
         gives = len(piece[kind]) if kind else 0 if piece[0][:2] in ("<!", "<?") else 1
         self._end = piece.end()
@@ -164,7 +164,7 @@ class _Written:
 
 
 class Inner(Source):
-    """The text of an element, to be read as one of its own; places are those in the document."""
+    """The text of an element as a document of its own; places are those in the outer document."""
 
     __slots__ = ("before", "node")
 
@@ -190,10 +190,10 @@ class Node:
     key: str = ""
     namespace: str = ""
     held: list[Node | str] | Node | str | None = None
-    """What is in it; most elements hold nothing, or one thing, and need no list."""
+    """Its content; most elements hold nothing, or one thing, and need no list."""
 
     def add(self, item: Node | str) -> None:
-        """Put an element or text behind all that is in it."""
+        """Append an element or text to its content."""
         held = self.held
         if held is None:
             self.held = item
@@ -220,7 +220,7 @@ class Node:
         return self.source.place(self.index, name, value)
 
     def place_of(self, attribute: str) -> Place:
-        """Where an attribute's value begins; where the element does, if it lacks the attribute."""
+        """Where an attribute's value begins, or the element if it lacks the attribute."""
         return self.attribute_place(attribute) if attribute in self.attributes else self.place
 
     def code_place(self, attribute: str, line: int, column: int) -> Place:
@@ -254,7 +254,7 @@ class Node:
         return [item for item in self.content if not isinstance(item, str) and item.tag in tags]
 
     def walk(self) -> Iterator[Node]:
-        """The element and all in it, in document order."""
+        """The element and all its descendants, in document order."""
         stack = [self]
         while stack:
             node = stack.pop()
@@ -271,7 +271,7 @@ class Node:
 
     @property
     def own_text(self) -> str:
-        """The element's own text, as it is."""
+        """The element's own text, unchanged."""
         return "".join(item for item in self.content if isinstance(item, str))
 
     @property

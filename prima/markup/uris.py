@@ -1,4 +1,4 @@
-"""URIs as documents write them, most of them names of files beside the document."""
+"""URIs in documents, most of which name files beside the document."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from urllib.parse import quote, unquote, urldefrag, urljoin, urlsplit
 
 
 def legal(uri: str) -> str:
-    """A URI; an illegal one, such as ``http://[``, is made harmless."""
+    """A legal URI: an illegal one, such as ``http://[``, is made harmless."""
     try:
         urlsplit(uri)
     except ValueError:
@@ -16,7 +16,7 @@ def legal(uri: str) -> str:
 
 
 def join(base: str, uri: str) -> str:
-    """A URI seen from its base; one that leads out of the folder begins with ``..``."""
+    """A URI resolved against its base; one that leads out of the folder begins with ``..``."""
     if not uri:
         return base
     uri = legal(uri)
@@ -31,6 +31,6 @@ def join(base: str, uri: str) -> str:
 
 
 def parted(uri: str) -> tuple[str, str]:
-    """A URI without its fragment, and the name that the fragment means: ``%C3%A9`` is ``é``."""
+    """A URI without its fragment, and the decoded fragment: ``%C3%A9`` is ``é``."""
     base, fragment = urldefrag(uri)
     return base, unquote(fragment)

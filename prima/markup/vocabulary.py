@@ -1,4 +1,4 @@
-"""Tables of elements: what a kind of document may hold, said once.
+"""Tables of elements: the single definition of what a kind of document may contain.
 
 A :class:`Vocabulary` drives validation (:mod:`prima.markup.check`). Schemas for editors and
 the tables of the language reference are made from it; a test holds them together.
@@ -15,8 +15,8 @@ from typing import Literal, NamedTuple
 class Attribute:
     """An attribute of an element.
 
-    ``choices`` lists the allowed values where there are only few; ``dynamic``
-    says that ``NAME-expr`` may be written instead, with an expression.
+    ``choices`` lists the allowed values if there are only few; ``dynamic`` means that
+    ``NAME-expr`` may be written instead, with an expression.
     """
 
     name: str
@@ -67,8 +67,8 @@ class Element:
 class Guests:
     """Elements of a foreign namespace that are allowed among a vocabulary's own.
 
-    They hold each other and anything else; of the vocabulary the elements that their
-    ``children`` name, if they name any.
+    They may contain each other and anything else; of the vocabulary only the elements listed in
+    their ``children``, if any.
     """
 
     namespace: str
@@ -94,10 +94,10 @@ class Vocabulary:
         self.root = root
         self.elements = {element.key: element for element in elements}
         self.hints = dict(hints or {})
-        """What to write instead of elements that authors expect but this language lacks."""
+        """Replacements of elements that authors expect but this language lacks."""
         self.free = frozenset(free)
-        """Keys of elements that may hold anything; where there are any, elements of foreign
-        namespaces are allowed elsewhere, too."""
+        """Keys of elements that may contain anything; if there are any, elements of foreign
+    namespaces are allowed elsewhere as well."""
         self.guests = guests
         self._children = {
             key: {self.elements[child].tag: child for child in element.children}
@@ -105,7 +105,7 @@ class Vocabulary:
         }
         self.tags = frozenset(element.tag for element in self.elements.values())
         self.attributes = {key: attributes_by_name(one) for key, one in self.elements.items()}
-        """What :func:`attributes_by_name` gives, by key."""
+        """Results of :func:`attributes_by_name` by key."""
 
     @property
     def root_tag(self) -> str:

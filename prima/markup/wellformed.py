@@ -1,6 +1,6 @@
-"""Why a text is not well-formed XML, in plain words and at the place of the mistake.
+"""Explains why a text is not well-formed XML, in plain words and at the place of the mistake.
 
-This is the only module that knows lxml, whose parser says what is wrong.
+Only this module uses lxml, for its parser's messages.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ OTHER_FORMS = (
         "Name it in a VoiceXML document (<grammar src>); prima validate checks it.",
     ),
 )
-"""How texts of other forms begin, what they are, and what to do with them."""
+"""Beginnings of texts in other formats, with descriptions and remedies."""
 MISMATCH = r"tag mismatch: (\S+) line (\d+) and (\S+)"
-"""The parser's words for a closing tag that does not fit: the opening one, its line, the closing."""
+"""The parser's message for a mismatched closing tag: the opening one, its line, the closing one."""
 UNCLOSED = r"(?:tag mismatch:|Premature end of data in tag) ([^\s<>]+) line (\d+)"
-"""The parser's words for an element that is not closed: its name and line."""
+"""The parser's message for an unclosed element: its name and line."""
 REMEDIES = (
     (MISMATCH, "The <{0}> of line {1} is still open here: write </{0}>, or end its own tag with />."),
     (r"Namespace prefix (\S+) ", 'Write the name without "{0}:", or declare it: xmlns:{0}="...".'),
@@ -54,7 +54,7 @@ REMEDIES = (
     (r"[Cc]omment", "A comment ends with --> and holds no --."),
     (r"CData", "It ends with ]]>."),
 )  # fmt: skip
-"""The parser's words, and what the author may do."""
+"""The parser's messages, with remedies."""
 PLAINER = (
     (r"xmlParseEntityRef: no name", "an & is not escaped"),
     (r"EntityRef: expecting ';'", "an & begins no character's name, or lacks its ;"),
@@ -68,9 +68,9 @@ PLAINER = (
     (r"Unescaped '<' not allowed in attributes values", "a < is in an attribute's value"),
     (r"Namespace prefix (\S+) on (\S+) is not defined", 'the prefix "{0}" is not declared'),
 )
-"""The parser's words, and plainer ones."""
+"""The parser's messages, and plainer ones."""
 BEGINNINGS = ((MISMATCH, "</"), (r"Namespace prefix (\S+) on", "<{0}:"), ("Entity", "&"))
-"""The parser's words for mistakes whose ends it names, and how they begin on the same line."""
+"""The parser's messages that give the end of a mistake, and its beginning on the same line."""
 WIDE = {
     **dict.fromkeys("“”„″＂「」『』", 'This is a typographic quote: write ".'),
     **dict.fromkeys("‘’‚＇", "This is a typographic quote: write '."),
@@ -81,7 +81,7 @@ WIDE = {
     "／": "This slash has full width: write /.",
     "＞": "This bracket has full width: write >.",
 }
-"""Characters that editors put in place of those of XML, and what to write."""
+"""Characters that editors substitute for those of XML, with the right ones."""
 OPEN_QUOTE = re.compile(r"""=\s*(["'])[^"'<]*\Z""")
 TEMPLATE = re.compile(r"<%|<\?php|<\?=")
 
@@ -149,7 +149,7 @@ def _check_prolog(source: Source) -> None:
 def _misspelt(
     source: Source, error: etree.XMLSyntaxError, vocabularies: Sequence[Vocabulary]
 ) -> DocumentError | None:
-    """The error for an opening tag that no language has, where its closing tag is right."""
+    """The error for an unknown opening tag whose closing tag is right."""
     match = re.search(MISMATCH, _said(error))
     if match is None:
         return None
@@ -170,13 +170,13 @@ def _said(error: etree.XMLSyntaxError) -> str:
 
 
 def _line(source: Source, number: int) -> str:
-    """A line of the text, counted from 1; nothing for one behind the last."""
+    """A line of the text, counted from 1; empty after the last one."""
     lines = source.text.split("\n")
     return lines[number - 1] if number <= len(lines) else ""
 
 
 def _offset(source: Source, place: Place) -> int:
-    """Where in the text a place is."""
+    """The offset of a place."""
     before = source.text.split("\n")[: place.line - 1]
     return sum(len(line) + 1 for line in before) + place.column - 1
 
@@ -207,7 +207,7 @@ def _syntax_error(
 def _not_well_formed(
     source: Source, place: Place, message: str, vocabularies: Sequence[Vocabulary]
 ) -> DocumentError:
-    """The error for a mistake that the parser names: nearer to it and in plainer words."""
+    """The error for a mistake reported by the parser, with a closer place and plainer words."""
     told, remedy = _translated(PLAINER, message) or message, _translated(REMEDIES, message)
     fixes: tuple[Fix, ...] = ()
     quote = _open_quote(source, place) if "'<' not allowed in attributes" in message else None
@@ -232,7 +232,7 @@ def _not_well_formed(
 
 
 def _translated(table: Iterable[tuple[str, str]], message: str) -> str:
-    """What a table has for the parser's words."""
+    """The entry of a table for the parser's message."""
     for words, text in table:
         if match := re.search(words, message):
             return text.format(*match.groups())
@@ -240,7 +240,7 @@ def _translated(table: Iterable[tuple[str, str]], message: str) -> str:
 
 
 def _open_quote(source: Source, place: Place) -> Place | None:
-    """A quote that is opened on a line before a place and not closed there."""
+    """A quote opened on an earlier line and not closed there."""
     before = source.text[: _offset(source, place)]
     quote = OPEN_QUOTE.search(before[-10_000:])
     if quote is None or "\n" not in quote[0]:
@@ -249,7 +249,7 @@ def _open_quote(source: Source, place: Place) -> Place | None:
 
 
 def _beginning(source: Source, place: Place, message: str) -> Place:
-    """Where a mistake begins whose end the parser has named."""
+    """The beginning of a mistake whose end the parser reported."""
     unclosed = re.search(MISMATCH, message)
     if unclosed and unclosed[1].startswith("／"):
         line = int(unclosed[2])
@@ -263,7 +263,7 @@ def _beginning(source: Source, place: Place, message: str) -> Place:
 
 
 def _wrong_end(source: Source, place: Place, message: str) -> Hint:
-    """What to write instead of an end tag whose name is misspelt, as no element is called so."""
+    """The remedy for a misspelt end tag with an unknown name."""
     match = re.search(MISMATCH, message)
     if match is None or not nearest_word(match[3], [match[1]]):
         return Hint()
@@ -277,7 +277,7 @@ def _wrong_end(source: Source, place: Place, message: str) -> Hint:
 
 
 def _empty(source: Source, place: Place, message: str, vocabularies: Sequence[Vocabulary]) -> Hint:
-    """What to do with an open tag of an element that holds nothing: it ends by itself."""
+    """The remedy for an unclosed tag of an empty element: it should close itself."""
     match = re.search(UNCLOSED, message)
     if match is None or not _holds_nothing(match[1], vocabularies):
         return Hint()
@@ -293,13 +293,13 @@ def _empty(source: Source, place: Place, message: str, vocabularies: Sequence[Vo
 
 
 def _holds_nothing(tag: str, vocabularies: Sequence[Vocabulary]) -> bool:
-    """Whether elements of a name are known, and hold neither text nor elements."""
+    """Whether elements with a name are known and always empty."""
     alike = [one for own in vocabularies for one in own.elements.values() if one.tag == tag]
     return bool(alike) and not any(one.children or one.text for one in alike)
 
 
 def _closed(source: Source, place: Place, name: str) -> tuple[Fix, ...]:
-    """An end tag before the one that ends something else, or at the end of the text."""
+    """The insertion of an end tag before a mismatched one, or at the end of the text."""
     at = len(source.text.rstrip())
     here = _line(source, place.line).startswith("</", place.column - 1)
     span = Span.of(place, "") if here else source.span(at, at)

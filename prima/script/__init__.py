@@ -1,1 +1,1 @@
-"""ECMAScript of documents: what Python evaluates itself, and engines for all else."""
+"""ECMAScript in documents: simple code is evaluated in Python, all other code by engines."""

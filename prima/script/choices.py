@@ -1,4 +1,4 @@
-"""The texts that an expression may give, as far as it contains them."""
+"""The texts that an expression may give, as far as they are literals in it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from prima.script.parse import Code, Node, inner, parse_expression
 
 
 class PossibleText(NamedTuple):
-    """A text that an expression may give, or the beginning of one."""
+    """A possible value of an expression, or a prefix of one."""
 
     text: str
     whole: bool
@@ -19,7 +19,7 @@ UNKNOWN = PossibleText("", False)
 
 
 def choices(code: str) -> list[PossibleText]:
-    """The texts that an expression may give: of literals, and of conditions between them.
+    """The texts that an expression may give: literals, and conditionals of literals.
 
     >>> choices("old ? '#ask' : '#step' + number")
     [Choice(text='#ask', whole=True), Choice(text='#step', whole=False)]
@@ -42,7 +42,7 @@ def choices(code: str) -> list[PossibleText]:
 
 
 def _choice(code: Code, node: Node | None) -> PossibleText:
-    """The choice of an expression without conditions: a literal, or what begins with one."""
+    """The choice of an expression without conditions: a literal, or a literal prefix."""
     whole = True
     while node is not None and node.type == "binary_expression":
         operator = node.child_by_field_name("operator")

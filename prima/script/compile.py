@@ -1,7 +1,7 @@
-"""Expressions that need no engine, as functions of Python: names, members, literals, operators.
+"""Compiles expressions that need no engine (names, members, literals, operators) to Python.
 
-Most expressions of documents are of this kind. Whatever could mean more (functions, assignments,
-members that prototypes have, calls but of ``Number``, ``String`` and ``Boolean``) is left to the engine.
+Most expressions in documents are of this kind. Anything else (functions, assignments, members of
+prototypes, calls other than ``Number``, ``String`` and ``Boolean``) is left to the engine.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ from prima.script.parse import Code, Node, inner, parse_bracketed
 Function = Callable[[Scopes], Any]
 
 MOST_CODE = 1_000
-"""Characters that code compiled here may have."""
+"""Maximum length of code compiled here."""
 MOST_PIECES = 200
-"""Pieces of code beyond which an expression is left to the engine."""
+"""Maximum number of pieces of code; larger expressions are left to the engine."""
 DEEPEST = 100
-"""Depth of operators, members and brackets."""
+"""Maximum depth of operators, members and brackets."""
 AS_LONG = 200
-"""Characters of kept code that is beyond all this which count for one piece more."""
+"""How many characters of cached code beyond these limits count as one more piece."""
 MOST_KEPT = 100_000
-"""Pieces of code of all expressions that are kept compiled; each is some hundred bytes then."""
+"""Maximum number of pieces of code in the cache; each takes some hundred bytes."""
 
 
 @dataclass(slots=True)
@@ -47,12 +47,12 @@ class Compiled:
 
     call: Function
     pieces: int
-    """The number of pieces of code it was made of, about."""
+    """The approximate number of pieces of code in it."""
 
 
 class _Cache:
     expressions: dict[str, Compiled | None] = {}  # noqa: RUF012
-    """What has been compiled lately, by its code."""
+    """Recently compiled expressions, by their code."""
     pieces = 0
     """Of all that is kept."""
 
@@ -92,21 +92,21 @@ class _Piece:
 
     call: Function
     optional: bool = False
-    """Whether it is a chain with ``?.``: its value may be :data:`CUT`."""
+    """Whether it is an optional chain (``?.``): its value may be :data:`CUT`."""
 
 
 CUT = object()
-"""The value of a chain that ``?.`` has ended."""
+"""The value of a short-circuited chain."""
 
 
 class _Builder:
-    """Makes functions of the nodes of an expression's tree."""
+    """Builds functions from the nodes of an expression's tree."""
 
     def __init__(self, code: Code) -> None:
         self.code = code
         self.last = (1, 1)
-        """Line and column of the last name, or of what is behind the last operator: the error of a
-        member is reported there, as the engine does."""
+        """Line and column of the last name, or of the operand after the last operator: errors of a
+        member are reported there, as in the engine."""
 
     def build(self, node: Node, depth: int) -> _Piece:
         """The function of an expression.
@@ -120,7 +120,7 @@ class _Builder:
         return make(self, node, depth + 1)
 
     def part(self, node: Node, name: str, depth: int) -> _Piece:
-        """The function of an expression in an expression."""
+        """The function of a subexpression."""
         held = node.child_by_field_name(name)
         if held is None:
             raise Beyond
@@ -130,7 +130,7 @@ class _Builder:
         """Line and column of a node.
 
         Raises:
-            Beyond: the engine counts other line ends, too.
+            Beyond: the engine counts other line ends as well.
         """
         before = self.code.text[: self.code.start(node)]
         if "\u2028" in before or "\u2029" in before:
@@ -140,14 +140,14 @@ class _Builder:
     # Literals and names -----------------------------------------------------------------------
 
     def literal(self, node: Node, _depth: int) -> _Piece:
-        """A number, text, word, array or object: the latter are new ones at every evaluation."""
+        """A number, text, word, array or object; arrays and objects are new at every evaluation."""
         value = literal(self.code, node)
         if isinstance(value, list | dict):
             return _Piece(lambda _scopes: fresh(value))
         return _Piece(lambda _scopes: value)
 
     def name(self, node: Node, _depth: int) -> _Piece:
-        """A variable, looked for from the innermost scope."""
+        """A variable, looked up from the innermost scope outwards."""
         name = self._name(node)
         line, column = self.last = self.place(node)
 
@@ -172,7 +172,7 @@ class _Builder:
     # Operators --------------------------------------------------------------------------------
 
     def brackets(self, node: Node, depth: int) -> _Piece:
-        """An expression in brackets: ``?.`` in it ends no chain outside of it."""
+        """An expression in brackets, which limit the effect of ``?.``."""
         held = node.named_children
         if len(held) != 1:
             raise Beyond
@@ -276,7 +276,7 @@ class _Builder:
         return _Piece(whole)
 
     def _chain(self, node: Node, depth: int) -> _Piece:
-        """A chain of members; ``?.`` ends it where there is no value."""
+        """A member chain; ``?.`` short-circuits on null and undefined."""
         holder = node.child_by_field_name("object")
         part = node.child_by_field_name("property") or node.child_by_field_name("index")
         if holder is None or part is None or depth > DEEPEST:
@@ -298,7 +298,7 @@ class _Builder:
         return _Piece(lambda scopes: look(call(scopes), scopes))
 
     def _look(self, part: Node, depth: int) -> Callable[[Any, Scopes], Any]:
-        """What finds the member of a value: that of a name, or that whose name is computed."""
+        """The function that looks up a member, by a literal or a computed name."""
         if part.type not in ("number", "string", "property_identifier"):
             name = self.build(part, depth + 1).call
             place = self.last
@@ -314,7 +314,7 @@ class _Builder:
         return look
 
     def _key(self, part: Node) -> str:
-        """The name of the member, where it is written out."""
+        """The name of the member, if it is literal."""
         if part.type == "number":
             key = number_text(number(self.code, part))
         else:
@@ -330,9 +330,9 @@ CONVERSIONS: dict[str, Callable[[Any, Scopes], Any]] = {
     "String": textual,
     "Boolean": lambda value, _scopes: truth(value),
 }
-"""Functions of the engine that are the same here."""
+"""Functions of the engine that are equivalent here."""
 CONVERTED = ("identifier", *MEMBERS)
-"""What they are called with."""
+"""Their arguments."""
 BEYOND = RESERVED | INHERITED | BUILT_IN
 BRACKETS = "parenthesized_expression"
 MAKERS: dict[str, Callable[[_Builder, Node, int], _Piece]] = {
@@ -347,4 +347,4 @@ MAKERS: dict[str, Callable[[_Builder, Node, int], _Piece]] = {
     "member_expression": _Builder.member,
     "subscript_expression": _Builder.member,
 }
-"""What is made of a node of each type."""
+"""The builder for each type of node."""

@@ -1,4 +1,4 @@
-"""Scripts that need no engine: they declare variables with the values of literals, and nothing else.
+"""Scripts that need no engine because they only declare variables with literal values.
 
 Most tables of rooms, panels and answers are of this kind.
 """
@@ -13,26 +13,26 @@ from prima.script.literals import Beyond, literal
 from prima.script.parse import Code, Node, parse_script
 
 MOST_CODE = 20_000
-"""Characters that a script evaluated in Python may have."""
+"""Maximum length of a script evaluated in Python."""
 MOST_SCRIPTS = 100
-"""Scripts whose data is kept."""
+"""Maximum number of scripts whose data is cached."""
 DECLARATIONS = ("variable_declaration", "lexical_declaration")
 TAKEN = RESERVED | INHERITED | BUILT_IN | CONSTANTS | VARIABLES
-"""Names that mean something already."""
+"""Names with a predefined meaning."""
 
 
 class ScriptData(NamedTuple):
     """What a script declares."""
 
     values: dict[str, Any]
-    """By the variables, in their order."""
+    """Values by variable, in order."""
     pieces: int
-    """The number of pieces of code it was made of, about."""
+    """The approximate number of pieces of code in it."""
 
 
 @lru_cache(maxsize=MOST_SCRIPTS)
 def declared(code: str) -> ScriptData | None:
-    """What a script declares; None if it needs an engine."""
+    """The declarations of a script; None if it needs an engine."""
     if len(code) > MOST_CODE:
         return None
     parsed = parse_script(code)
@@ -49,7 +49,7 @@ def declared(code: str) -> ScriptData | None:
 
 
 def _declare(code: Code, statement: Node, values: dict[str, Any]) -> None:
-    """Take in ``const a = 1, b = [2];``.
+    """Add the declarations of ``const a = 1, b = [2];``.
 
     Raises:
         Beyond: it is something else.

@@ -26,7 +26,7 @@ class Undefined:
 
 
 UNDEFINED = Undefined()
-"""The value of a variable without one."""
+"""The value of an uninitialised variable."""
 
 
 class Scope(dict[str, Any]):
@@ -40,7 +40,7 @@ class Named(Scope):
 
     __slots__ = ("count", "name")
     name: str
-    """Its name: a scope has itself as a variable."""
+    """Its name: a scope contains itself as a variable."""
     count: Callable[[int], None]
     """Counts work with so many characters, in an application's scope."""
 
@@ -49,10 +49,10 @@ Scopes = tuple[Scope, Scope, Scope, Scope]
 """The scopes that an expression sees: application, document, dialog and local."""
 
 DEEPEST = 100
-"""Lists and objects inside each other that a value from outside may have."""
+"""Maximum nesting of lists and objects in a value from outside."""
 CONSTANTS = {"undefined": UNDEFINED, "NaN": math.nan, "Infinity": math.inf}
 SPACE = " \t\n\v\f\r\xa0\ufeff\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u2028\u2029\u202f\u205f\u3000"
-"""What ECMAScript takes for white space."""
+"""White space in ECMAScript."""
 NUMERIC = re.compile(
     r"[+-]?(?:Infinity|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|0[xX][0-9a-fA-F]+|0[oO][0-7]+|0[bB][01]+"
 )
@@ -70,7 +70,7 @@ def truth(value: Any) -> bool:
 
 
 def primitive(value: Any) -> Any:
-    """An array or object as the text that it is where a plain value is needed (7.1.1)."""
+    """An array or object converted to a primitive value (7.1.1)."""
     return text(value) if isinstance(value, list | dict) else value
 
 
@@ -101,7 +101,7 @@ def text(value: Any) -> str:
     if isinstance(value, list):
         return ",".join("" if one is None or one is UNDEFINED else text(one) for one in value)
     if isinstance(value, dict):
-        if "toString" in value:  # it is not a function
+        if "toString" in value:  # not a function
             raise ScriptError("TypeError: toPrimitive")
         return "[object Object]"
     return "undefined"
@@ -124,7 +124,7 @@ def number_text(value: float) -> str:
 
 
 def kind_of(value: Any) -> str:
-    """What ``typeof`` says of a value."""
+    """The result of ``typeof``."""
     if isinstance(value, bool):
         return "boolean"
     if isinstance(value, float | str):
@@ -155,12 +155,12 @@ def alike(first: Any, second: Any) -> bool:
 
 
 def index_of(key: str) -> int:
-    """The index that a member's name is (6.1.7), or -1."""
+    """A member's name as an index (6.1.7), or -1."""
     return index if INDEX.fullmatch(key) and (index := int(key)) <= MOST_INDEX else -1
 
 
 def unit(value: str, index: int) -> Any:
-    """One of the 16 bits that a text is made of for ECMAScript."""
+    """One of the 16-bit units of a text in ECMAScript."""
     if value.isascii():
         return value[index] if 0 <= index < len(value) else UNDEFINED
     found = value.encode("utf-16-be", "surrogatepass")[max(2 * index, 0) : 2 * index + 2]
@@ -168,17 +168,17 @@ def unit(value: str, index: int) -> Any:
 
 
 def units(value: str) -> int:
-    """How long ECMAScript takes a text for."""
+    """The length of a text in ECMAScript."""
     return len(value) if value.isascii() else len(value.encode("utf-16-le", "surrogatepass")) // 2
 
 
 def order(value: str) -> str | bytes:
-    """What texts are compared by."""
+    """The sort key of texts."""
     return value.encode("utf-16-be", "surrogatepass")
 
 
 def escaped(value: str) -> str:
-    """Text in which halves of letters are whole again, or written as JSON escapes."""
+    """Text in which surrogate pairs are joined, and lone surrogates are JSON escapes."""
     if SURROGATE.search(value) is None:
         return value
     value = value.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "surrogatepass")
@@ -186,10 +186,10 @@ def escaped(value: str) -> str:
 
 
 def stringify(value: Any, around: tuple[int, ...] = ()) -> str:
-    """A value as JSON (25.5.2); what it cannot have is left out, or null.
+    """A value as JSON (25.5.2); unsupported values are omitted, or null.
 
     Raises:
-        ScriptError: something holds itself.
+        ScriptError: something contains itself.
     """
     if isinstance(value, str):
         return _quoted(value)
@@ -218,16 +218,16 @@ def _quoted(value: str) -> str:
 
 
 def _position(pair: tuple[str, Any]) -> tuple[bool, int]:
-    """Names that are numbers come before others, in their order (10.1.11.1)."""
+    """The sort key of names: numbers come first, in their order (10.1.11.1)."""
     index = index_of(pair[0])
     return (index < 0, index)
 
 
 def inward(value: Json, depth: int = 0) -> Any:
-    """A value from outside as one of those here: a copy, in which numbers are ``float``.
+    """A copy of a value from outside as a value here: numbers are ``float``.
 
     Raises:
-        ScriptError: it has lists or objects too deep inside each other.
+        ScriptError: its lists or objects are nested too deep.
     """
     if isinstance(value, str):
         return well_formed(value if type(value) is str else str.__str__(value))
@@ -248,7 +248,7 @@ def outward(value: Any) -> Json:
     """A value as plain data; undefined becomes None.
 
     Raises:
-        ScriptError: it is too long, or holds itself.
+        ScriptError: it is too long, or contains itself.
     """
     if value is UNDEFINED:
         return None

@@ -1,8 +1,8 @@
-"""ECMAScript for documents of strangers: one engine for each application.
+"""ECMAScript for untrusted documents: one engine for each application.
 
 An expression is compiled once to a function of the scope objects it may see.
-The engine's limits on time, memory and stack hold for every call. Built-ins that do not look at
-the time limit are stopped only where the engine has a process of its own (:mod:`prima.script.host`).
+The engine's limits on time, memory and stack apply to every call. Built-ins that do not check the
+time limit are stopped only if the engine has a process of its own (:mod:`prima.script.host`).
 ``Date`` has the run's clock and ``Math.random`` is seeded, so that a run can be repeated.
 """
 
@@ -55,8 +55,8 @@ class Engine:
         self._scopes = scopes
         self._names, self._withs = head(scopes)
         self.spent = 0.0
-        """Seconds of evaluations since the owner last set it to nought."""
-        # Functions by their code, for each use that is made of it.
+        """Seconds of evaluation since the owner last reset it."""
+        # Functions by their code, for each way of using it.
         self._compiled: dict[str, Any] = {}
         self._conditions: dict[tuple[str, int], Any] = {}
         self._giving: dict[str, Any] = {}
@@ -67,7 +67,7 @@ class Engine:
         self.now = self._told = 0
         """The time by the run's calendar (ms since 1970, UTC), as ``Date`` gives it."""
         self._clocked = False
-        """Whether any code may ask for it."""
+        """Whether any code may read it."""
         self._tick = context.eval(sandbox.CLOCK)(sandbox.DATE)
         context.eval(sandbox.PRELUDE)
         self._tick()
@@ -99,12 +99,12 @@ class Engine:
             raise
 
     def _check(self, check: Callable[[str], None], code: str) -> None:
-        """Let code in that compiles by itself."""
+        """Refuse code that does not compile by itself."""
         check(code)
         self._clocked = self._clocked or sandbox.MAY_ASK_TIME.search(code) is not None
 
     def compile(self, code: str) -> Any:
-        """Give the function of an expression, compiled the first time.
+        """Give the function of an expression, compiled on first use.
 
         Raises:
             ScriptError: with the line and column inside the expression.
@@ -122,12 +122,12 @@ class Engine:
         return self._syntax.lenient(code)
 
     def _compile(self, body: str, scopes: tuple[str, ...] | None = None) -> Any:
-        """A function of scopes: of all of them, if nothing is said."""
+        """A function of scopes; by default of all of them."""
         names, withs = (self._names, self._withs) if scopes is None else head(scopes)
         return self._function(names, f"{withs}{{{body}}}")
 
     def _function(self, parameters: str, body: str) -> Any:
-        """A function of the engine; exceptions of code in it become errors of ours."""
+        """A function of the engine; exceptions of code in it become our errors."""
         return self._call(self._context.eval, (guarded(parameters, body),))
 
     def empty(self) -> Scope:
@@ -141,13 +141,13 @@ class Engine:
         return scope
 
     def named(self, name: str) -> Scope:
-        """A new scope that has itself as a variable, as a dialog's ``dialog`` (VoiceXML 5.1.2)."""
+        """A new scope that contains itself as a variable, such as ``dialog`` (VoiceXML 5.1.2)."""
         return self._call(self._help["named"], (name,))
 
     def view(self, scope: Scope) -> Scope:
-        """A scope that looks like another one and cannot be changed, nor can anything in it.
+        """A read-only view of a scope and everything in it.
 
-        An attempt is an error; what is set in the other one is seen (VoiceXML 5.1.2).
+        An attempt to change it is an error; changes of the original are visible (VoiceXML 5.1.2).
         """
         return self._call(self._help["view"], (scope,))
 
@@ -157,11 +157,11 @@ class Engine:
         return self._call(self._help["event"], (name, self.into(message), given))
 
     def clock(self, scope: Scope, seconds: float) -> None:
-        """Tell a scope the time of the run, as ``session.time``."""
+        """Set a scope's ``session.time`` to the time of the run."""
         self._call(self._help["clock"], (scope, seconds))
 
     def into(self, value: Json) -> Any:
-        """A Python value as one the engine takes.
+        """A Python value as a value of the engine.
 
         Raises:
             ScriptError: it has lists or objects too deep inside each other.
@@ -169,13 +169,13 @@ class Engine:
         if isinstance(value, dict | list | tuple):
             try:
                 return self._call(self._context.parse_json, (as_json(value),))
-            except ValueError:  # JSON has no such numbers
+            except ValueError:  # numbers that JSON lacks
                 return self._call(self._help["parse"], (as_json(marked(value)),))
             except RecursionError:
                 raise ScriptError("it is nested too deep") from None
         if isinstance(value, str):
             return well_formed(value)
-        # The binding cuts whole numbers to 32 bits.
+        # The binding truncates whole numbers to 32 bits.
         return whole(value) if isinstance(value, int) and abs(value) >= 2**31 else value
 
     def set(self, scope: Scope, name: str, value: Json) -> None:
@@ -206,7 +206,7 @@ class Engine:
         return next((at for at, name in each if not self.defined(scope, name)), len(names))
 
     def raw(self, code: str, scopes: tuple[Scope, ...]) -> Any:
-        """Evaluate an expression and give the engine's own value."""
+        """Evaluate an expression and return the engine's own value."""
         return self._evaluate(code, self.compile(code), scopes)
 
     def condition(self, code: str, scopes: tuple[Scope, ...]) -> bool:
@@ -273,7 +273,7 @@ class Engine:
     def assign(self, scope: Scope, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
         """Evaluate an expression and give its value to a variable of a scope.
 
-        The value stays in the engine: undefined is not what Python would give back.
+        The value stays in the engine: Python could not pass undefined back.
         """
         function = self._giving.get(code)
         if function is None:
@@ -286,7 +286,7 @@ class Engine:
     def assign_declared(self, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
         """Give a declared variable, by its name as written, a value (VoiceXML 5.3.2).
 
-        The inner scopes may be left out where nothing in them can be meant.
+        The inner scopes may be omitted if nothing in them can be meant.
 
         Raises:
             ScriptError: no scope declares it, or the expression fails.
@@ -304,7 +304,7 @@ class Engine:
         self._call(self._help["detach"], (scope, name))
 
     def hand(self, scope: Scope, name: str, source: Scope) -> None:
-        """Give a variable the value that one of the same name has in another scope."""
+        """Set a variable to the value of its namesake in another scope."""
         self._call(self._help["hand"], (scope, name, source))
 
     def put(self, scope: Scope, name: str, value: Any) -> None:
@@ -317,7 +317,7 @@ class Engine:
             self._call(self._help["set"], (scope, name, value))
 
     def script(self, code: str, scope: Scope, scopes: tuple[Scope, ...]) -> None:
-        """Run a script; what it declares at its top level becomes variables of ``scope``."""
+        """Run a script; its top-level declarations become variables of ``scope``."""
         kept = self._scripts.get(code)
         if kept is None:
             self._check(self._syntax.script, code)
@@ -333,14 +333,14 @@ class Engine:
             raise
 
     def _script(self, code: str) -> tuple[Any, Hoisted]:
-        """The function of a script: of all scopes, and of that whose variables it declares."""
+        """The function of a script; its parameters are all scopes, and the one for declarations."""
         script = hoisted(code)
         if script is not None:
             try:
                 if script.code != code:
                     self._check(self._syntax.script, script.code)
                 return self._function(*wrapped(script, self._scopes)), script
-            except ScriptError:  # something in it is not what it seems
+            except ScriptError:  # it contains something unexpected
                 pass
         script = Hoisted(code, others=sorted(script_names(code).declared))
         return self._function(*wrapped(script, self._scopes)), script

@@ -1,4 +1,4 @@
-"""What evaluating code of documents gives, and how it fails, whoever evaluates it."""
+"""Results and errors of evaluating code, for all evaluators."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ if TYPE_CHECKING:
     from prima.messages import Json
 
 Scope = Any
-"""A scope object, of whatever kind the evaluator has."""
+"""A scope object of an evaluator."""
 
 MAX_SCRIPT_SECONDS = 3.0
-"""What an application's code may take in one instant, all together."""
+"""The total time that an application's code may take in one instant."""
 MAX_RUN_SECONDS, MAX_SHARE = 10.0, 0.02
-"""What an application's code may take in a whole run: so many seconds of the processor, and this
+"""What an application's code may take in a whole run: so many seconds of processor time, plus this
 share of the time that passes in the run."""
 RESULT_LIMIT = 100_000
-"""Characters that a value may have when it leaves its application's scopes."""
+"""Maximum length of a value that leaves its application's scopes."""
 SCOPES = ("application", "document", "dialog", "local")
 """The scopes of an expression, outermost first (VoiceXML 5.1.2)."""
 LARGEST = 2**53
@@ -30,12 +30,12 @@ class ScriptError(Exception):
     def __init__(self, message: str, places: list[tuple[int, int]] | None = None) -> None:
         super().__init__(message)
         self.places = places or []
-        """Lines and columns of the functions that were being called, innermost first."""
+        """Lines and columns in the functions on the call stack, innermost first."""
         self.line, self.column = self.places[-1] if self.places else (0, 0)
 
 
 class EngineLost(ScriptError):
-    """The process of an engine has ended: the application that uses it can only end, too (E2)."""
+    """The process of an engine has ended, and so must the application that uses it (E2)."""
 
 
 class EngineElement:
@@ -49,15 +49,15 @@ class EngineElement:
 
 
 def statement_place(error: ScriptError) -> tuple[int, int]:
-    """The line and column in several statements; around them are two functions of ours."""
+    """The line and column in several statements, which are wrapped in two of our functions."""
     return error.places[-3] if len(error.places) > 2 else (0, 0)
 
 
 def bounded(text: str) -> str:
-    """Text that is not too long to leave its scopes.
+    """Check that a text is short enough to leave its scopes.
 
     Raises:
-        ScriptError: it is.
+        ScriptError: it is too long.
     """
     if len(text) > RESULT_LIMIT:
         raise ScriptError(f"it gives more than {RESULT_LIMIT:,} characters")
@@ -65,14 +65,14 @@ def bounded(text: str) -> str:
 
 
 def plain_number(value: Json) -> Json:
-    """A number as JSON has it: whole ones without a point; other values as they are."""
+    """A number as in JSON: whole ones without a point; other values unchanged."""
     if isinstance(value, float) and abs(value) < LARGEST and value == int(value):
         return int(value)
     return value
 
 
 def whole(value: int) -> float:
-    """A whole number as ``float``, which is infinite beyond the largest there is."""
+    """A whole number as ``float``, infinite beyond the largest one."""
     try:
         return float(value)
     except OverflowError:
@@ -80,7 +80,7 @@ def whole(value: int) -> float:
 
 
 def marked(value: Json) -> Json:
-    """Plain data in which numbers that JSON lacks are objects with a strange name."""
+    """Plain data in which numbers that JSON lacks are replaced by objects with an unusual name."""
     if isinstance(value, float) and not math.isfinite(value):
         return {"\0": "NaN" if math.isnan(value) else "Infinity" if value > 0 else "-Infinity"}
     if isinstance(value, list | tuple):

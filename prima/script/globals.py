@@ -1,4 +1,4 @@
-"""Words of ECMAScript, and names that every script sees or every value has."""
+"""Keywords of ECMAScript, and predefined names of scripts and values."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from typing import Final
 
 STRANGE: Final = "\u01c0"
-"""A letter in all names that we put into the code of documents beside their own: few have one."""
+"""A letter in all names that we add to the code of documents, where it is rare."""
 RESERVED = frozenset([
     "break", "case", "catch", "class", "const", "continue", "debugger", "default", "delete",
     "do", "else", "enum", "export", "extends", "false", "finally", "for", "function", "if",
@@ -15,7 +15,7 @@ RESERVED = frozenset([
     "async", "of",
 ])  # fmt: skip
 HANDLED = frozenset(["event", "_event", "_message"])
-"""Variables that tell a handler of its event."""
+"""Variables that describe a handler's event."""
 VARIABLES = HANDLED | {"session", "application", "document", "dialog", "sensor"}
 """Variables that the language itself declares."""
 CONSTANTS = frozenset(["undefined", "NaN", "Infinity"])
@@ -28,7 +28,7 @@ ENGINES = frozenset([
     "AggregateError",
 ])  # fmt: skip
 GLOBALS = ENGINES | VARIABLES | CONSTANTS
-"""Names that every script sees."""
+"""Names visible to every script."""
 BUILT_IN = ENGINES | {
     *("AsyncDisposableStack", "DisposableStack", "InternalError", "SuppressedError"),
     *("atob", "btoa"),
@@ -39,7 +39,7 @@ INHERITED = frozenset([
     "propertyIsEnumerable", "__proto__", "__defineGetter__", "__defineSetter__",
     "__lookupGetter__", "__lookupSetter__",
 ])  # fmt: skip
-"""Names that every object has from its prototype, scopes included."""
+"""Names that every object, including scopes, inherits from its prototype."""
 METHODS = frozenset([
     "at", "concat", "copyWithin", "fill", "find", "findIndex", "findLast", "findLastIndex",
     "lastIndexOf", "pop", "push", "reverse", "shift", "unshift", "slice", "sort", "splice",
@@ -53,7 +53,7 @@ METHODS = frozenset([
     "fontcolor", "fontsize", "italics", "link", "small", "strike", "sub", "sup",
     "toExponential", "toFixed", "toPrecision",
 ])  # fmt: skip
-"""Members that texts, numbers and arrays have from theirs."""
+"""Members that texts, numbers and arrays inherit from theirs."""
 WORD = r"(?:[^\W\d]|\$)[\w$]*"
 IDENTIFIER = re.compile(WORD)
-"""A name of a variable as documents write it."""
+"""The name of a variable as documents write it."""

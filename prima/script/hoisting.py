@@ -1,9 +1,9 @@
-"""Scripts as code of their scope: what they declare at the top are its variables.
+"""Runs scripts as code of their scope, whose variables are their top-level declarations.
 
-A script and ``<var>`` declare variables of one space (VoiceXML 2.0, 5.1), which whatever is
-evaluated later reads and writes. Code can only be run inside of a function here, and what a
-function declares is its own. So a ``var`` at the top is run as an assignment to a variable that
-the scope has already, and a ``function`` there under another name, from which the scope gets it.
+A script and ``<var>`` declare variables in one space (VoiceXML 2.0, 5.1), which all later code
+reads and writes. Here, code can only run inside a function, whose declarations are local. So a
+top-level ``var`` is run as an assignment to an existing variable of the scope, and a top-level
+``function`` under another name, from which the scope gets it.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from prima.script.parse import Code, Node, parse_script
 from prima.script.walk import FUNCTIONS
 
 HIDDEN = "$_"
-"""What is added to the name of a function at the top."""
+"""Appended to the name of a top-level function."""
 DECLARED_FUNCTIONS = ("function_declaration", "generator_function_declaration")
 CLASSES = ("class_declaration", "class")
 WORDS = ("var", "let", "const", "function", "class")
@@ -24,17 +24,17 @@ WORDS = ("var", "let", "const", "function", "class")
 
 @dataclass(slots=True)
 class Hoisted:
-    """A script that declares nothing of its scope by itself."""
+    """A script without declarations of its scope."""
 
     code: str
     variables: list[str] = field(default_factory=list)
-    """Names that are to be there before it runs: of ``var`` and ``function``."""
+    """Names of ``var`` and ``function`` that must exist before it runs."""
     functions: list[str] = field(default_factory=list)
-    """Those of them that are given to the scope first, from their name with :data:`HIDDEN`."""
+    """Those that the scope gets first, from their names with :data:`HIDDEN`."""
     others: list[str] = field(default_factory=list)
-    """What it declares in other ways, to be given to the scope when it has run."""
+    """Other declarations, to be copied to the scope after it has run."""
     shifts: list[tuple[int, int]] = field(default_factory=list)
-    """Lines, and the columns in them behind which the text is shifted to the right."""
+    """Lines, and the columns in them after which the text is shifted to the right."""
 
     def column(self, line: int, column: int) -> int:
         """The column in the script as it is written."""
@@ -44,7 +44,7 @@ class Hoisted:
 
 
 def hoisted(code: str) -> Hoisted | None:
-    """Take a script's declarations out of it; None where its text cannot be seen through."""
+    """Move a script's declarations out of it; None if its text cannot be analysed."""
     if not any(word in code for word in WORDS):
         return Hoisted(code)
     parsed = parse_script(code)
@@ -54,13 +54,13 @@ def hoisted(code: str) -> Hoisted | None:
 
 
 class _Hoister:
-    """Finds what is declared outside of functions."""
+    """Finds declarations outside of functions."""
 
     def __init__(self, code: Code) -> None:
         self.code = code
         self.script = Hoisted(code.text)
         self.edits: list[tuple[int, int, str]] = []
-        """From where to where which text is put."""
+        """Edits: start, end and new text."""
         nodes = list(code.walk())
         self.shares = any(node.type in FUNCTIONS or node.type in CLASSES for node in nodes)
         self.names = {code.of(node) for node in nodes if node.type == "identifier"}
@@ -79,12 +79,12 @@ class _Hoister:
         script.others = [*dict.fromkeys(script.others)]
         hidden = {f"{name}{HIDDEN}" for name in script.functions}
         if not (hidden.isdisjoint(self.names) and {*script.variables}.isdisjoint(script.others)):
-            return None  # a name means two things
+            return None  # a name has two meanings
         script.code = self._edited()
         return script
 
     def _outside(self) -> Iterator[Node]:
-        """The nodes that are in no function and no class, in the order of the text."""
+        """The nodes outside of functions and classes, in the order of the text."""
         waiting = [self.code.root]
         while waiting:
             node = waiting.pop()
@@ -100,10 +100,10 @@ class _Hoister:
         return "".join([*pieces, text[at:]])
 
     def _declaration(self, node: Node) -> None:
-        """Variables are declared; those of ``var`` belong to the scope wherever they are.
+        """Handle a declaration; variables of ``var`` always belong to the scope.
 
-        At the top ``let`` and ``const`` do where functions may share them; a function's own
-        variables are quicker, and they are given to the scope at the end.
+        Top-level ``let`` and ``const`` do if functions may share them; otherwise they stay local,
+        which is faster, and are copied to the scope at the end.
         """
         declarators = (one for one in node.named_children if one.type == "variable_declarator")
         first = next(declarators).child_by_field_name("name")
@@ -118,7 +118,7 @@ class _Hoister:
         open_ended = last.type != ";" or last.is_missing
         if self._move(node.children[0], first, names) and open_ended:
             end = self.code.end(node)
-            self.edits.append((end, end, ";"))  # the next line might go on with it now
+            self.edits.append((end, end, ";"))  # the next line might continue it now
 
     def _loop(self, node: Node) -> None:
         """``for (var x in y)``."""
@@ -127,7 +127,7 @@ class _Hoister:
             self._move(kind, left, bound_names(self.code, left))
 
     def _move(self, word: Node, first: Node | None, names: list[str]) -> bool:
-        """Make assignments of declarations, unless they begin with a pattern."""
+        """Turn declarations into assignments, unless they begin with a pattern."""
         moves = first is not None and first.type == "identifier"
         if moves:
             start, end = self.code.start(word), self.code.end(word)
@@ -136,7 +136,7 @@ class _Hoister:
         return moves
 
     def _named(self, node: Node) -> None:
-        """A function or class is declared."""
+        """Handle the declaration of a function or class."""
         name = node.child_by_field_name("name")
         if name is None:
             return

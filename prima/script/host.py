@@ -1,9 +1,9 @@
-"""The process in which strangers' code is evaluated: engines, and limits that hold for all of it.
+"""The process that evaluates untrusted code: engines, and limits on the whole process.
 
-It answers the calls of :mod:`prima.script.worker`, one after the other. Each may take so much of
-the processor's time, counted by the system, whatever else the machine does; the process may use
-so much memory, and can open or write no file. What goes past a limit ends the process, which is
-all that its caller needs to know.
+It answers the calls of :mod:`prima.script.worker`, one after the other. Each may take a limited
+processor time, counted by the system, whatever else the machine does; the process may use limited
+memory, and cannot open or write files. Exceeding a limit ends the process, which is all that its
+caller needs to know.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ from collections.abc import Mapping
 from typing import Any
 
 KILL_SECONDS = 2.0
-"""Processor time after which a call has escaped the engine's own limit, and ends the process."""
+"""Processor time after which a call that escaped the engine's own limit ends the process."""
 MEMORY_BYTES = 512 * 1024 * 1024
 """Address space of the process."""
 OUT_OF_MEMORY = 71
-"""The exit code where memory has run out."""
+"""The exit code when memory has run out."""
 FILES = 16
-"""Files that the process may have open: the engine needs none."""
+"""Maximum number of open files of the process: the engine needs none."""
 
 GIVES_NOTHING, GIVES_DATA, GIVES_VALUE = range(3)
-"""What a method gives back: data leaves the process, a value of the engine stays."""
+"""The kind of a method's result: data leaves the process, a value of the engine stays."""
 
 METHODS: Mapping[str, Mapping[str, int]] = {
     "EngineService": {
@@ -49,11 +49,11 @@ METHODS: Mapping[str, Mapping[str, int]] = {
     "Syntax": {"expression": GIVES_NOTHING, "script": GIVES_NOTHING, "has_statements": GIVES_DATA,
                "faults": GIVES_DATA},
 }  # fmt: skip
-"""What may be called of what is here, by its class."""
+"""The methods that may be called, by class."""
 
 
 class EngineService:
-    """Answers calls; keeps what has been made until the caller drops it."""
+    """Answers calls; keeps the objects created until the caller drops them."""
 
     now, spent = 0, 0.0
 
@@ -72,13 +72,13 @@ class EngineService:
         return Engine(tuple(scopes))
 
     def tag_engine(self, others: int) -> Any:
-        """A new engine for the tags of a grammar document, beside others for the same utterance."""
+        """A new engine for a grammar document's tags, besides others for the same utterance."""
         from prima.script.tagengine import TagEngine
 
         return TagEngine(others)
 
     def syntax(self) -> Any:
-        """What compiles code without running it."""
+        """The compiler of code that is not run."""
         from prima.script.syntax import Syntax
 
         return Syntax()
@@ -108,7 +108,7 @@ class EngineService:
         return ["data", result if gives == GIVES_DATA else None, holder.spent]
 
     def _taken(self, argument: list[Any]) -> Any:
-        """An argument: data, a value that is here, or several of these."""
+        """An argument: data, a value in this process, or several of these."""
         kind, value = argument
         if kind == "data":
             return value
@@ -118,7 +118,7 @@ class EngineService:
 
 
 def limit() -> None:
-    """Bound what this process may use from now on."""
+    """Limit the resources of this process from now on."""
     import resource
 
     bounds = {
@@ -130,7 +130,7 @@ def limit() -> None:
     for what, most in bounds.items():
         try:
             resource.setrlimit(what, (most, most))
-        except (OSError, ValueError):  # a system without it, or a lower bound that holds already
+        except (OSError, ValueError):  # not on this system, or a lower limit applies already
             continue
 
 

@@ -1,4 +1,4 @@
-"""Engines in processes of their own: what a run calls, which sends each call there.
+"""Proxies of engines in processes of their own.
 
 :class:`IsolatedEngine` has the methods of :class:`~prima.script.engine.Engine`. Values of the
 engine are :class:`~prima.script.worker.Handle` here.
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from prima.script.engine import Engine
 
 ISOLATIONS = ("ea", "all", "none")
-"""Whose code gets a process of its own: each EA's, each application's, or nobody's.
+"""Whose code gets a process of its own: each EA's, each application's, or none.
 
-Where it is ``ea``, FAs share one. Where it is ``none``, engines run in the process of the run, and
-nothing can stop code that escapes their limits: for documents that can be trusted alone."""
+With ``ea``, FAs share one. With ``none``, engines run in the process of the run, and nothing can
+stop code that escapes their limits: only for trusted documents."""
 
 
 Made = TypeVar("Made")
@@ -34,11 +34,11 @@ class IsolatedEngine(Remote):
 
     def __init__(self, host: Worker, scopes: tuple[str, ...] = SCOPES) -> None:
         self.now = 0
-        """The time by the run's calendar (ms since 1970, UTC): what ``Date`` tells."""
+        """The time by the run's calendar (ms since 1970, UTC), as ``Date`` gives it."""
         self.spent = 0.0
-        """Seconds of the processor since the owner last set it to nought."""
+        """Seconds of processor time since the owner last reset it."""
         self.maker: Engines | None = None
-        """The owner of the process, which has to live as long as the process is used."""
+        """The owner of the process, which must live as long as the process is used."""
         super().__init__(host, "engine", [as_data(scopes)], self)
         self.nothing = self._call("empty")
         self._lenient: dict[str, str] = {}
@@ -49,7 +49,7 @@ class IsolatedEngine(Remote):
         return self.host.why
 
     def compile(self, code: str) -> None:
-        """See :meth:`Engine.compile`; nothing comes back."""
+        """See :meth:`Engine.compile`; returns nothing."""
         self._call("compile", as_data(code))
 
     def lenient(self, code: str) -> str:
@@ -165,7 +165,7 @@ class IsolatedEngine(Remote):
 
 
 class AbsentEngine:
-    """What an application has whose engine cannot be had: nothing is evaluated, and it ends."""
+    """Replaces an engine that is unavailable: nothing is evaluated, and the application ends."""
 
     def __init__(self, lost: str) -> None:
         self.lost = lost
@@ -180,7 +180,7 @@ class AbsentEngine:
 
 
 class Engines:
-    """The engines of one run's applications, each where its code may run.
+    """The engines of one run's applications, each in the process where its code may run.
 
     Args:
         isolate: one of :data:`ISOLATIONS`.
@@ -189,7 +189,7 @@ class Engines:
     def __init__(self, isolate: str = "ea") -> None:
         self._isolate = isolate
         self.hosts: dict[str, Worker] = {}
-        """The processes, by the application; that of all FAs by nothing."""
+        """The processes, by application; the one shared by FAs under the empty name."""
         self._absent = ""
         """Why the next application has no engine."""
         if isolate not in ISOLATIONS:
@@ -216,7 +216,7 @@ class Engines:
         return made
 
     def without(self, error: EngineLost, make: Callable[[], Made]) -> Made:
-        """Make an application once more, for which no engine could be had; if need be without."""
+        """Create an application again whose engine was unavailable, if need be without one."""
         try:
             return make()
         except EngineLost:
@@ -227,7 +227,7 @@ class Engines:
                 self._absent = ""
 
     def close(self) -> None:
-        """Give the processes back: nothing can be evaluated any more."""
+        """Return the processes: nothing can be evaluated any more."""
         while self.hosts:
             worker.dismiss(self.hosts.popitem()[1])
 

@@ -1,4 +1,4 @@
-"""The variables that code of a document may see, by the scopes that hold them."""
+"""The variables visible to code of a document, by scope."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ class NameScope(set[str]):
 
     @cached_property
     def written(self) -> list[str]:
-        """Those that code can hold and that are not our own, as many as are guessed among.
+        """The names that documents may write, limited to the number considered for guesses.
 
-        Asked for once all names are there.
+        Used once all names have been added.
         """
         meant = (one for one in self if IDENTIFIER.fullmatch(one) and not one.startswith("$"))
         return list(islice(meant, MANY_WORDS + 1))
 
 
 class Known:
-    """The variables that some code may see: looked up in their scopes, which are never joined."""
+    """The variables visible to some code: looked up in their scopes, which are never merged."""
 
     __slots__ = ("scopes",)
 

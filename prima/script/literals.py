@@ -11,9 +11,9 @@ WORDS = {"true": True, "false": False, "null": None}
 NUMBER = frozenset("0123456789.eE+-")
 ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v"}
 UNCOMMON = frozenset("ux0123456789\n\r\u2028\u2029")
-"""Behind a backslash: what is not the character itself, or a white space."""
+"""Escapes: characters after a backslash that do not stand for themselves, except white space."""
 DEEPEST = 50
-"""Arrays and objects inside each other."""
+"""Maximum nesting of arrays and objects."""
 
 
 class Beyond(Exception):
@@ -21,7 +21,7 @@ class Beyond(Exception):
 
 
 def literal(code: Code, node: Node) -> Any:
-    """The value of a literal, of which every evaluation makes a copy (:func:`fresh`).
+    """The value of a literal, which every evaluation copies (:func:`fresh`).
 
     Raises:
         Beyond: it needs an engine.
@@ -39,7 +39,7 @@ def fresh(value: Any) -> Any:
 
 
 def number(code: Code, node: Node) -> float:
-    """A number that is written in decimals.
+    """A decimal number.
 
     Raises:
         Beyond: it is written in another way.
@@ -69,7 +69,7 @@ def string(code: Code, node: Node) -> str:
 
 
 def _plain(code: Code, node: Node) -> Any:
-    """A number, text or word: nothing that holds others."""
+    """A number, text or word: not an array or object."""
     if node.type == "number":
         return number(code, node)
     if node.type == "string":
@@ -80,7 +80,7 @@ def _plain(code: Code, node: Node) -> Any:
 
 
 def _item(code: Code, node: Node, depth: int) -> Any:
-    """A value in so many arrays and objects, which is not computed."""
+    """A literal at a depth of so many arrays and objects."""
     if depth > DEEPEST:
         raise Beyond
     if node.type == "array":
@@ -97,7 +97,7 @@ def _item(code: Code, node: Node, depth: int) -> Any:
 def _array(code: Code, node: Node, depth: int) -> list[Any]:
     children = node.children
     if any(one.type in ("[", ",") and two.type == "," for one, two in pairwise(children)):
-        raise Beyond  # an element is left out
+        raise Beyond  # an element is omitted
     return [_item(code, one, depth + 1) for one in node.named_children]
 
 

@@ -1,4 +1,4 @@
-"""The names that ECMAScript code declares, reads and gives values to, by its scopes.
+"""The names that ECMAScript code declares, reads and assigns, by scope.
 
 Code is not run: the effects of ``with`` and ``eval`` are unknown (:attr:`Names.opaque`).
 """
@@ -14,7 +14,7 @@ from prima.script.parse import Code, Node, parse_expression, parse_script
 from prima.script.walk import OBJECTS, CodeScope, Walk
 
 LONG_CODE = 500
-"""Characters of code beyond which what is found in it is not kept, but of the last."""
+"""Maximum length of code whose names are cached; of longer code, only the last is kept."""
 
 
 @dataclass(slots=True)
@@ -25,40 +25,40 @@ class Use:
     start: int
     """Its offset in the code."""
     holder: str = ""
-    """The scope it is a member of: ``document`` in ``document.x``; empty where none is written."""
+    """The scope it is a member of: ``document`` in ``document.x``; empty if none is written."""
     declares: bool = False
-    """Whether it is declared there; a scope's member is by being given a value."""
+    """Whether it is declared there; a scope's member is declared by assignment."""
     parted: bool = False
-    """Whether it is a scope's member whose own member is asked for: of undefined that is an error."""
+    """Whether it is a scope's member whose own member is read, an error if undefined."""
 
 
 @dataclass(slots=True)
 class Names:
-    """The names in a piece of code that mean anything outside of it, or at its top."""
+    """The names in a piece of code that matter outside of it, or at its top level."""
 
     declared: set[str] = field(default_factory=set)
-    """What is declared at the top, outside of functions and blocks."""
+    """Names declared at the top level, outside of functions and blocks."""
     read: dict[str, int] = field(default_factory=dict)
-    """What is read and not declared in the code, with the first offset; ``typeof x`` reads nothing."""
+    """Undeclared names that are read, with the first offset; ``typeof x`` reads nothing."""
     written: set[str] = field(default_factory=set)
-    """What is given a value and not declared in the code: a new global variable."""
+    """Undeclared names that are assigned: new global variables."""
     changed: set[str] = field(default_factory=set)
-    """What is given a value by its old one, and not declared in the code: ``x++``, ``x += 1``."""
+    """Undeclared names that are updated: ``x++``, ``x += 1``."""
     now: dict[str, int] = field(default_factory=dict)
-    """What of that is read outside of functions, unless the code asks for its type as well."""
+    """Those read outside of functions, unless the code tests their type as well."""
     uses: list[Use] = field(default_factory=list)
-    """The occurrences of names of all these kinds, in the order of the text."""
+    """Occurrences of all these names, in the order of the text."""
     opaque: bool = False
-    """Whether there may be more names: it has ``eval``, or is too long to be parsed."""
+    """Whether there may be more names: the code has ``eval``, or is too long to be parsed."""
 
     @property
     def free(self) -> Mapping[str, int]:
-        """What is read, not declared in the code, and not the engine's or the language's."""
+        """Undeclared names that are read, other than the engine's or the language's."""
         return {name: start for name, start in self.read.items() if name not in GLOBALS}
 
     @property
     def handled(self) -> dict[str, int]:
-        """Variables of an event's handler that are read, and where first."""
+        """Variables of an event's handler that are read, with the first offset."""
         return {name: start for name, start in self.read.items() if name in HANDLED}
 
 
@@ -115,7 +115,7 @@ def _add(made: Names, top: CodeScope, start: int, name: str, how: str, scope: Co
     home = scope.home(name)
     if home is not None and home is not top:
         return
-    if how != "change":  # it is read there, too
+    if how != "change":  # also read there
         made.uses.append(Use(name, start, declares=how == "declare"))
     if home is None and how == "read":
         made.read.setdefault(name, start)

@@ -1,4 +1,4 @@
-"""What expressions in Python do with values: variables, members and operators.
+"""Operations of expressions in Python: variables, members and operators.
 
 Work with long texts is counted.
 """
@@ -32,22 +32,22 @@ from prima.script.globals import INHERITED, METHODS
 Operation = Callable[[Any, Any, Scopes], Any]
 
 LONGEST = 100_000
-"""Characters that a text may have; nothing longer could leave the scopes."""
+"""Maximum length of a text; no longer one could leave the scopes."""
 LONGEST_KEY = 63
-"""Characters that the engine's messages give of a member's name."""
+"""How much of a member's name the engine's messages quote."""
 SHORT = 200
-"""Characters up to which work with a text is not counted."""
+"""Length up to which work with a text is not counted."""
 HIGH, LOW = frozenset(map(chr, range(0xD800, 0xDC00))), frozenset(map(chr, range(0xDC00, 0xE000)))
-"""First and second halves of letters."""
+"""High and low surrogates."""
 MISSING = object()
-"""The value of what nothing declares."""
+"""The value of an undeclared variable."""
 
 
 def sought(name: str, line: int, column: int, scopes: Scopes) -> Any:
-    """A variable that is in none of the usual scopes.
+    """A variable outside of the usual scopes.
 
     Raises:
-        ScriptError: nothing declares it.
+        ScriptError: it is undeclared.
     """
     value = found(name, scopes, MISSING)
     if value is MISSING:
@@ -56,7 +56,7 @@ def sought(name: str, line: int, column: int, scopes: Scopes) -> Any:
 
 
 def found(name: str, scopes: Scopes, otherwise: Any = UNDEFINED) -> Any:
-    """A variable's value, or ``otherwise`` if nothing declares it."""
+    """A variable's value, or ``otherwise`` if it is undeclared."""
     for scope in reversed(scopes):
         if name in scope:
             return scope[name]
@@ -81,7 +81,7 @@ def holder_of(name: str, scopes: Scopes) -> Scope:
 
 
 def member(value: Any, key: str, index: int, line: int, column: int, scopes: Scopes) -> Any:
-    """A member of a value, by its name and the index that the name is."""
+    """A member of a value, by its name and the name as an index."""
     if isinstance(value, dict):
         if isinstance(value, Named) and key == value.name and key not in value:
             return value
@@ -103,8 +103,8 @@ def member_of(value: Any, name: Any, line: int, column: int, scopes: Scopes) -> 
     """A member of a value, whose name is a value itself.
 
     Raises:
-        ScriptError: there is no value, or the name is that of a built-in function, which Python
-            does not have.
+        ScriptError: the value is null or undefined, or the name is that of a built-in function,
+            which Python does not have.
     """
     if value is None or value is UNDEFINED:
         key = "{}" if isinstance(name, list | dict) else text(name)[:LONGEST_KEY]
@@ -119,7 +119,7 @@ def member_of(value: Any, name: Any, line: int, column: int, scopes: Scopes) -> 
 
 
 def has_member(name: Any, value: Any, line: int, column: int, scopes: Scopes) -> bool:
-    """``in``: whether a value has a member of a name.
+    """``in``: whether a value has a member with a name.
 
     Raises:
         ScriptError: the value is neither an array nor an object, or as :func:`member_of`.
@@ -151,7 +151,7 @@ def _built_in(key: str, line: int, column: int) -> ScriptError:
 
 
 def work(scopes: Scopes, value: Any) -> None:
-    """Count the work with a value that may be long.
+    """Count work with a value that may be long.
 
     Raises:
         ScriptError: the application has taken too long in this instant.
@@ -208,7 +208,7 @@ def add(first: Any, second: Any, scopes: Scopes) -> Any:
 
 
 def join(first: str, second: str) -> str:
-    """Two texts as one, in which two halves that meet are a letter again."""
+    """Two texts joined, with a surrogate pair at the joint combined."""
     if first[-1:] in HIGH and second[:1] in LOW:
         pair = (first[-1] + second[0]).encode("utf-16-le", "surrogatepass").decode("utf-16-le")
         return first[:-1] + pair + second[1:]
@@ -239,7 +239,7 @@ def _comparison(act: Callable[[Any, Any], bool]) -> Operation:
 
 
 def divide(first: float, second: float) -> float:
-    """Division, which has a value by nought as well."""
+    """Division, which is defined for zero as well."""
     if second:
         return first / second
     if first == 0 or first != first or second != second:
@@ -248,7 +248,7 @@ def divide(first: float, second: float) -> float:
 
 
 def remainder(first: float, second: float) -> float:
-    """The remainder, with the sign of what is divided."""
+    """The remainder, with the sign of the dividend."""
     if second == 0 or math.isinf(first):
         return math.nan
     return math.fmod(first, second)

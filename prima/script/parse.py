@@ -1,7 +1,7 @@
 """ECMAScript code as a syntax tree, by tree-sitter.
 
-The tree tells what code is made of; whether it is ECMAScript at all the engine decides
-(:mod:`prima.script.syntax`). A tree with faults in it still has the names of what is sound.
+The tree shows the structure of code; whether it is valid ECMAScript is decided by the engine
+(:mod:`prima.script.syntax`). A tree with faults still has the names in its sound parts.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ from tree_sitter import Language, Node, Parser, Tree
 __all__ = ["MOST_CODE", "Code", "Node", "parse_bracketed", "parse_expression", "parse_script"]
 
 MOST_CODE = 300_000
-"""Characters of code beyond which none is parsed."""
+"""Maximum length of code that is parsed."""
 DEEPEST = 1_000
-"""Brackets inside each other beyond which code is not parsed: the parser calls itself for each."""
+"""Maximum nesting of brackets in code that is parsed: the parser is recursive."""
 CHUNK = 1_024
-"""Bytes that the parser is given at once."""
+"""Bytes passed to the parser at once."""
 MOST_READ = 8
-"""How often the parser may read code on average: of code with many faults it reads the same pieces
-again and again in looking for the ends of texts, comments and regular expressions."""
+"""How often the parser may read code on average: in code with many faults it rereads the same
+pieces in search of the ends of texts, comments and regular expressions."""
 MOST_STEPS = 0.1
-"""Hundreds of steps that the parser may take for each byte; code without faults takes half as many."""
+"""Hundreds of steps that the parser may take per byte; code without faults takes half as many."""
 SHORT = 100
-"""Bytes of code that cannot take much work: it is not counted, which takes as long as to parse them."""
+"""Bytes of code up to which work is not counted: counting takes as long as parsing."""
 BRACKET = re.compile(r"[()\[\]{}]")
 ESCAPE = re.compile(r"\\u(?:([0-9A-Fa-f]{4})|\{0*([0-9A-Fa-f]{1,5})\})")
 ASTRAL = re.compile("[\U00010000-\U0010ffff]")
 LETTER = "\u2135"
-"""A letter of 16 bits that is parsed in place of a longer one, so that offsets count characters."""
+"""A 16-bit letter that replaces longer ones for the parser, so that offsets count characters."""
 
 
 @lru_cache(maxsize=1)
@@ -50,9 +50,9 @@ class Code:
         self.text = text
         self.root = tree.root_node
         self._before = before
-        """Characters before it that are not the code's."""
+        """The number of characters that precede the code."""
         self._width = width
-        """Bytes of a character."""
+        """Bytes per character."""
 
     def start(self, node: Node) -> int:
         """The offset in the text at which a node starts."""
@@ -75,7 +75,7 @@ class Code:
 
     @property
     def sound(self) -> bool:
-        """Whether the tree has no faults but semicolons that the parser did not see to be optional."""
+        """Whether the tree has no faults except optional semicolons that the parser missed."""
         if not self.root.has_error:
             return True
         return not any(
@@ -83,7 +83,7 @@ class Code:
         )
 
     def walk(self) -> Iterator[Node]:
-        """All nodes, each before what it holds, in the order of the text."""
+        """All nodes in the order of the text, parents first."""
         waiting = [self.root]
         while waiting:
             node = waiting.pop()
@@ -97,7 +97,7 @@ def parse_script(code: str) -> Code | None:
 
 
 def parse_expression(code: str) -> Code | None:
-    """The tree of code that is one expression; where it is not, that of a script.
+    """The tree of code as one expression, or else as a script.
 
     None for code that is too long to be parsed.
     """
@@ -109,12 +109,12 @@ def parse_expression(code: str) -> Code | None:
 
 @lru_cache(maxsize=2)
 def parse_bracketed(code: str) -> Code | None:
-    """The tree of code in brackets, whatever it is; the last one is asked for again."""
+    """The tree of any code in brackets; the last one is cached."""
     return _parse(code, f"({code}\n)", 1)
 
 
 def inner(code: Code) -> Node | None:
-    """The expression in the brackets around it; None where code is not one sound expression."""
+    """The expression inside the brackets; None if the code is not one sound expression."""
     root = code.root
     if root.has_error or root.child_count != 1:
         return None
@@ -140,13 +140,13 @@ def _parse(code: str, parsed: str, before: int) -> Code | None:
 
 
 class _Reading:
-    """Gives the parser code, and counts its work, which the same code always takes."""
+    """Passes code to the parser, and counts its work, which is the same for the same code."""
 
     def __init__(self, data: bytes) -> None:
         self.data = data
         self.reads = MOST_READ * (len(data) // CHUNK + 8)
         self.steps = MOST_STEPS * len(data) + 100
-        """How many more there may be."""
+        """The number of steps left."""
 
     def tree(self, encoding: Literal["utf8", "utf16le"]) -> Tree | None:
         """The tree of the code; None if it takes too much work."""
@@ -169,7 +169,7 @@ class _Reading:
 
 
 def _depth(code: str) -> int:
-    """How deep brackets are at most inside each other, those in texts and comments counted too."""
+    """The maximum nesting of brackets, including those in texts and comments."""
     if len(code) <= DEEPEST:
         return 0
     depth = deepest = 0

@@ -1,7 +1,7 @@
-"""The sandbox for ECMAScript of strangers: its limits, and what makes a run repeatable.
+"""The sandbox for untrusted ECMAScript: its limits, and what makes a run repeatable.
 
-``Math.random`` is seeded and no clock of the host can be read: ``Date`` is :data:`DATE`, whose clock
-is the run's. What waits, or tells when memory was collected, is removed.
+``Math.random`` is seeded and the host's clock cannot be read: ``Date`` is :data:`DATE` with the
+run's clock. Functions that wait, or reveal when memory is collected, are removed.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ MAY_ASK_TIME = re.compile(
     r"""Date|\bthis\b|globalThis|eval|Function|constructor|Reflect|Object|\\"""
     r"""|\[(?!\s*(?:\d*|"[^"]*"|'[^']*')\s*\])"""
 )
-"""Code that names ``Date``, or may find it without naming it."""
+"""Code that names ``Date``, or may reach it without naming it."""
 
 
 def source(name: str) -> str:
@@ -29,17 +29,17 @@ PRELUDE = source("repeatable.js")
 SAFE, GUARD, EVALUATE = "\u01c0safe", "\u01c0guard", "\u01c0evaluate"
 GIVE, DECLARE = "\u01c0give", "\u01c0declare"
 NAME = "\u01c0name"
-"""What :data:`GUARDS` makes, by names that hardly any document has."""
+"""Names of the functions of :data:`GUARDS`, which documents hardly use."""
 
 GUARDS = source("guards.js")
 
 
 def reason(text: str, seconds: float) -> str:
-    """Why a script failed, in words, by what the engine says; ``seconds`` is its limit."""
+    """Why a script failed, in words, from the engine's message; ``seconds`` is its limit."""
     message = (text.splitlines() or [""])[0]
     if message.startswith("InternalError: interrupted"):
         return f"it took longer than {seconds:g} s"
-    if message == "null":  # all that the engine says where no memory is left for an error
+    if message == "null":  # the engine's only message if no memory is left for an error
         return "it threw null, or used too much memory"
     if (
         message in ("", "[uninitialized]")
@@ -66,7 +66,7 @@ An expression that gives a function of the host's own ``Date`` and a function th
 """
 
 CLOCK = source("clock.js")
-"""Puts :data:`DATE` in the place of the host's, read when a document first asks for it.
+"""Replaces the host's ``Date`` by :data:`DATE` when a document first reads it.
 
 A function of the text of :data:`DATE`, evaluated before :data:`PRELUDE`, which takes the host's
 own ``Date`` away. It gives a function that, called without a value, installs the new one; with

@@ -1,4 +1,4 @@
-"""Engines in the process that all share: those of grammars' tags, and what compiles code."""
+"""Engines in a shared process: those of grammars' tags, and the compiler of code."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _checkers: list[IsolatedSyntax] = []
 
 
 def _shared() -> Worker:
-    """The process for all code that leaves nothing behind; a new one if it was lost."""
+    """The process for all code without lasting effects; a new one if it was lost."""
     if not _common or _common[0].lost:
         _common[:] = [Worker()]
     return _common[0]
@@ -76,18 +76,18 @@ class IsolatedTagEngine(Remote):
 
 
 def syntax() -> IsolatedSyntax:
-    """What compiles code in the process that all share; a new one if that was lost."""
+    """The compiler in the shared process; a new one if that was lost."""
     host = _shared()
     if not _checkers or _checkers[0].host is not host:
         try:
             _checkers[:] = [IsolatedSyntax(host)]
-        except EngineLost:  # it was ended from outside while nobody used it
+        except EngineLost:  # ended from outside while idle
             _checkers[:] = [IsolatedSyntax(_shared())]
     return _checkers[0]
 
 
 AT_ONCE, LETTERS_AT_ONCE = 500, 100_000
-"""Codes, and characters of them, that are compiled in one call: it has so much time."""
+"""Maximum number of codes compiled in one call, whose time is limited, and of their characters."""
 
 
 class IsolatedSyntax(Remote):
@@ -96,13 +96,13 @@ class IsolatedSyntax(Remote):
     def __init__(self, host: Worker) -> None:
         super().__init__(host, "syntax", [], Nobody())
         self._faults: dict[tuple[str, bool], tuple[str, int, int] | None] = {}
-        """What has been found out ahead, by codes and whether they are scripts."""
+        """Results of the look-ahead, by code and whether it is a script."""
 
     def look_ahead(self, codes: Iterable[tuple[str, bool]]) -> None:
-        """Find out at once what is wrong with many codes: what has been found out before is let go.
+        """Check many codes in one call, replacing the results of earlier calls.
 
         Args:
-            codes: the codes that will be asked about, and whether they are scripts.
+            codes: the codes to check, and whether they are scripts.
         """
         self._faults = {}
         asked: list[tuple[str, bool]] = []
@@ -117,13 +117,13 @@ class IsolatedSyntax(Remote):
 
     def _ask(self, codes: list[tuple[str, bool]]) -> None:
         if self._use != self.host.use or self.host.lost:
-            return  # whoever asks for one of them gets the error
+            return  # the check of each one raises the error
         with suppress(ScriptError):
             faults = super()._call("faults", as_data(codes))  # not twice, if it ends the process
             self._faults |= zip(codes, faults, strict=True)
 
     def _call(self, method: str, *arguments: list[Any]) -> Any:
-        """Call it; once more in a new process, as somebody else's code may have ended this one."""
+        """Call it; retry in a new process, as code of others may have ended this one."""
         try:
             return super()._call(method, *arguments)
         except EngineLost:

@@ -1,4 +1,4 @@
-"""Halves of letters, which texts of ECMAScript may have and UTF-8 has not."""
+"""Lone surrogates, which ECMAScript's texts may contain and UTF-8 may not."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import re
 from typing import Any
 
 SURROGATE = re.compile("[\ud800-\udfff]")
-"""Half of a letter, as ECMAScript has them in texts."""
+"""A surrogate, as in texts of ECMAScript."""
 
 
 def well_formed(text: str) -> str:
-    """Text in which halves of letters are whole again, or U+FFFD: UTF-8 has none."""
+    """Text in which surrogate pairs are joined, and lone surrogates are U+FFFD."""
     if text.isascii() or SURROGATE.search(text) is None:
         return text
     return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
@@ -27,9 +27,9 @@ def as_json(value: Any) -> str:
 
 
 HALF_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\ud[89a-f][0-9a-f]{2}")
-"""Half a surrogate pair in JSON of ECMAScript: an escape there; whole pairs are letters."""
+"""A lone surrogate in ECMAScript's JSON, which is an escape there; pairs are letters."""
 
 
 def well_formed_json(text: str) -> str:
-    """The same for the texts in JSON that ECMAScript has written."""
+    """The same for texts in JSON written by ECMAScript."""
     return HALF_PAIR.sub(r"\1\\ufffd", text) if "\\ud" in text else text

@@ -1,4 +1,4 @@
-"""Whether code is ECMAScript by the engine, and where it is not."""
+"""Checks by the engine whether code is ECMAScript, and where it is not."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from prima.script.parse import MOST_CODE
 from prima.script.sandbox import MEMORY_LIMIT, STACK_LIMIT, reason
 
 MOST_NAMES = 5_000
-"""Names that one script may declare: the engine compares each with all others."""
+"""Maximum number of names declared by one script: the engine compares each with all others."""
 TIME_LIMIT = 0.5
 """Seconds of processor time that one evaluation may take."""
 FAILURES = (
     *(quickjs.JSException, quickjs.StackOverflow),
     *(TypeError, ValueError, OverflowError, MemoryError, SystemError),
 )
-"""What the engine raises, and the binding itself for values that it cannot give to Python."""
+"""Exceptions of the engine, and of the binding for values that it cannot convert to Python."""
 
 
 CALLED = re.compile(r"<input>:(\d+):(\d+)")
 
 
 def script_error(error: Exception) -> ScriptError:
-    """What the engine raised, in our words, with the places of the functions being called."""
+    """An exception of the engine in our words, with the places on the call stack."""
     text = str(error)
     message = reason(text or type(error).__name__, TIME_LIMIT)
     # The outermost place is in this code; inner ones may be in a function declared elsewhere.
-    # The first line is ours: what has its place there is told where the code begins.
+    # The first line is ours: an error there is reported at the beginning of the code.
     found = [(int(line), int(column)) for line, column in CALLED.findall(text)]
     return ScriptError(
         message, [(line - 1, column) if line > 1 else (1, 1) for line, column in found]
@@ -40,9 +40,9 @@ def script_error(error: Exception) -> ScriptError:
 
 
 DECLARE = "((F, read) => (body) => { new F(read(body)); })(Function, JSON.parse)"
-"""Compiles the body of a function, given as JSON; made once, as making it takes as long."""
+"""Compiles the body of a function, given as JSON; created once, as that takes as long."""
 MOST_SOUND, LONG_CODE = 20_000, 500
-"""How much code that has compiled is remembered, and beyond how many characters none is."""
+"""The size of the cache of compiled code, and the maximum length of code in it."""
 
 
 PLACE = re.compile(r"<(?:input|anonymous|evalScript)>:(\d+):(\d+)")
@@ -61,11 +61,11 @@ class Syntax:
             context.set_time_limit(TIME_LIMIT)
         self._declare = context.eval(DECLARE)
         self._sound: set[str] = set()
-        """Expressions that have compiled."""
+        """Expressions compiled successfully."""
         self._lenient: dict[str, str] = {}
 
     def expression(self, code: str) -> None:
-        """Compile an expression by itself, so that no bracket in it closes one of ours.
+        """Compile an expression by itself, so that its brackets cannot close ours.
 
         Raises:
             ScriptError: with the line and column inside the expression.
@@ -73,7 +73,7 @@ class Syntax:
         if code in self._sound:
             return
         self._compile(code, f"return (\n{code}\n)")
-        self._compile(code, f"return [\n{code}\n]")  # what closes one bracket fails in the other
+        self._compile(code, f"return [\n{code}\n]")  # code that closes one fails in the other
         if len(code) <= LONG_CODE and len(self._sound) < MOST_SOUND:
             self._sound.add(code)
 
@@ -91,7 +91,7 @@ class Syntax:
         self._compile(code, f"return (function () {{\n{code}\n}})")
 
     def lenient(self, code: str) -> str:
-        """An expression of other platforms as one of ECMAScript: ``x = 1; x + 1``, or nothing.
+        """Convert an expression of other platforms, ``x = 1; x + 1`` or nothing, to ECMAScript.
 
         Several statements give the value of the last, no statement gives undefined.
         """
@@ -103,7 +103,7 @@ class Syntax:
         return kept
 
     def faults(self, codes: list[tuple[str, bool]]) -> list[tuple[str, int, int] | None]:
-        """What is wrong with each of several codes, with line and column; None with what is right.
+        """The errors of several codes, with line and column; None for correct ones.
 
         Args:
             codes: the codes, and whether they are scripts.
@@ -137,7 +137,7 @@ class Syntax:
 
 
 def column_in(code: str, line: int, column: int) -> int:
-    """A column of the engine, which counts bytes, in characters."""
+    """Convert a column of the engine, which counts bytes, to characters."""
     if code.isascii() or line <= 0:
         return column
     there = code.split("\n", line)[line - 1 : line] or [""]
@@ -146,7 +146,7 @@ def column_in(code: str, line: int, column: int) -> int:
 
 
 def _placed(said: str, code: str) -> ScriptError:
-    """What the engine said, with its place in code; the lines of ours around that do not count."""
+    """The engine's error with its place in the code, without our lines around it."""
     place = PLACE.search(said)
     line, column = (int(place[1]) - 3, int(place[2])) if place else (0, 0)
     lines = code.split("\n")

@@ -1,6 +1,6 @@
 """The ECMAScript engine for the tags of grammars, in a process of its own.
 
-``Date`` tells the time that is given and ``Math.random`` is seeded, so that a match can be repeated.
+``Date`` gives the time that was set and ``Math.random`` is seeded, so that a match is repeatable.
 """
 
 from __future__ import annotations
@@ -31,22 +31,22 @@ if TYPE_CHECKING:
     from prima.messages import Json
 
 DONE = 1_000_000
-"""What comes after a rule's last tag."""
+"""The code after a rule's last tag."""
 LEAST_MEMORY = 1024 * 1024
-"""Bytes that each sandbox may use, however many there are: each further one has half as many."""
+"""Bytes that the first sandbox may use: each further one has half as many."""
 RESULT_LIMIT = 100_000
-"""Characters that a value may have when it leaves the engine."""
+"""Maximum length of a value that leaves the engine."""
 
 HELPERS = source("tags.js")
 
 CHECK = source("check.js")
-"""Compiles a script by itself, which ends before it begins; it declares nothing outside."""
+"""Compiles a script by itself without running it; it declares nothing outside."""
 
 
 def shared(code: str) -> str:
-    """A script whose declarations at its top are all of the global scope, by which others see them.
+    """A script with its top-level declarations moved to the global scope, where others see them.
 
-    ``let``, ``const`` and ``class`` would be seen nowhere else where code is evaluated by a function.
+    Otherwise ``let``, ``const`` and ``class`` would be local, as a function evaluates the code.
     """
     if not any(word in code for word in ("let", "const", "class")):
         return code
@@ -77,7 +77,7 @@ class TagEngine:
         self.now, self._told = 0, -1
         """The time that the tags see (ms since 1970, UTC)."""
         self.spent = 0.0
-        """Seconds of the processor that the tags of this utterance have taken."""
+        """Seconds of processor time that the tags of this utterance have taken."""
         context = quickjs.Context()
         context.set_memory_limit(max(MEMORY_LIMIT >> others, LEAST_MEMORY))
         context.set_max_stack_size(STACK_LIMIT)
@@ -113,11 +113,11 @@ class TagEngine:
         self._call(self._context.eval(EVALUATE), f";{shared(code)}\n;0")
 
     def box(self, value: Json) -> Any:
-        """A value from outside, as functions of the sandbox take it."""
+        """Box a value from outside for functions of the sandbox."""
         return self._call(self._helper("box"), json.dumps(value))
 
     def environment(self, text: str, merges: bool) -> Any:
-        """What a rule's tags see; rules that it refers to are added in order."""
+        """The environment of a rule's tags; rules that it refers to are added in order."""
         return self._call(self._helper("environment"), well_formed(text), merges)
 
     def add(self, environment: Any, name: str, box: Any, text: str) -> None:
@@ -137,7 +137,7 @@ class TagEngine:
         return box
 
     def reached(self, environment: Any) -> int:
-        """Which of a rule's tags was begun last."""
+        """The number of the rule's tag begun last."""
         try:
             at = self._context.eval(f"{GUARD}((e) => e.next.at | 0)")(environment)
         except (quickjs.JSException, quickjs.StackOverflow):
@@ -160,7 +160,7 @@ class TagEngine:
         return str(text)
 
     def take(self, text: str) -> Any:
-        """A value that another sandbox has given."""
+        """Unbox a value from another sandbox."""
         return self._call(self._helper("take"), text)
 
     def json(self, box: Any) -> Json:

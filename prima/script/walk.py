@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping
 from prima.script.parse import Code, Node
 
 DEEPEST = 200
-"""Scopes inside each other; what is deeper counts as the same scope."""
+"""Maximum nesting of scopes; deeper ones count as the same scope."""
 OBJECTS = frozenset(["application", "document", "dialog"])
-"""Objects whose members are variables of that name (VoiceXML 2.0, 5.1.2)."""
+"""Objects whose members are variables (VoiceXML 2.0, 5.1.2)."""
 
 
 class CodeScope:
@@ -24,7 +24,7 @@ class CodeScope:
         self.depth: int = outer.depth + 1 if outer else 0
         self.names: set[str] = set()
         self.function: CodeScope = self if function or outer is None else outer.function
-        """Where ``var`` declares."""
+        """The scope for ``var``."""
         self.hides = hides
         """Whether any name may be declared in it: ``with``."""
 
@@ -53,7 +53,7 @@ TARGETS = frozenset(["identifier", "shorthand_property_identifier_pattern"])
 
 
 class Walk:
-    """Goes through a tree once; what is found is looked up in the scopes at the end.
+    """Walks a tree once; names found are resolved in the scopes at the end.
 
     Args:
         code: the code whose tree it is.
@@ -67,12 +67,12 @@ class Walk:
         """Offset, name, how (``read``, ``write``, ``change``, ``ask``, ``declare`` or a holder), scope."""
         self.opaque = False
         self.given: set[int] = set()
-        """Offsets of scopes' members that are given values."""
+        """Offsets of scopes' members that are assigned."""
         self.parted: set[int] = set()
-        """Offsets of scopes' members whose own members are asked for."""
+        """Offsets of scopes' members whose own members are read."""
 
     def go(self) -> Walk:
-        """Go through the tree."""
+        """Walk the tree."""
         while self.waiting:
             node, scope = self.waiting.pop()
             VISITS.get(node.type, Walk.all)(self, node, scope)
@@ -83,15 +83,15 @@ class Walk:
         self.found.append((self.code.start(node), self.code.name(node), how, scope))
 
     def push(self, node: Node | None, scope: CodeScope) -> None:
-        """Go through a node in a scope."""
+        """Visit a node in a scope."""
         if node is not None:
             self.waiting.append((node, scope))
 
     def all(self, node: Node, scope: CodeScope) -> None:
-        """Go through all that a node holds."""
+        """Visit all children of a node."""
         self.waiting += [(one, scope) for one in node.named_children]
 
-    # What declares, or opens a scope ----------------------------------------------------------
+    # Declarations and scopes ------------------------------------------------------------------
 
     def name(self, node: Node, scope: CodeScope) -> None:
         """A variable is read."""
@@ -148,7 +148,7 @@ class Walk:
         self.push(node.child_by_field_name("body"), inner)
 
     def caught(self, node: Node, scope: CodeScope) -> None:
-        """What is caught is known in its block."""
+        """The caught exception is visible in its block."""
         inner = scope.inner()
         self.bind(node.child_by_field_name("parameter"), inner)
         self.push(node.child_by_field_name("body"), inner)
@@ -158,10 +158,10 @@ class Walk:
         self.push(node.child_by_field_name("object"), scope)
         self.push(node.child_by_field_name("body"), scope.inner(hides=True))
 
-    # What reads or gives values ---------------------------------------------------------------
+    # Reading and assigning --------------------------------------------------------------------
 
     def assignment(self, node: Node, scope: CodeScope) -> None:
-        """``x = 1`` gives ``x`` a value; ``x += 1`` reads it first."""
+        """``x = 1`` assigns ``x``; ``x += 1`` reads it first."""
         left = node.child_by_field_name("left")
         if node.type == "augmented_assignment_expression":
             self.change(left, scope)
@@ -170,11 +170,11 @@ class Walk:
         self.push(node.child_by_field_name("right"), scope)
 
     def update(self, node: Node, scope: CodeScope) -> None:
-        """``x++`` reads ``x`` and gives it a value."""
+        """``x++`` reads and assigns ``x``."""
         self.change(node.child_by_field_name("argument"), scope)
 
     def change(self, target: Node | None, scope: CodeScope) -> None:
-        """A target is read and given a value."""
+        """A target is read and assigned."""
         self.push(target, scope)
         if target is not None and target.type == "identifier":
             self.tell(target, "change", scope)
@@ -182,7 +182,7 @@ class Walk:
             self.given.add(self.code.start(found[1]))
 
     def unary(self, node: Node, scope: CodeScope) -> None:
-        """``typeof x`` may be asked of what nothing declares."""
+        """``typeof x`` is allowed for an undeclared name."""
         operator = node.child_by_field_name("operator")
         argument = node.child_by_field_name("argument")
         while argument is not None and argument.type == "parenthesized_expression":
@@ -201,7 +201,7 @@ class Walk:
         self.all(node, scope)
 
     def member(self, node: Node, scope: CodeScope) -> None:
-        """A member's name is a variable's where the object is a scope."""
+        """A member's name is a variable's if the object is a scope."""
         holder = node.child_by_field_name("object")
         self.push(holder, scope)
         if (found := self.of_scope(node)) is not None:
@@ -229,7 +229,7 @@ class Walk:
         self._target(target, declare, home)
 
     def assign(self, target: Node | None, scope: CodeScope) -> None:
-        """The names of a target are given values."""
+        """The names of a target are assigned."""
         self._target(target, lambda node: self.tell(node, "write", scope), scope)
 
     def _target(self, target: Node | None, put: Callable[[Node], None], scope: CodeScope) -> None:
@@ -256,7 +256,7 @@ class Walk:
                 self.member_given(node, scope)
 
     def member_given(self, node: Node, scope: CodeScope) -> None:
-        """A member is given a value: that of a scope, or a script's own, as ``this``, is a variable."""
+        """A member is assigned: a member of a scope, or of a script's ``this``, is a variable."""
         holder, part = node.child_by_field_name("object"), node.child_by_field_name("property")
         own = holder is not None and holder.type == "this" and scope.function is self.top
         if (found := self.of_scope(node)) is not None:
@@ -290,4 +290,4 @@ VISITS: Mapping[str, Callable[[Walk, Node, CodeScope], None]] = {
     "call_expression": Walk.call,
     "member_expression": Walk.member,
 }
-"""What is done at a node of each type; all that a node holds is gone through at any other."""
+"""The visitor of each type of node; of any other type, all children are visited."""

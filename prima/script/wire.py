@@ -1,4 +1,4 @@
-"""Messages between a run and a process that evaluates strangers' code: JSON behind its length.
+"""Messages between a run and a process that evaluates untrusted code: JSON with a length prefix.
 
 Values of the engine, which cannot leave its process, are numbers there (:class:`Handle`).
 """
@@ -12,16 +12,16 @@ from typing import Any
 
 HEADER = struct.Struct("!I")
 LONGEST_REQUEST, LONGEST_REPLY = 64 * 1024 * 1024, 4 * 1024 * 1024
-"""Bytes that a message may have."""
+"""Maximum size of a message in bytes."""
 FIRST, CHUNK = 4096, 1024 * 1024
-"""Bytes that are read at once, of a message's beginning and of what follows."""
+"""Bytes read at once, at a message's beginning and later."""
 
 _encode = json.JSONEncoder(separators=(",", ":"), check_circular=False).encode
 _decode = json.JSONDecoder().decode
 
 
 class TooMuch(Exception):
-    """A message is too long or nested too deep; nothing of it was sent."""
+    """A message is too long or nested too deep; none of it was sent."""
 
 
 class WireBroken(Exception):
@@ -53,7 +53,7 @@ def receive(pipe: int, longest: int) -> Any:
     """Wait for a message: each is answered before the next is sent.
 
     Raises:
-        WireBroken: there will be none.
+        WireBroken: the other side has gone.
     """
     found = os.read(pipe, FIRST)
     while len(found) < HEADER.size:

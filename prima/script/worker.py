@@ -1,8 +1,7 @@
-"""A process that evaluates strangers' code, as its caller sees it: started, called, lost.
+"""A process that evaluates untrusted code, from its caller's side: started, called, lost.
 
 A script that escapes the engine's limits ends its process (:mod:`prima.script.host`), and every
-call after that fails with :class:`EngineLost`: whoever has given that code to the engine ends,
-and nobody else.
+later call fails with :class:`EngineLost`: the application with that code ends, and no other.
 """
 
 from __future__ import annotations
@@ -21,15 +20,15 @@ from prima.script import host, wire
 from prima.script.evaluation import EngineLost, ScriptError
 
 MOST_IDLE = 4
-"""Processes that are kept for whoever needs one next."""
+"""Maximum number of idle processes kept for reuse."""
 MANY = 8
-"""Processes at work from which on unused ones are collected."""
+"""Number of processes in use from which unused ones are collected."""
 PASSED_ON = ("LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "SYSTEMROOT")
-"""Variables of the environment without which some Pythons do not start."""
+"""Environment variables without which some Pythons do not start."""
 CALL_SECONDS = 35e-6
-"""What a call costs besides the work that is done there, on both sides."""
+"""The overhead of a call, on both sides."""
 ENDING_SECONDS = 5.0
-"""How long a process that has closed its pipe may take to end."""
+"""How long a process may take to end after closing its pipe."""
 
 
 class Handle:
@@ -46,7 +45,7 @@ class Handle:
 
 
 class Meter(Protocol):
-    """Who calls: what time the code is told (ms since 1970), and how many seconds it has taken."""
+    """The caller: the time that its code sees (ms since 1970), and the seconds it has taken."""
 
     now: int
     spent: float
@@ -78,7 +77,7 @@ class Worker:
         self.why = ""
         """Why it has ended; empty while it runs."""
         self.use = 0
-        """How often it has been given back."""
+        """How often it has been returned."""
 
         program = [sys.executable, "-I", "-S", host.__file__, json.dumps(sys.path)]
         try:
@@ -100,7 +99,7 @@ class Worker:
 
     @property
     def pid(self) -> int:
-        """Its number in the system."""
+        """Its process id."""
         return self._process.pid
 
     @property
@@ -137,7 +136,7 @@ class Worker:
                     self._end() if isinstance(error, wire.WireBroken) else ScriptError(str(error))
                 ) from None
             except BaseException:
-                self.close()  # the reply is still to come: the next call would take it for its own
+                self.close()  # the reply is outstanding: the next call would take it for its own
                 raise
         if kind == "value":
             return Handle(result, queue)
@@ -183,22 +182,22 @@ def _reason(code: int) -> str:
 _idle: list[Worker] = []
 """Idle processes."""
 _started: set[Worker] = set()
-"""Processes that were hired and have not ended, as far as is known. They are held here, so that those
-of a run that nobody closed are given back when it is collected, not collected with it."""
+"""Hired processes that have not ended, as far as is known. They are held here, so that those of an
+unclosed run are returned when it is collected, not collected with it."""
 
 
 def hire() -> Worker:
-    """A process that nobody else uses, to be given back by :func:`dismiss`.
+    """A process for exclusive use, to be returned by :func:`dismiss`.
 
     Raises:
         EngineLost: none can be started.
     """
     _started.intersection_update([one for one in _started if one.alive])
     if not _idle and len(_started) >= MANY:
-        gc.collect()  # runs that nobody closed give theirs back
+        gc.collect()  # unclosed runs return theirs
     while _idle:
         worker = _idle.pop()
-        if _reset(worker):  # it may have been ended meanwhile
+        if _reset(worker):  # it may have ended meanwhile
             return worker
     worker = Worker()
     _started.add(worker)
@@ -206,7 +205,7 @@ def hire() -> Worker:
 
 
 def _reset(worker: Worker) -> bool:
-    """Let a process forget everything; gives whether it can be used."""
+    """Reset a process; gives whether it can be used."""
     try:
         worker.call(0, "reset", [], Nobody())
     except EngineLost:
@@ -215,7 +214,7 @@ def _reset(worker: Worker) -> bool:
 
 
 def dismiss(worker: Worker) -> None:
-    """Let others use a process: what was made there is dropped."""
+    """Return a process for reuse: the objects in it are dropped."""
     if worker.lost:
         return
     worker.use += 1

@@ -1,4 +1,4 @@
-"""Code of ours around that of documents, and beside it."""
+"""Our code around and beside the code of documents."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from prima.script.syntax import FAILURES, script_error
 
 HELPERS = source("engine.js")
 INTO = "$into$"
-"""The scope whose variables a script declares, for our code around it."""
+"""The scope in which a script declares variables, for our code around it."""
 EVALUATING = re.compile(r"eval|\\u")
-"""Code that may evaluate other code in its own place."""
+"""Code that may evaluate other code in its scope."""
 
 
 class Helpers(dict[str, Any]):
@@ -37,30 +37,30 @@ class Helpers(dict[str, Any]):
 
 
 def guarded(parameters: str, body: str) -> str:
-    """The code of a function; exceptions of code in it become errors of ours."""
-    if EVALUATING.search(body):  # it might declare anything, also in our function
+    """The code of a function; exceptions of code in it become our errors."""
+    if EVALUATING.search(body):  # it might declare anything, even in our function
         return f"{GUARD}(function({parameters}){{{body}}})"
     caught = f"catch({STRANGE}){{throw {SAFE}({STRANGE})}}"
     return f"(function({parameters}){{try{{{body}}}{caught}}})"
 
 
 def _short(scope: str) -> str:
-    """The name of a scope's parameter; their first two letters tell scopes apart."""
+    """The name of a scope's parameter; the first two letters distinguish scopes."""
     return f"{scope[0:2]}{STRANGE}"
 
 
 def head(scopes: tuple[str, ...]) -> tuple[str, str]:
-    """The parameters of a function of scopes, and what makes their variables seen in it."""
+    """The parameters of a function of scopes, and the code that makes their variables visible."""
     names = [_short(name) for name in scopes]
     return ",".join(names), "".join(f"with({name})" for name in names)
 
 
 PLACE = re.compile(rf"""{WORD}(?:\.{WORD}|\[(?:[\w$.+-]+|"[^"\\\]]*"|'[^'\\\]]*')\])*""")
-"""A variable, or a part of what it holds."""
+"""A variable, or a part of its value."""
 
 
 def assignment(name: str, code: str, scopes: tuple[str, ...]) -> str:
-    """The body of an assignment that fails where the variable is not declared."""
+    """The body of an assignment that fails if the variable is undeclared."""
     scope, dot, rest = name.partition(".")
     where = [_short(scope) for scope in reversed(scopes)]
     target = name
@@ -91,7 +91,7 @@ def wrapped(script: Hoisted, scopes: tuple[str, ...]) -> tuple[str, str]:
         for name in script.others
     )
     inner = (
-        f"(function(){{{give}\n{script.code}\n;{export}}}).call({INTO})"  # this is the scope, too
+        f"(function(){{{give}\n{script.code}\n;{export}}}).call({INTO})"  # also this is the scope
     )
     names, withs = head(scopes)
     return f"{names},{INTO}", f"{declare}{withs}{{{inner}}}"

@@ -1,6 +1,6 @@
 """Prices: how long a reaction may have to wait for parts of another application.
 
-Nothing that runs is cut (rule U1), and nothing breaks a unit (U4, U5); so a reaction that needs
+Nothing that runs is cut (rule U1), and units are indivisible (U4, U5); so a reaction that needs
 the same device waits for the end. The times are those of the simulator's voice and gestures.
 """
 

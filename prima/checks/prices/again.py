@@ -12,7 +12,7 @@ Node = tuple[str, str | int]
 
 
 def reacting_again(outline: Outline) -> list[Gap]:
-    """Where an application makes a reaction of what its reactions bring, from outside as well."""
+    """Where an application reacts to the results of its own reactions, including from outside."""
     found = [one.made for one in outline.reactions if one.made]
     starts: list[Node] = [("reaction", number) for number in range(len(outline.reactions))]
     for ring in rings(starts, _Ways(outline)):
@@ -21,7 +21,7 @@ def reacting_again(outline: Outline) -> list[Gap]:
 
 
 def _gaps(outline: Outline, ring: Iterable[Node]) -> Iterator[Gap]:
-    """The gap of a ring of nodes that lead to each other, if Commands are in it."""
+    """The gap of a cycle of nodes, if it contains Commands."""
     held: dict[str, list[str | int]] = {"state": [], "event": [], "reaction": []}
     for kind, name in ring:
         held[kind].append(name)
@@ -62,7 +62,7 @@ class _Ways:
         if kind == "event":
             yield from self._takers.get(str(name), ())
             longer = str(name).rpartition(".")[0]
-            if longer:  # a handler takes all that begin with its event
+            if longer:  # a handler takes all events with its event as a prefix
                 yield ("event", longer)
         elif kind == "state":
             state = self._outline.states[str(name)]

@@ -74,7 +74,7 @@ def _backwards(outline: Outline) -> tuple[dict[str, list[str]], dict[str, list[s
 
 
 def _after(outline: Outline, reaction: PricedReaction) -> list[PricedState]:
-    """What a reaction does, and the states that it leads to or that go on beside it."""
+    """The activity of a reaction, and the states that it leads to or that continue alongside it."""
     starts = [*reaction.does.goes, *reaction.does.calls]
     if reaction.stays is not None:
         starts += [reaction.stays] if reaction.stays else list(outline.states)
@@ -87,9 +87,9 @@ def busy_after(outline: Outline, reaction: PricedReaction) -> Busy:
 
 
 def busy_after_each(outline: Outline, reactions: Sequence[PricedReaction]) -> list[Busy]:
-    """How long an application is busy because of each of some events.
+    """The longest activity caused by each of some events.
 
-    Of very many, what it takes at most whatever begins it, for each.
+    For very many events, the longest activity whatever starts it, for each.
     """
     if len(reactions) * size(outline) > MOST_COMPARED:
         return [busy_at_all(outline)] * len(reactions)
@@ -97,7 +97,7 @@ def busy_after_each(outline: Outline, reactions: Sequence[PricedReaction]) -> li
 
 
 def size(outline: Outline) -> int:
-    """How much there is to look at in an application."""
+    """The size of an application for this analysis."""
     held = sum(len(state.parts) + len(state.unknown) for state in outline.states.values())
     return len(outline.states) + len(outline.parts) + len(outline.gaps) + held
 
@@ -140,7 +140,7 @@ def _loops(outline: Outline) -> list[EndlessLoop]:
 
 
 def _loop_of(outline: Outline, states: list[PricedState]) -> EndlessLoop:
-    """The loop of states that lead to each other, or of one that asks again and again."""
+    """The loop of states that lead to each other, or of one that asks repeatedly."""
     names = frozenset(state.name for state in states)
     parts = [part for state in _with_called(outline, states) for part in state.parts]
     first = min(states, key=lambda state: state.node.index)

@@ -13,10 +13,10 @@ from prima.markup.tree import Node
 SETTLING_MS = 1500
 """Time of a turn beyond its angle at full speed: for slowing down and detecting the end (ms)."""
 SEARCH = 360.0 + 180.0
-"""How far (degrees) the robot turns at most to face the user, who stands still."""
+"""How far (degrees) the robot turns at most to face a user who stands still."""
 
 Value = object | None
-"""An argument's value; None where only a run tells."""
+"""An argument's value; None if only a run determines it."""
 
 
 def command_price(
@@ -26,14 +26,14 @@ def command_price(
     speech: tuple[int, str] | None,
     profile: Profile,
 ) -> Price:
-    """What a Command costs others.
+    """The cost of a Command to others.
 
     Args:
         node: its element.
         name: its type.
         args: its arguments; None for one that an expression gives.
-        speech: how long (ms) what it says takes, and why that may be more; None where it
-            says nothing.
+        speech: how long (ms) it speaks, and why that may be longer; None if it does not
+            speak.
         profile: the robot.
     """
     row = profile.commands.get(name) or TABLE_4_2.get(name)
@@ -52,12 +52,12 @@ def command_price(
 def group_price(
     node: Node, longest: int, inner: Sequence[Price], afters: Sequence[tuple[int, ...]]
 ) -> Price:
-    """What a unit around Commands costs others (U4).
+    """The cost of a unit around Commands to others (U4).
 
     Args:
         node: its element.
-        longest: its longest duration (ms), after which what runs then still runs to its end.
-        inner: what its steps cost.
+        longest: its longest duration (ms), after which running Commands still run to their end.
+        inner: the cost of its steps.
         afters: the indices of the steps that each of them waits for.
     """
     last = max((one.lasts for one in inner), default=0)
@@ -66,7 +66,7 @@ def group_price(
 
 
 def unit_price(node: Node, devices: frozenset[str], lasts: int, inner: Sequence[Price]) -> Price:
-    """What a unit costs others that keeps devices for a time (ms), by what is in it."""
+    """The cost to others of a unit that keeps devices for a time (ms), by its content."""
     unknown = next((one.unknown for one in inner if one.unknown), "")
     return Price(
         node,
@@ -84,7 +84,7 @@ def _together(prices: Sequence[Price], afters: Sequence[tuple[int, ...]]) -> int
     """The duration of a unit's steps; those that share a device run in sequence."""
     ends: list[int] = []
     free: dict[str, int] = {}
-    """When the steps before have ended that occupy a device."""
+    """When earlier steps that occupy a device have ended."""
     for price, after in zip(prices, afters, strict=True):
         before = [ends[one] for one in after]
         before += [free.get(device, 0) for device in price.devices]
@@ -100,7 +100,7 @@ def _motion(row: CommandType, args: Mapping[str, Value], profile: Profile) -> in
 
 
 def _turn(row: CommandType, args: Mapping[str, Value], profile: Profile) -> int:
-    """By an angle; toward something it is half a turn at most."""
+    """The duration of a turn by an angle; toward something it is half a turn at most."""
     angle = _most(row.arguments["angle"], args["angle"]) if "angle" in args else 180.0
     return _turning(angle, profile)
 
@@ -110,7 +110,7 @@ def _turning(angle: float, profile: Profile) -> int:
 
 
 def _head(row: CommandType, args: Mapping[str, Value], profile: Profile) -> int:
-    """From the farthest direction that a head can have."""
+    """The duration of a head's movement from its farthest direction."""
     farthest = _most(row.arguments["pan"], None)
     angle = farthest + _most(row.arguments["pan"], args.get("pan", 0.0))
     return round(angle / profile.head_speed * 1000)
@@ -156,4 +156,4 @@ MOTIONS: Mapping[str, Callable[[CommandType, Mapping[str, Value], Profile], int]
     "face-human": _face,
     "face-human-and-speak": _face,
 }
-"""How long (ms) Commands move that no feedback decides; others by the robot's profile."""
+"""The duration (ms) of movements without feedback; others follow from the robot's profile."""

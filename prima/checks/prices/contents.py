@@ -57,7 +57,7 @@ def contents_of(part: Item | Handler) -> list[Sequence[Act]]:
 
 
 def inside(unit: Unit) -> list[Item | Handler]:
-    """What a unit holds: its items, and the handlers of both."""
+    """The content of a unit: its items, and the handlers of both."""
     found: list[Item | Handler] = [*unit.handlers]
     for item in unit.items:
         found += [item, *item.handlers]

@@ -28,8 +28,8 @@ from prima.interpreter.rounds import EventLeads, raised_in
 from prima.interpreter.selection import takes
 
 MOST_INNER, MOST_SCOPES = 40_000, 16_000_000
-"""Pairs of a form and a handler for all forms that are followed: of events of the application's own,
-and of any."""
+"""Maximum number of pairs of a form and a handler for all forms that are followed: for events of
+the application's own, and for any."""
 
 
 def outline(document: Document, profile: Profile) -> Outline:
@@ -61,7 +61,7 @@ class _DialoguePrices(Times):
         self.own = OwnEvents(document, self.parts, self.steps)
         self._leads = EventLeads(raised_in)
         self._inner = {one.node.index for _, one in handlers_of(document) if self.takes_inner(one)}
-        """The handlers of events that the application makes for itself."""
+        """The handlers of events that the application causes itself."""
         self._everywhere = [one for one in document.handlers if one.node.index in self._inner]
 
     def _item(self, item: Item, form: Form) -> None:
@@ -103,7 +103,7 @@ class _DialoguePrices(Times):
             )
 
     def _link(self, link: Link, form: Form | None) -> PricedReaction:
-        """What a link does, in a form or in all."""
+        """The effect of a link, in a form or in all."""
         content = () if link.form else self._hearing(link.event, form)
         does = self._content(PricedState(SPEECH, link.node), [content], form)
         if link.form:
@@ -116,7 +116,7 @@ class _DialoguePrices(Times):
     def _begins(
         self, content: Sequence[Act], form: Form | None, name: str = ""
     ) -> tuple[list[Price], list[Price]]:
-        """What content does first, or the form of a name; and up to its response."""
+        """The first Commands of content or of a named form, and those up to its response."""
         found = []
         for firsts in (self.firsts, self.responses):
             found.append(firsts.of_form(name) if name else firsts.of(content, form))
@@ -124,11 +124,11 @@ class _DialoguePrices(Times):
         return begins, until if any(map(responds, until)) else []
 
     def _later(self) -> list[Gap]:
-        """The delayed events after which a response may come that has been looked for."""
+        """The delayed events after which the response searched for may come."""
         return [_goes_on(act) for act in self.responses.later]
 
     def _wakes(self) -> list[PricedState]:
-        """What is done about its own delayed events."""
+        """The reactions to its own delayed events."""
         return [
             self._content(PricedState(one.events[0], one.node), [one.content], form)
             for form, one in handlers_of(self.document)
@@ -136,7 +136,7 @@ class _DialoguePrices(Times):
         ]
 
     def _hearing(self, event: str, form: Form | None) -> tuple[Act, ...]:
-        """What is done about an event that a link throws."""
+        """The reactions to an event that a link throws."""
         scope = [*(form.handlers if form else ()), *self.document.handlers]
         return tuple(
             act for one in scope if any(takes(name, event) for name in one.events)
@@ -144,7 +144,7 @@ class _DialoguePrices(Times):
         )  # fmt: skip
 
     def _state(self, form: Form) -> PricedState:
-        """What a form does, and what its answers and its own events lead to."""
+        """The activity of a form, and the states that its answers and its own events lead to."""
         state = PricedState(form.id, form.node)
         contents: list[Sequence[Act]] = []
         answers: list[Sequence[Act]] = [filled.content for filled in form.filled]
@@ -169,7 +169,7 @@ class _DialoguePrices(Times):
         return state
 
     def _add_item(self, state: PricedState, item: Item, form: Form) -> None:
-        """What an item does itself: it asks, or calls another form, or is a unit."""
+        """Add the activity of an item: it asks, calls another form, or is a unit."""
         price = self.of_items.get(item.node.index)
         if price is not None and item.node.index not in self.inside:
             state.parts.append(price)
@@ -192,7 +192,7 @@ class _DialoguePrices(Times):
         form: Form | None,
         inside: bool = False,
     ) -> PricedState:
-        """Add what pieces of content do, and where they lead."""
+        """Add the activity of pieces of content, and where they lead."""
         for content in contents:
             state.raises |= self.own.raised(content)
             state.brings |= self.own.brought(content)
@@ -225,8 +225,8 @@ class _DialoguePrices(Times):
     def _reactions(
         self, handler: Handler, form: Form | None, rounds: bool
     ) -> Iterator[PricedReaction]:
-        """What a handler does as a reaction: to events from outside, and where its author says so
-        to the application's own (C5); ``rounds`` if it leads to itself again."""
+        """The reactions of a handler: to events from outside and, if declared so, to the
+        application's own (C5); ``rounds`` if it leads to itself again."""
         if handler.reactive is False:
             return
         foreign, own = self._divided(handler.events)
@@ -270,6 +270,6 @@ def _name(form: Form | None) -> str:
 
 
 def _holds(form: Form) -> list[tuple[Place, int]]:
-    """Where a form or an item of it says how long its stream is held (ms)."""
+    """How long the stream of a form or its items is held (ms), by their attributes."""
     holding: list[Form | Item] = [form, *all_items(form.items)]
     return [(one.node.attribute_place("stream"), one.hold) for one in holding if one.hold]

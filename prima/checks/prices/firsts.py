@@ -27,14 +27,14 @@ from prima.markup.tree import Node
 
 
 def responds(price: Price) -> bool:
-    """Whether the robot says something with it, or begins a movement towards the user."""
+    """Whether the robot speaks with it, or begins a movement towards the user."""
     return "speaker" in price.devices or price.engages
 
 
 class Firsts:
-    """Finds the Commands that may be the first ones of some content, by all of its ways.
+    """Finds the Commands that may be the first ones of some content, on all paths.
 
-    With ``response``, those that may come up to the first word or movement towards the user.
+    With ``response``, those up to the first word or movement towards the user.
     """
 
     def __init__(
@@ -54,14 +54,14 @@ class Firsts:
         self._found: dict[int, Price] = {}
 
     def of(self, content: Sequence[Act], form: Form | None) -> list[Price]:
-        """What content of a form, or of the whole document, may do first."""
+        """The possible first Commands of content of a form, or of the whole document."""
         self._begin()
         if self._go_through(content, form):
             self._stay(form)
         return list(self._found.values())
 
     def of_form(self, name: str) -> list[Price]:
-        """What a form may do first."""
+        """The possible first Commands of a form."""
         self._begin()
         self._enter(self._document.forms.get(name))
         return list(self._found.values())
@@ -73,12 +73,12 @@ class Firsts:
         self._found.setdefault(price.node.index, price)
 
     def _stay(self, form: Form | None) -> None:
-        """The form goes on: with whatever of it has not been done."""
+        """Continue the form with its remaining items."""
         for one in [form] if form is not None else self._document.forms.values():
             self._enter(one)
 
     def _enter(self, form: Form | None) -> bool:
-        """Add what a form may do first; whether it may do nothing."""
+        """Add a form's possible first Commands; gives whether it may have none."""
         if form is None or form.node.index in self._seen:
             return False
         self._seen.add(form.node.index)
@@ -88,7 +88,7 @@ class Firsts:
         return True
 
     def _visit(self, item: Item, form: Form) -> bool:
-        """Add what an item may do first; whether it may do nothing."""
+        """Add an item's possible first Commands; gives whether it may have none."""
         own = self._of_items.get(item.node.index)
         if own is not None:
             self._add(own)
@@ -102,7 +102,7 @@ class Firsts:
         return self._go_through(item.content, form) if isinstance(item, Block) else True
 
     def _go_through(self, content: Sequence[Act], form: Form | None) -> bool:
-        """Add what content may do first; whether it may come to its end without a Command."""
+        """Add content's possible first Commands; gives whether it may end without any."""
         for act in content:
             match act:
                 case Foreach():
@@ -117,7 +117,7 @@ class Firsts:
         return True
 
     def _goes_on(self, act: Act, form: Form | None) -> bool:
-        """Add what an act may do first; whether what is behind it may be first as well."""
+        """Add an act's possible first Commands; gives whether later ones may be first as well."""
         match act:
             case CommandRun():
                 return self._run(act, form)
@@ -130,7 +130,7 @@ class Firsts:
         return not isinstance(act, Goto | Return | Exit)
 
     def _run(self, act: CommandRun, form: Form | None) -> bool:
-        """Add what Commands are looked for among some; whether the content behind them is, too."""
+        """Add the relevant Commands of a run; gives whether the content after it is, too."""
         prices = [self._step(step) for step in act.steps]
         if not self._response:
             for step, price in zip(act.steps, prices, strict=True):
@@ -149,7 +149,7 @@ class Firsts:
         return not answering
 
     def _ends(self, act: CommandRun, form: Form | None) -> None:
-        """Add what is done about the ends of Commands."""
+        """Add the Commands of handlers of the ends of Commands."""
         for command in run_commands(act.steps):
             for hook in command.handlers:
                 self._go_through(hook.content, form)
@@ -168,7 +168,7 @@ class Firsts:
             self._items(form)
 
     def _items(self, form: Form | None) -> None:
-        """Any item of a form may be gone to."""
+        """Add the first Commands of all items of a form, any of which may be gone to."""
         for one in [form] if form is not None else self._document.forms.values():
             for item in all_items(one.items):
                 self._visit(item, one)
@@ -178,7 +178,7 @@ class Firsts:
         return True
 
     def _handled(self, node: Node, events: Sequence[str | Expression], form: Form | None) -> None:
-        """What is done about events that an element raises."""
+        """The content of handlers of events that an element raises."""
         if node.index in self._seen:
             return
         self._seen.add(node.index)

@@ -9,7 +9,7 @@ from prima.errors import Place
 from prima.markup.tree import Node
 
 SPEECH = "speech"
-"""The event by which links react to what the user says."""
+"""The event by which links react to the user's words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,15 +27,15 @@ class Price:
     leaves: bool = False
     engages: bool = False
     loops: bool = False
-    """Whether it works in loops, between which it gives way: ``lasts`` is one loop."""
+    """Whether it works in loops, yielding between them: ``lasts`` is one loop."""
     listens: bool = False
-    """Whether the user may speak in it: what they say comes on top."""
+    """Whether the user may speak in it, which adds to its duration."""
     inner: tuple[Price, ...] = ()
     """The parts of a unit."""
 
     @property
     def names(self) -> set[str]:
-        """What it and all in it is called."""
+        """The names of it and its parts."""
         return {self.what}.union(*(one.names for one in self.inner))
 
     @property
@@ -50,7 +50,7 @@ class Price:
 
     @property
     def seconds(self) -> str:
-        """How long others wait, for people."""
+        """How long others wait, as text."""
         return f"{'' if self.known else 'at least '}{self.lasts / 1000:.1f} s"
 
 
@@ -70,46 +70,46 @@ class PricedState:
     node: Node
     parts: list[Price] = field(default_factory=list)
     times: int = 1
-    """How often its parts are done at most, as its questions are asked again."""
+    """How often its parts are carried out at most, as its questions are repeated."""
     goes: dict[str, Node] = field(default_factory=dict)
     """The states that follow without a wait, with the elements that lead there."""
     calls: dict[str, Node] = field(default_factory=dict)
-    """The states of subdialogs: they come back."""
+    """The states of subdialogs, which return."""
     repeats: list[Gap] = field(default_factory=list)
-    """What in it may be done again and again without a wait for an event."""
+    """Parts of it that may be repeated without a wait for an event."""
     unknown: list[Gap] = field(default_factory=list)
     """Why it may take longer than its parts: delayed events, content of arrays."""
     raises: set[str] = field(default_factory=set)
-    """The events of the application's own that it may raise before it has ended."""
+    """The application's own events that it may raise before it has ended."""
     brings: set[str] = field(default_factory=set)
-    """The events from outside that it may bring, though the user says nothing: answers of services,
+    """The outside events that it may cause without the user speaking: answers of services,
     what the robot sees."""
     onward: set[str] = field(default_factory=set)
-    """The states that follow though the user says nothing."""
+    """The states that follow without the user speaking."""
 
 
 @dataclass(slots=True)
 class PricedReaction:
-    """What an application does about an event from the user or the surroundings (C5)."""
+    """An application's reaction to an event from the user or the surroundings (C5)."""
 
     events: tuple[str, ...]
     node: Node
     firsts: list[Price]
-    """What may be its first Command."""
+    """Its possible first Commands."""
     responds: list[Price]
-    """What may come up to its first word or movement towards the user, that included; empty
-    where there is none."""
+    """Its possible Commands up to and including its first word or movement towards the user; empty
+    if there is none."""
     does: PricedState
     stays: str | None = None
-    """The state that goes on beside it; None where it is left, ``""`` where it may be any."""
+    """The state that continues alongside it; None if it is left, ``""`` if it may be any."""
     words: frozenset[str] | None = None
-    """What the user says is made of these words, for a link; None where that is not known."""
+    """For a link, the possible words of the user; None if unknown."""
     later: list[Gap] = field(default_factory=list)
-    """Why its response may come later than its Commands have it: by delayed events."""
+    """Why its response may come later than by its Commands: delayed events."""
     made: Gap | None = None
     """Where and how it leads to itself again without a wait, if it does."""
     often: Gap | None = None
-    """Why nobody knows how often its events come: the application makes them for itself."""
+    """Why the frequency of its events is unknown: the application causes them itself."""
 
 
 @dataclass(slots=True)
@@ -121,34 +121,34 @@ class EndlessLoop:
     devices: frozenset[str]
     engages: bool
     leaves: bool
-    """Whether all of it leaves the user: then it ranks below what does not (K2)."""
+    """Whether all of it leaves the user, so that it ranks below everything that does not (K2)."""
     states: frozenset[str]
 
 
 @dataclass(slots=True)
 class Outline:
-    """All that is known of an application: its parts in document order, states and reactions."""
+    """What is known about an application: its parts in document order, states and reactions."""
 
     parts: list[Price]
     states: dict[str, PricedState]
     reactions: list[PricedReaction]
     wakes: list[PricedState]
-    """What is done about the application's own delayed events: no reactions."""
+    """The handling of the application's own delayed events, which are not reactions."""
     holds: list[tuple[Place, int]]
     gaps: list[Gap]
     loops: list[EndlessLoop] | None = None
-    """What may go on without an end, once somebody has looked."""
+    """Endless activity, computed on demand."""
     backwards: tuple[dict[str, list[str]], dict[str, list[str]]] | None = None
-    """The predecessors and the callers of each state, once somebody has looked."""
+    """The predecessors and the callers of each state, computed on demand."""
 
     @property
     def devices(self) -> set[str]:
-        """All devices that it may use, as far as the documents tell."""
+        """All devices that it may use, as far as the documents determine them."""
         return set().union(*(part.devices for part in self.parts))
 
 
 def worst(held: Iterable[Price], devices: frozenset[str]) -> Price | None:
-    """The part for which something that needs these devices may wait longest."""
+    """The part that may keep a request for these devices waiting longest."""
     fitting = [price for price in held if price.devices & devices]
     return max(fitting, key=lambda price: price.lasts, default=None)
 

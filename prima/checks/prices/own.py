@@ -16,7 +16,7 @@ from prima.interpreter.sensors import sensors_of
 MOVED = ("human", "moving", "position")
 """Sensors whose values change because the robot moves."""
 SEEN = ("human.found", "human.lost")
-"""Events that come because the robot turns to the user or away."""
+"""Events caused by the robot turning to the user or away."""
 ANSWERS = ("reply", "error.service")
 """Events of services; the name of the service follows."""
 
@@ -41,23 +41,23 @@ class OwnEvents:
         self._document = document
         self._steps = steps
         self._takes = sum(part.lasts for part in parts)
-        """How long (ms) all of it takes: an event that comes later lets others in before it."""
+        """The duration (ms) of all of it: others may act before an event that comes later."""
         self._watches = [
             *document.watches,
             *(one for form in document.forms.values() for one in form.watches),
         ]
         sensors = [(one.name, sensors_of(one.when.code)) for one in self._watches]
         self._named = {under for one in self._watches for under in prefixes(one.name)}
-        """All names under which events of watches count."""
+        """All names and prefixes of events of watches."""
         self._anything = {name for name, of in sensors if of is None}
-        """The watches that may look at variables."""
+        """The watches that may read variables."""
         self._moved = {name for name, of in sensors if of is None or not of.isdisjoint(MOVED)}
-        """The watches that may look at where the robot is."""
+        """The watches that may read the robot's position."""
         self._answers = _handled_answers(document)
         self._leads = EventLeads(self.raised)
 
     def leads_round(self, handler: Handler, form: Form | None) -> bool:
-        """Whether what a handler does makes its event come again before others have had a turn."""
+        """Whether a handler causes its own event again before others have had a turn."""
         if not handler.reactive and self._named.isdisjoint(handler.events):
             return False
         self._leads.among([*(form.handlers if form else ()), *self._document.handlers, handler])
@@ -66,7 +66,7 @@ class OwnEvents:
     def raised(self, content: Sequence[Act]) -> set[str]:
         """The events that content may raise before others have had a turn.
 
-        One that is sent when a Command has ended comes after that: a reaction that waits goes first.
+        One sent when a Command has ended comes later: a waiting reaction goes first.
         """
         found = raised_in(content)
         for act in all_acts(tuple(takewhile(lambda one: not isinstance(one, CommandRun), content))):
@@ -79,7 +79,7 @@ class OwnEvents:
         return found
 
     def brought(self, content: Sequence[Act]) -> set[str]:
-        """The events from outside that content may bring, after others have had a turn."""
+        """The outside events that content may cause, after others have had a turn."""
         found = set(SEEN) if self._moves(content) else set[str]()
         for act in all_acts(content):
             if isinstance(act, SendOut) and isinstance(act.service, str) and act.service:

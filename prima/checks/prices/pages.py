@@ -25,9 +25,9 @@ TARGETS = {
     "link": ("next", "expr"),
     "choice": ("next", "expr"),
 }
-"""Elements that lead elsewhere: the attribute that says where, and the one that computes it."""
+"""Elements that lead elsewhere: the attribute with the target, and the one that computes it."""
 WITHIN = re.compile(r"""\s*(['"])#[^'"]*\1(\s*\+\s*[\w.$]+)*\s*""")
-"""An expression that names a dialog of its own document, whichever that is."""
+"""An expression that names some dialog of its own document."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class PageTarget:
 
 
 class PricedPages:
-    """All documents of an application, as far as files that it names by themselves."""
+    """All documents of an application that it names literally as files."""
 
     def __init__(self, document: VoiceDocument) -> None:
         self.document = document
@@ -68,7 +68,7 @@ class PricedPages:
         return self._known.get(page.application) if page.application else None
 
     def target(self, page: Page, node: Node) -> PageTarget:
-        """Where an element of a page leads."""
+        """The target of an element of a page."""
         plain, computed = TARGETS[node.tag]
         code = node.get(computed)
         if code:

@@ -1,4 +1,4 @@
-"""What leads round to itself."""
+"""Cycles in graphs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def rings(starts: Iterable[Node], ways: Callable[[Node], Iterable[Node]]) -> Ite
 
     Args:
         starts: the nodes to begin with.
-        ways: gives the nodes that follow a node.
+        ways: returns the successors of a node.
     """
     search = _RingSearch(ways)
     for start in starts:

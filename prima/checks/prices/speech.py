@@ -22,7 +22,7 @@ REPEATED = "an expression says how often a part of it is said"
 
 @dataclass(slots=True)
 class Said:
-    """What is read of a prompt, by its languages; its markup as cues."""
+    """The text of a prompt by language, with its markup as cues."""
 
     lang: str
     parts: list[str | Cue] = field(default_factory=list)
@@ -31,21 +31,21 @@ class Said:
     rate: float = 1.0
 
     def flush(self, lang: str) -> None:
-        """What follows is another language's."""
+        """Finish a piece before a change of language."""
         self.done.append((self.lang, self.parts))
         self.lang, self.parts = lang, []
         if self.rate != 1.0:
             self.parts.append(Cue(0, "rate", self.rate))
 
     def lasts(self, rates: dict[str, float]) -> int:
-        """How long all of it takes (ms)."""
+        """The duration of all of it (ms)."""
         self.flush(self.lang)
         folded = [(lang, *fold(_closed(parts))) for lang, parts in self.done]
         return sum(timeline(text, lang, rates, cues).total for lang, text, cues in folded if text)
 
 
 def _closed(parts: list[str | Cue]) -> list[str | Cue]:
-    """Pieces without ends of set times that begin in others."""
+    """Pieces without the ends of durations that begin in other pieces."""
     depth, found = 0, list[str | Cue]()
     for part in parts:
         if isinstance(part, Cue) and part.kind in ("lasts", "end"):
@@ -58,13 +58,13 @@ def _closed(parts: list[str | Cue]) -> list[str | Cue]:
 
 
 class SpeechReader:
-    """Reads what elements say; ``recording`` gives how long (ms) one of a node's takes, if known."""
+    """Reads the speech of elements; ``recording`` returns a recording's duration (ms), if known."""
 
     def __init__(self, recording: Callable[[Node, str], int | None]) -> None:
         self._recording = recording
 
     def read(self, pieces: Iterable[Node | str], lang: str, menu: Node | None = None) -> Said:
-        """Read pieces of a prompt, or of what is said without one."""
+        """Read pieces of a prompt, or of speech without one."""
         said = Said(lang)
         for piece in pieces:
             self._piece(piece, said, menu)
@@ -161,9 +161,9 @@ class SpeechReader:
 
 
 def utterances(node: Node) -> Iterator[tuple[Node, list[Node | str]]]:
-    """What is said of an element's own content: each prompt, and text between other elements.
+    """The speech of an element's own content: each prompt, and text between other elements.
 
-    Each comes with the element that it is told by.
+    Each comes with the element at which it is reported.
     """
     loose: list[Node | str] = []
     for piece in [*node.content, None]:

@@ -12,15 +12,15 @@ from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 ITEMS = ("block", "field", "initial", "record", "transfer", "object", "subdialog")
 HOLDING = frozenset([*ITEMS, *HANDLERS, "form", "menu", "filled", "if", "foreach"])
-"""Elements whose text is said, or that hold such."""
+"""Elements whose text is spoken, or that contain such elements."""
 LEAVING = ("goto", "submit", "exit", "return", "disconnect")
 SERVICES = "error.service"
 OWN = ("noinput", "nomatch", "help", "cancel", "exit", "error", "maxspeechtimeout")
-"""VoiceXML's own events: what a document does about them is no reaction."""
+"""VoiceXML's own events: handling them is not a reaction."""
 
 
 def holders(node: Node) -> Iterator[Node]:
-    """An element and all in it that may say something themselves."""
+    """An element and its descendants that may speak themselves."""
     if node.tag in HOLDING:
         yield node
     if node.tag in HOLDING or node.key == UNIT:
@@ -38,7 +38,7 @@ def commands_in(node: Node) -> Iterator[Node]:
 
 
 def says(pieces: Iterable[Node | str]) -> bool:
-    """Whether there is anything to say among some pieces."""
+    """Whether some pieces contain anything to say."""
     return any(isinstance(one, Node) or one.strip() for one in pieces)
 
 
@@ -48,7 +48,7 @@ def is_foreign(name: str) -> bool:
 
 
 def thrown_by(root: Node) -> Iterator[str]:
-    """The events that a document throws itself; the empty name for those of expressions."""
+    """The events that a document throws itself; the empty name stands for those of expressions."""
     for node in root.walk():
         if node.tag in ("throw", "link", "choice", "return"):
             if node.get("event"):

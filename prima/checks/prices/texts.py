@@ -1,7 +1,7 @@
 """The possible texts of expressions, if the document's constants determine them.
 
-``panels[at].parts[0]`` can give only what stands in ``const panels = [...]``, whatever ``at`` is.
-Anything else is not known before a run.
+``panels[at].parts[0]`` can only give values from ``const panels = [...]``, whatever ``at`` is.
+Anything else is unknown before a run.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from prima.interpreter.elements import Document
 from prima.markup.tree import Node
 
 Literal = str | float | bool | None | list["Literal"] | dict[str, "Literal"]
-"""A value as a script writes it."""
+"""A literal value in a script."""
 
 NAME = r"[A-Za-z_$][\w$]*"
 CONSTANT = re.compile(rf"\bconst\s+({NAME})\s*=\s*(?=[\[{{])")
@@ -68,7 +68,7 @@ def _codes(document: Document) -> Iterator[str]:
 
 
 def _declared_again(document: Document) -> Iterator[str]:
-    """The names of variables of other scopes, and what is assigned to."""
+    """The names of variables of other scopes, and of assigned variables."""
     for setup in (document.setup, *(form.setup for form in document.forms.values())):
         yield from (one.name for one in setup if isinstance(one, Declare))
     for form in document.forms.values():
@@ -89,7 +89,7 @@ READ = re.compile(
 
 
 def _only_read(name: str, code: str) -> bool:
-    """Whether code does nothing with a constant but look at what is in it."""
+    """Whether code only reads a constant's content."""
     for found in re.finditer(rf"(?<![\w$.]){re.escape(name)}(?![\w$])", code):
         before = code[: found.start()]
         if re.search(r"\b(const|in)\s+$", before) is None:
@@ -100,7 +100,7 @@ def _only_read(name: str, code: str) -> bool:
 
 
 def _declared(code: str) -> Iterator[tuple[str, Literal]]:
-    """The constants of a script whose values are all written out."""
+    """The constants of a script whose values are entirely literal."""
     for found in CONSTANT.finditer(code):
         try:
             value, end = _value(code, found.end())
@@ -111,7 +111,7 @@ def _declared(code: str) -> Iterator[tuple[str, Literal]]:
 
 
 def _value(code: str, at: int) -> tuple[Literal, int]:
-    """The value that is written at a place, and where it ends.
+    """The literal value at a position, and its end.
 
     Raises:
         ValueError: it is computed.
@@ -159,7 +159,7 @@ def _object(code: str, at: int) -> tuple[Literal, int]:
 
 
 def _comma(code: str, at: int, closing: str) -> int:
-    """Go over a comma; without one the closing mark must follow."""
+    """Skip a comma; without one the closing bracket must follow."""
     token = _token(code, at)
     if token["mark"] == ",":
         return token.end()
@@ -169,7 +169,7 @@ def _comma(code: str, at: int, closing: str) -> int:
 
 
 def _inside(value: Literal, step: re.Match[str]) -> Iterable[Literal]:
-    """What a step of a path may lead to; all that there is where the step is computed."""
+    """The possible values of a step of a path; all members if the step is computed."""
     if not isinstance(value, list | dict):
         return [UNDEFINED]
     key = _key(step)
@@ -181,7 +181,7 @@ def _inside(value: Literal, step: re.Match[str]) -> Iterable[Literal]:
 
 
 def _key(step: re.Match[str]) -> str | None:
-    """The name or number that a step has as a literal."""
+    """The literal name or number of a step."""
     key: str | None = step["key"]
     code: str = step["code"] or ""
     if key is None and code[:1] in "'\"" and code[:1] == code[-1:] and len(code) > 1:
@@ -196,7 +196,7 @@ def _said(value: Literal) -> str:
 
 
 def words_of(link: Node) -> frozenset[str] | None:
-    """The words that a link's grammars are made of; None where they name other grammars."""
+    """The words in a link's grammars; None if they refer to other grammars."""
     found: set[str] = set()
     for node in [one for grammar in link.all("grammar") for one in grammar.walk()]:
         named = node.attributes.keys() & {"src", "srcexpr", "type", "mode"}

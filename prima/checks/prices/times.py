@@ -35,9 +35,9 @@ SAYS = "an expression gives its text"
 QUESTION = TABLE_4_2["q-and-a"]
 DEFAULT_TIMEOUT = int(QUESTION.arguments["timeout"].default or 0)
 INNER = ("noinput", "nomatch", "help", "end", "cancel", "interrupted", "exit", "error")
-"""What begins an event of the application's own: what it does about it is no reaction (C5)."""
+"""Prefixes of the application's own events: handling them is not a reaction (C5)."""
 BROKEN = ("error.device", "error.unsupported")
-"""What happens where a device does not work: then no time holds."""
+"""Events of device failures: then no duration holds."""
 SERVICES = "error.service"
 
 
@@ -50,7 +50,7 @@ class Times:
         self.constants = Constants(document)
         self.thrown = thrown_by(document)
         self.of_items: dict[int, Price] = {}
-        """Of fields and units, by the index of their element."""
+        """Durations of fields and units, by the index of their element."""
 
     def steps(self, content: Sequence[Act]) -> list[Price]:
         """The parts of executable content."""
@@ -92,7 +92,7 @@ class Times:
         return lambda text: duration(f"{text} x", lang, self.profile.voices)
 
     def question(self, field: Field, form: Form) -> Price:
-        """A question: its longest prompts and the time in which nobody answers (C4)."""
+        """A question: its longest prompts and the time without an answer (C4)."""
         settings = (field.properties, form.properties, self.document.properties)
         usual = next((one["timeout"] for one in settings if "timeout" in one), DEFAULT_TIMEOUT)
         lasts, unknown = 1 + int(usual) if self._unsaid(field, form) else 0, ""
@@ -106,7 +106,7 @@ class Times:
         )
 
     def _asked(self, said: list[Prompt], usual: int, lang: str) -> tuple[int, str]:
-        """How long prompts and the wait for an answer take (ms), and why it may be longer."""
+        """The duration of prompts and the wait for an answer (ms), and why it may be longer."""
         text = [piece for prompt in said for piece in (" ", *prompt.text)][1:]
         speech, why = self.speech(tuple(text), lang)
         timeout = max(usual if one.timeout is None else one.timeout for one in said)
@@ -119,7 +119,7 @@ class Times:
         return not always or any(self.takes_inner(one) for one in handlers)
 
     def unit(self, unit: Unit, form: Form) -> Price:
-        """A unit around form items: its longest duration, and what runs then to its end (U5)."""
+        """A unit around form items: its longest duration, and what then runs to its end (U5)."""
         inner = [price for one in inside(unit) for price in self._within(one, unit)]
         reached = reach_of(self.document, form, unit).commands
         inner += [self.command(one.command) for one in reached if not one.inside]
@@ -135,17 +135,17 @@ class Times:
         ]
 
     def takes_inner(self, handler: Handler) -> bool:
-        """Whether it may take an event of what the application is doing, without a wait."""
+        """Whether it may take an event of the application's own activity, without a wait."""
         names = [name for name in handler.events if not name.startswith((*BROKEN, SERVICES))]
         return any(is_inner(name) or name in self.thrown for name in names)
 
 
 def is_inner(name: str) -> bool:
-    """Whether an event belongs to what the application does itself."""
+    """Whether an event belongs to the application's own activity."""
     return any(takes(one, name) for one in INNER)
 
 
 def _runs_once(unit: Unit) -> bool:
-    """Whether nothing in a unit can be done more than once."""
+    """Whether everything in a unit runs at most once."""
     blocks = all(isinstance(item, Block) and not item.handlers for item in unit.items)
     return blocks and not unit.handlers and not any(again(item) for item in unit.items)

@@ -43,14 +43,14 @@ class _VoicePrices(VoiceTimes):
             self._read(page)
 
     def _say(self, page: Page) -> None:
-        """What the elements of a document say."""
+        """The speech of the elements of a document."""
         self.page = page
         for node in [*page.root.all(*HANDLERS), *page.dialogs.values()]:
             for holder in holders(node):
                 self.said[id(holder)] = list(self._own(holder))
 
     def _read(self, page: Page) -> None:
-        """What a document does."""
+        """Add the activity of a document."""
         self.page, self.sketch = page, Sketch(page, self.pages.root(page))
         units = [one for dialog in page.dialogs.values() for one in dialog.nodes if one.key == UNIT]
         self.inside |= {id(node) for unit in units for node in unit.walk()}
@@ -82,13 +82,13 @@ class _VoicePrices(VoiceTimes):
         return Outline(parts, self.states, reactions, [], [], self.pages.gaps)
 
     def _begins(self, handler: Node, parts: list[Price]) -> tuple[list[Price], list[Price]]:
-        """What a handler does first, and what may come up to its response: anything, perhaps."""
+        """The first Commands of a handler, and those up to its response: perhaps anything."""
         firsts = self._first(handler) or parts
         until = firsts if all(map(responds, firsts)) else [*firsts, *parts]
         return firsts, until if any(map(responds, until)) else []
 
     def _first(self, handler: Node) -> list[Price]:
-        """What a handler does first, where that is the same in each case; else nothing."""
+        """The first Commands of a handler, if they are the same in each case; otherwise nothing."""
         for piece in handler.content:
             if isinstance(piece, str) and not piece.strip():
                 continue
@@ -101,14 +101,14 @@ class _VoicePrices(VoiceTimes):
         return []
 
     def _asked_anew(self, handler: Node) -> Price:
-        """The question that listened, asked from its beginning with what a handler says."""
+        """The question that listened, asked again from its beginning with the handler's speech."""
         lasts = max((one.lasts for one in self.parts if one.listens), default=1)
         return Price(handler, "question", QUESTION.devices, lasts, engages=True)
 
     # Dialogs ----------------------------------------------------------------------------
 
     def _dialog(self, name: str, dialog: Node) -> PricedState:
-        """What a dialog does, and what answers and its own events lead to."""
+        """The activity of a dialog, and where answers and its own events lead."""
         state = PricedState(self._key(self.page, name), dialog)
         items = [dialog] if dialog.tag == "menu" else dialog.nodes
         root = self.pages.root(self.page)
@@ -126,7 +126,7 @@ class _VoicePrices(VoiceTimes):
         return state
 
     def _walk(self, node: Node) -> Iterator[Node]:
-        """An element and what is in it, without handlers that only wait for events from outside."""
+        """An element and its content, without handlers that only wait for events from outside."""
         if node.tag == "catch" and all(self._is_outside(name) for name in handler_names(node)):
             return
         yield node
@@ -138,7 +138,7 @@ class _VoicePrices(VoiceTimes):
         return bool(name) and is_foreign(name) and not own
 
     def _item(self, state: PricedState, item: Node, dialog: Node) -> None:
-        """What a form item asks."""
+        """The question of a form item."""
         if item.key == UNIT:
             state.parts.append(self._unit(item, dialog))
         elif item.tag == "transfer":
@@ -162,20 +162,20 @@ class _VoicePrices(VoiceTimes):
             state.repeats.append(Gap(node.place, "items of the dialog are visited again"))
 
     def _catch(self, node: Node, around: PricedState) -> None:
-        """A handler: what it does belongs to a reaction where its event comes from outside."""
+        """A handler: its activity is a reaction if its event comes from outside."""
         does = PricedState(node.get("event") or node.tag, node)
         for holder in holders(node):
             does.parts += self.said[id(holder)]
         self.parts += does.parts if id(node) not in self.inside else ()
         for inner in node.walk():
             self._lead(does, inner)
-        # VoiceXML always asks on: a reaction that stays goes on with its dialog.
+        # VoiceXML always continues to ask: a reaction that stays goes on with its dialog.
         if around.name and not leaves(node.content):
             does.goes.setdefault(around.name, node)
         self.caught.append((node, does))
 
     def _bounded(self, item: Node, dialog: Node) -> bool:
-        """Whether a question is left sooner or later if the user never answers it."""
+        """Whether a question is eventually left if the user never answers it."""
         scope = [one for node in self._scopes(item, dialog) for one in self._held(node).handlers]
         return all(
             any(

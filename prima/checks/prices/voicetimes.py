@@ -1,4 +1,4 @@
-"""Prices of what elements of VoiceXML say and ask."""
+"""Prices of speech and questions of VoiceXML elements."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ SPEAKER = frozenset({"speaker"})
 ASKING = ("field", "initial", "record", "menu")
 TIMEOUT_MS = 5000
 LISTENING_MS = 600_000
-"""How long a question of a call listens at most, before it is asked again."""
+"""How long a question during a call listens at most, before it is repeated."""
 AGAIN = (*HANDLERS, "clear", "foreach", "goto", "assign", "script")
-"""By what in a unit something in it may be done more than once."""
+"""Elements by which something in a unit may run more than once."""
 
 
 class _Held:
-    """What is directly in an element, found once."""
+    """The direct content of an element, found once."""
 
     def __init__(self, node: Node) -> None:
         self.handlers = node.all(*HANDLERS)
@@ -53,13 +53,13 @@ class VoiceTimes:
         self.profile = profile
         self.page = document.page
         self.said: dict[int, list[Price]] = {}
-        """What elements say, and the Commands among it, by the elements' identities."""
+        """The speech of elements, and the Commands in it, by the elements' identities."""
         self.held: dict[int, _Held] = {}
-        """What has been looked for in elements, by their identities."""
+        """Cached direct content of elements, by their identities."""
         self.sketch = Sketch(document.page, None)
 
     def _own(self, holder: Node) -> Iterator[Price]:
-        """What an element says itself, and the Commands of the robot among it."""
+        """The speech of an element itself, and the Commands of the robot in it."""
         menu = holder if holder.tag in ("menu", "field") else None
         for node, pieces in utterances(holder):
             said = self._read_aloud(node, pieces, menu)
@@ -73,7 +73,7 @@ class VoiceTimes:
             yield from self._waiting(node, audio)
 
     def _steps(self, node: Node, first: bool = False) -> Iterator[Price]:
-        """What an element of PRIMA's namespace asks for; ``first`` for what waits for no other."""
+        """The requests of an element of PRIMA's namespace; ``first``: of the initial ones."""
         if node.namespace == PRIMA_NAMESPACE and node.tag != "param":
             for price, after in arrange([node], self._step):
                 if not (first and after):
@@ -88,7 +88,7 @@ class VoiceTimes:
         return group_price(node, longest_of(node), inner, afters)
 
     def _unit(self, unit: Node, dialog: Node) -> Price:
-        """A unit around form items: its longest duration, and what runs then to its end (U5)."""
+        """A unit around form items: its longest duration, and what then runs to its end (U5)."""
         asking = unit.all(*ASKING)
         inner = self._all_said([unit]) + [self._question(item, dialog) for item in asking]
         reach = self.sketch.reach(unit)
@@ -100,7 +100,7 @@ class VoiceTimes:
         return unit_price(unit, reach.devices | devices_of(inner), lasts, [*inner, *said])
 
     def _all_said(self, nodes: list[Node]) -> list[Price]:
-        """What elements say with all that is in them."""
+        """The speech of elements and all their content."""
         return [one for node in nodes for inner in holders(node) for one in self.said[id(inner)]]
 
     def _command(self, node: Node) -> Price:
@@ -127,7 +127,7 @@ class VoiceTimes:
         return max(said.lasts(self.profile.voices), 1), said.unknown
 
     def _waiting(self, node: Node, audio: str, name: str = "fetchaudio") -> Iterator[Price]:
-        """What is played while something is fetched, or a call is made."""
+        """The audio played while something is fetched, or a call is made."""
         if audio and name == "fetchaudio":
             words = f"[{audio.rpartition('/')[2]}]"
             lasts = duration(words, self.page.lang, self.profile.voices)
@@ -136,7 +136,7 @@ class VoiceTimes:
     # Questions --------------------------------------------------------------------------
 
     def _question(self, item: Node, dialog: Node) -> Price:
-        """A question: the longest that may be said last before it, and the time for an answer."""
+        """A question: the longest speech that may precede it, and the time for an answer."""
         heard = list(self._before(item, dialog))
         usual = milliseconds(self._setting(item, dialog, "timeout"), TIMEOUT_MS)
         stated = [milliseconds(one.node.get("timeout"), usual) for one in heard]
@@ -149,7 +149,7 @@ class VoiceTimes:
         return Price(item, what, QUESTION.devices, lasts, unknown, engages=True, listens=True)
 
     def _before(self, item: Node, dialog: Node) -> Iterator[Price]:
-        """What may be said last before an item listens: its own prompts, or those of handlers."""
+        """Speech that may come last before an item listens: of its own prompts or handlers."""
         yield from self._spoken(item)
         first = any(
             not one.node.get("cond") and one.node.get("count", "1") == "1"
@@ -201,7 +201,7 @@ class VoiceTimes:
         return self.held[id(node)]
 
     def _call(self, item: Node) -> Iterator[Price]:
-        """A call to somebody else: as long as it lasts the robot listens for the user's end of it."""
+        """A call to somebody else: throughout it the robot listens for the user to end it."""
         kind = kind_of(item)
         if kind == "blind" or not item.all("grammar"):
             return

@@ -8,7 +8,7 @@ NOT_IN_UNIT = Diagnosis(
     "not-in-unit",
     "Command that cannot be part of a unit",
     (
-        "A unit is one piece that nothing breaks (rule U4). A Command that works in loops is "
+        "A unit is indivisible (rule U4). A Command that works in loops is "
         "many pieces, and one that leaves the user must be able to wait for them. Handlers "
         "that a unit reaches by an event thrown in it, such as noinput, belong to it (rule "
         "U5). An expression that names the event counts as the texts that it, or the variable "
@@ -22,7 +22,7 @@ NOW_INSIDE = Diagnosis(
     "Command wanted now inside a unit",
     (
         "A Command wanted now cancels what the application does on its devices; inside a par, "
-        "seq or iu it can only stand first."
+        "seq or iu it must come first."
     ),
     rule="O2",
 )
@@ -31,7 +31,7 @@ LONG_UNIT = Diagnosis(
     "long-unit",
     "Long unit",
     (
-        "While a unit runs the robot reacts to nothing on its devices. Divide what it says "
+        "While a unit runs, no reaction can use its devices. Divide its speech "
         "into pieces at semantic breakpoints (thesis 4.5)."
     ),
     rule="thesis, 4.5",
@@ -67,9 +67,10 @@ ENDLESS = Diagnosis(
     "Endless behaviour",
     (
         "The Command never ends, and the state handles no event that could end it, or forms "
-        "go round without waiting; another application's equal behaviours may starve (rule "
-        'E4). Or the handler of a Command\'s end is a reaction (reactive="true") whose own end '
-        "leads to it again: the latest reaction goes first (rule S2b), so that others' "
+        "lead to each other without waiting; equal behaviours of another application may "
+        "starve (rule E4). Or the handler of a Command's end is a reaction "
+        '(reactive="true") whose own end leads to it again: the latest reaction goes first '
+        "(rule S2b), so that others' "
         "reactions are never answered."
     ),
     rule="E4",
@@ -81,13 +82,13 @@ TOLD_TWICE = Diagnosis(
     "Told twice",
     (
         "An event may come while a state says or asks something, and its handler leads back "
-        "to the beginning of that state, at once or by way of others, of subdialogs that ask "
+        "to the beginning of that state, directly or by way of others, of subdialogs that ask "
         "nothing and of further VoiceXML documents, or it goes to an item of that state which "
-        "then is visited again: the same is told a second time (rule O3). Where a question is "
-        "asked on the way back, or the handler keeps what the event tells, that is meant. A "
-        "target that an expression names is known where the expression is a text or chooses "
-        "between texts; else any state whose name begins as the expression does may be next, "
-        "and the warning says that the same may be told twice."
+        "is then visited again: the same is said twice (rule O3). If a question is asked on "
+        "the way back, or the handler keeps data of the event, that is intended. The target of "
+        "an expression is known if the expression is a text or chooses between texts; otherwise "
+        "any state whose name begins like the expression may be next, and the warning says that "
+        "the same may be said twice."
     ),
     rule="O3",
     severity="warning",

@@ -10,7 +10,7 @@ NO_ANSWER = Diagnosis(
     (
         "A field without options, grammar or type takes no answer: the user could never leave "
         "it. In VoiceXML grammars of its form, links and document-wide grammars count as "
-        "well; where none listens, it is error.semantic at run time."
+        "well; if none is active, asking it throws error.semantic at run time."
     ),
     rule="VoiceXML 2.0, 2.3.1",
 )
@@ -54,15 +54,15 @@ FORMAT = Diagnosis(
 
 LANGUAGE = Diagnosis(
     "language",
-    "Language not taken",
-    "The grammar is in a language that its reader does not take.",
+    "Language not accepted",
+    "The grammar is in a language that its reader does not accept.",
     rule="SRGS 1.0, 4.5",
 )
 
 MODE = Diagnosis(
     "mode",
     "Voice and DTMF mixed",
-    "A grammar is for voice or for dtmf, and what it refers to has the same mode.",
+    "A grammar is for voice or for dtmf, and grammars that it refers to have the same mode.",
     rule="SRGS 1.0, 4.6",
 )
 
@@ -100,6 +100,6 @@ PRIVATE_RULE = Diagnosis(
 TAG_FORMAT = Diagnosis(
     "tag-format",
     "Unknown tag format",
-    ("tag-format names a language that is not read: semantics/1.0 and semantics/1.0-literals are."),
+    "tag-format is neither semantics/1.0 nor semantics/1.0-literals.",
     rule="SRGS 1.0, 4.8",
 )

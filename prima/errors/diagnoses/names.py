@@ -14,7 +14,7 @@ NO_SUCH_FORM = Diagnosis(
 NO_SUCH_ITEM = Diagnosis(
     "no-such-item",
     "Unknown form item",
-    "A name is used that no item of the form has.",
+    "No item of the form has the name.",
     rule="VoiceXML 2.0, 5.3.7",
 )
 
@@ -48,12 +48,12 @@ UNDECLARED_VARIABLE = Diagnosis(
     "Undeclared variable",
     (
         "An expression uses, or an assign changes, a variable that no <var>, form item, "
-        "<foreach> or <script> declares. At run time that is error.semantic. So is, in "
-        "VoiceXML, a param of a subdialog that no <var> of the called form takes, a variable "
-        "of one <block> in another, one that is declared only afterwards, and a member of "
-        "document or another scope that is given a value, or asked for a member of its own, "
-        "and that nothing declares there. A grammar's tag uses a name that no tag of the "
-        "grammar declares: at run time such an answer is no match."
+        "<foreach> or <script> declares. At run time that is error.semantic. In VoiceXML so is "
+        "a param of a subdialog that no <var> of the called form declares, a variable of one "
+        "<block> in another, a variable declared only later, and an undeclared member of "
+        "document or another scope that is assigned to, or whose own member is read. A "
+        "grammar's tag uses a name that no tag of the grammar declares: at run time such an "
+        "answer does not match."
     ),
     rule="VoiceXML 2.0, 5.1",
 )

@@ -7,7 +7,7 @@ from prima.errors.diagnosis import Diagnosis
 WRONG_ROOT = Diagnosis(
     "wrong-root",
     "Wrong root element",
-    "The namespace is right but the root element is another one.",
+    "The namespace is right, but the root element is not.",
 )
 
 WRONG_NAMESPACE = Diagnosis(
@@ -89,7 +89,7 @@ DUPLICATE_ELEMENT = Diagnosis(
 DUPLICATE_ANSWER = Diagnosis(
     "duplicate-answer",
     "Answer written twice",
-    "Two options of a field say the same, without regard to case and punctuation.",
+    "Two options of a field are the same, apart from case and punctuation.",
     rule="VoiceXML 2.0, 2.3.1.3",
 )
 
@@ -98,7 +98,7 @@ EMPTY = Diagnosis("empty", "Empty element", "The element holds nothing.")
 AFTER_ELSE = Diagnosis(
     "after-else",
     "Element after <else>",
-    "Only content may follow <else>: it takes all that is left.",
+    "Only content may follow <else>, which takes all remaining cases.",
     rule="VoiceXML 2.0, 5.3.4",
 )
 

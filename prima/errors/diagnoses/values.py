@@ -23,8 +23,8 @@ EXCLUSIVE = Diagnosis(
     "exclusive",
     "Attributes that exclude each other",
     (
-        "Two attributes exclude each other: they say the same thing in different ways, or ask "
-        "for two things of which the element does one. Keep one."
+        "Two attributes exclude each other: they express the same thing in different ways, or "
+        "request two things of which the element does one. Keep one."
     ),
 )
 

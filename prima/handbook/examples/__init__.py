@@ -1,6 +1,6 @@
 """A wrong and a right example for every code of a problem, for ``prima explain CODE``.
 
-Each code has a folder with ``wrong.*`` and ``right.*``; what they name lies beside the
+Each code has a folder with ``wrong.*`` and ``right.*``; files that they name are beside the
 folders. A test reads every one: the wrong one has exactly the problem of its code.
 """
 
@@ -21,7 +21,7 @@ BY_HAND = {
     "language": "load(..., languages=...) does not take it",
     "not-fetched": "load(...) is given no fetch",
 }
-"""Codes that occur only with :func:`prima.grammar.load`, and when."""
+"""Codes that occur only with :func:`prima.grammar.load`, with the condition."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Example:
 
 
 def examples(code: str) -> tuple[Example, Example]:
-    """The wrong and the right example for a code, just read and checked.
+    """Read and check the wrong and the right example for a code.
 
     Raises:
         UsageError: there is no such code.

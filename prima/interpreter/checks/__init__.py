@@ -1,6 +1,6 @@
-"""Meaning: what is wrong with an application beyond its schema.
+"""Semantic checks: problems of an application beyond its schema.
 
-Each module checks one subject, and declares the diagnoses that only it makes.
+Each module checks one subject, and declares the diagnoses that only it reports.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ CHECKS: tuple[Callable[[Facts], Iterator[Problem]], ...] = (
 
 
 def check_document(document: Document) -> list[Problem]:
-    """All problems of meaning in a document."""
+    """All semantic problems of a document."""
     facts = Facts(document)
     problems = [problem for check in CHECKS for problem in check(facts)]
     problems += endless_reactions(document)

@@ -1,4 +1,4 @@
-"""Motion arguments and texts of Commands, against what a row of the table or a profile says."""
+"""Motion arguments and texts of Commands, checked against a row of the table or a profile."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ ARGUMENT_BEYOND = OUT_OF_RANGE.says("{wrong}")
 def given_to(
     node: Node, row: CommandType, given: Mapping[str, object], says: bool, prefix: str = ""
 ) -> Iterator[Problem]:
-    """What is wrong with the motion arguments and the text of a Command's element.
+    """The problems of the motion arguments and the text of a Command's element.
 
     Args:
         node: the element.
-        row: what the robot's profile says of the Command.
-        given: its arguments, by name; only those are looked at whose values are texts.
+        row: the Command's row in the robot's profile.
+        given: its arguments by name; only those with texts as values are checked.
         says: whether it has a text.
-        prefix: what Commands' names have before them in the document, with its colon.
+        prefix: the prefix of Commands in the document, with its colon.
     """
     for name, value in given.items():
         if name in row.arguments and isinstance(value, str):
@@ -45,13 +45,13 @@ def given_to(
 
 
 def _lacking(row: CommandType, given: Mapping[str, object]) -> str:
-    """The first argument that is needed and not given."""
+    """The first required argument that is missing."""
     needed = (name for name, one in row.arguments.items() if one.required or one.choice)
     return next(name for name in needed if name not in given)
 
 
 def _argument(node: Node, name: str, argument: Argument, text: str) -> Iterator[Problem]:
-    """What is wrong with a motion argument's value: of a param, or of the element's own attribute."""
+    """The problem of a motion argument's value, in a param or an attribute of the element."""
     param = next((one for one in node.all("param") if one.get("name") == name), None)
     holder, attribute = (node, name) if param is None else (param, "value")
     place = holder.place_of(attribute)

@@ -41,9 +41,9 @@ MISTAKES = (
     (r"\bor\b", "Write || for or."),
     (r"\bnot\b", "Write ! for not."),
 )
-"""Common mistakes, and what to write."""
+"""Common mistakes, with remedies."""
 MISTAKEN = re.compile("|".join(["[^\\x00-\\x7f]", *(words for words, _ in MISTAKES)]))
-"""What code with a common mistake has in it."""
+"""Signs of a common mistake in code."""
 WIDEST = 60
 """Characters of code that a message quotes."""
 
@@ -79,22 +79,22 @@ HELD: Mapping[type[Act], Callable[[Any], Iterable[object]]] = {
     SendOut: lambda act: (act.service, act.delay, *(value for _, value in act.params)),
     CommandRun: _of_run,
 }
-"""What acts hold that may be expressions, by kinds; scripts are looked at by themselves."""
+"""Fields of acts that may be expressions, by kinds; scripts are checked separately."""
 
 
 def check_code(facts: Facts) -> Iterator[Problem]:
-    """All code of a document, and the variables that it uses."""
+    """Check all code of a document, and the variables that it uses."""
     variables = Variables(facts)
     waiting: list[tuple[Expression, Known, bool]] = []
     for expr, known, script in _all_code(facts):
         if script or compiled(expr.code) is None:
-            waiting.append((expr, known, script))  # only an engine understands it
+            waiting.append((expr, known, script))  # needs an engine
         else:
             yield from _used(variables, expr, known)
     _look_ahead([(expr.code, script) for expr, _, script in waiting])
     for expr, known, script in waiting:
         if expr.attribute and expr.attribute not in expr.node.attributes:
-            continue  # it is missing, which is a problem of its schema
+            continue  # missing, which the schema reports
         problem = _compiled(expr, script)
         if problem is not None:
             yield problem
@@ -132,7 +132,7 @@ def _all_code(facts: Facts) -> Iterator[Code]:
 
 
 def _outside(holder: Document | Form, known: Known, later: Known) -> Iterator[Code]:
-    """Code of a document or form that is in no content; ``later`` is seen by its handlers."""
+    """Code of a document or form outside of content; ``later`` is visible to its handlers."""
     for act in holder.setup:
         if isinstance(act, Script):
             yield act.code, known, True
@@ -147,7 +147,7 @@ def _conditions(conditional: Iterable[Handler | Prompt]) -> Iterator[Expression]
 
 
 def _of_item(item: Item) -> Iterator[Expression]:
-    """Code of a form item that is in no content."""
+    """Code of a form item outside of content."""
     yield from _conditions(item.handlers)
     held: list[object] = [item.expr, item.cond]
     if isinstance(item, Field):
@@ -158,11 +158,11 @@ def _of_item(item: Item) -> Iterator[Expression]:
     yield from (one for one in held if isinstance(one, Expression))
 
 
-# What an engine says of it
+# Checks by an engine
 
 
 def _look_ahead(codes: list[tuple[str, bool]]) -> None:
-    """Let the engine look at all code at once that needs it: each call takes time."""
+    """Let the engine check all code that needs it in one call, as each call takes time."""
     if len(codes) > 1:
         from prima.script.shared import syntax
 
@@ -179,7 +179,7 @@ def _compiled(expr: Expression, script: bool) -> Problem | None:
         shown = " ".join(expr.code.split())
         shown = shown if len(shown) <= WIDEST else shown[: WIDEST - 3] + "..."
         place = expr.node.code_place(expr.attribute, error.line, error.column)
-        if isinstance(error, EngineLost):  # perhaps from outside: a run may still go well
+        if isinstance(error, EngineLost):  # perhaps from outside: a run may still succeed
             return NOT_CHECKED.at(place, code=shown, error=error)
         found = NOT_ECMASCRIPT.at(place, code=shown, error=error)
         remedy = _remedy(expr.code)
@@ -188,7 +188,7 @@ def _compiled(expr: Expression, script: bool) -> Problem | None:
 
 
 def _remedy(code: str) -> str:
-    """What to write for a wrong expression, where it has a common mistake."""
+    """The remedy for a wrong expression with a common mistake."""
     if not MISTAKEN.search(code):
         return ""
     bare = STRINGS.sub("", code)
@@ -198,7 +198,7 @@ def _remedy(code: str) -> str:
 
 
 def _of_full_width(code: str) -> str:
-    """The first few characters of code that have another width there, as they should be."""
+    """The first few full-width characters of code, as they should be."""
     if code.isascii():
         return ""
     from prima.markup.hints import half
@@ -208,7 +208,7 @@ def _of_full_width(code: str) -> str:
 
 
 def _assigns(expr: Expression) -> Iterator[Problem]:
-    """A condition that gives a variable a value, where a comparison was meant."""
+    """The problem of a condition that assigns a variable where a comparison was meant."""
     if "=" not in expr.code or expr.attribute not in ("cond", "when"):
         return
     parsed = parse_expression(expr.code)

@@ -1,4 +1,4 @@
-"""What Commands say, and what runs of Commands share."""
+"""Texts of Commands, and devices that runs of Commands share."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 
 MANY_STEPS = 200
-"""Steps of one run beyond which its branches are not compared."""
+"""Maximum number of steps of a run whose branches are compared."""
 BRACES = re.compile(r"\$?\{\{?\s*(\w+)\s*\}\}?")
 
 LITERAL_VALUE = Diagnosis(
@@ -38,7 +38,7 @@ ONE_AFTER_THE_OTHER = SHARED_DEVICE.says(
 
 
 def check_texts(facts: Facts) -> Iterator[Problem]:
-    """Text with a variable in braces, as other languages write a value."""
+    """Warn of text with a variable in braces, the notation of other languages."""
     for form, run in facts.acts.of(CommandRun):
         for command in run_commands(run.steps):
             yield from _literal(facts, command.node, command.text, form)
@@ -64,7 +64,7 @@ def _literal(facts: Facts, node: Node, text: Text | None, form: Form | None) -> 
 
 
 def check_units(facts: Facts) -> Iterator[Problem]:
-    """Units that speak for long (4.5)."""
+    """Warn of units that speak for long (4.5)."""
     lang = facts.document.lang
     for _, items in facts.forms:
         for item in items:

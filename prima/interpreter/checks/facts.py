@@ -1,4 +1,4 @@
-"""What the checks of a document share: its acts, the names that it declares, where its forms lead."""
+"""Data shared by the checks of a document: acts, declared names, targets of forms."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NONE: frozenset[str] = frozenset()
 
 
 class FormLeads:
-    """Where forms lead, by their names, and the document's own content (None)."""
+    """The targets of forms, by name, and of the document's own content (None)."""
 
     __slots__ = ("anywhere", "calls", "exits", "targets")
 
@@ -33,25 +33,25 @@ class FormLeads:
         self.targets: defaultdict[str | None, list[str]] = defaultdict(list)
         """Forms they go to."""
         self.anywhere: set[str | None] = set()
-        """Those whose target is an expression."""
+        """Forms with a goto whose target is an expression."""
         self.calls: defaultdict[str | None, list[str]] = defaultdict(list)
-        """Forms they call as subdialogs."""
+        """Forms that they call as subdialogs."""
         self.exits: set[str | None] = set()
-        """Those that an exit may end."""
+        """Forms that an exit may end."""
 
     def of(self, form: str) -> list[str]:
-        """All that a form goes to or calls."""
+        """All forms that a form goes to or calls."""
         return [*self.targets.get(form, ()), *self.calls.get(form, ())]
 
 
 class Facts:
-    """A document with all that several checks look up in it, each found once."""
+    """A document with the facts that several checks look up, each computed once."""
 
     def __init__(self, document: Document) -> None:
         self.document = document
         self.acts = Acts(document)
         self.shared = NameScope(setup_names(document.setup))
-        """Names that all forms see."""
+        """Names visible to all forms."""
         self._declared: dict[str | None, NameScope] = {}
         """Names by the form whose content declares them; None for the document."""
         self._given: dict[str, NameScope] = {}
@@ -67,7 +67,7 @@ class Facts:
     # Names
 
     def _gather(self) -> None:
-        """Names by the form that declares them, found in one go."""
+        """Collect names by the form that declares them, in one pass."""
         for form, declare in self.acts.of(Declare):
             self._own(form).add(declare.name)
         for form, script in self.acts.of(Script):
@@ -92,11 +92,11 @@ class Facts:
 
     @cached_property
     def _every(self) -> Known:
-        """All variables that there are."""
+        """All variables."""
         return Known(NameScope(self.shared.union(*self._declared.values(), *self._given.values())))
 
     def known_in(self, form: Form | None) -> Known:
-        """All variables that content of a form may see, or the document's own content (None)."""
+        """All variables visible to a form's content, or to the document's own content (None)."""
         if form is None:
             return self._every
         own, given = self._declared.get(form.id), self._given.get(form.id)
@@ -106,7 +106,7 @@ class Facts:
 
     @cached_property
     def leads(self) -> FormLeads:
-        """Where each form leads, and the document's own content."""
+        """The targets of each form and of the document's own content."""
         found = FormLeads()
         for form, goto in self.acts.of(Goto):
             if isinstance(goto.form, str):

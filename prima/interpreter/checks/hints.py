@@ -1,4 +1,4 @@
-"""Hints that can have no effect, and what a held stream costs others (X3, X4, X8)."""
+"""Hints without effect, and the cost of held streams to others (X3, X4, X8)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from prima.markup.tree import Node
 NO_CAUSES = frozenset(
     ["end", "cancel", "interrupted", "expired", "suspended", "resumed", "noinput", "nomatch"]
 )
-"""Prefixes of events to which nobody reacts (C5)."""
+"""Prefixes of events to which nothing is a reaction (C5)."""
 IDLE_HINT = Diagnosis(
     "idle-hint",
     "Hint without effect",
@@ -52,7 +52,7 @@ HOLD_PRICE = Diagnosis(
 
 
 def check_hints(facts: Facts) -> Iterator[Problem]:
-    """X3, X4, X8: hints of forms, items and handlers."""
+    """Check hints of forms, items and handlers (X3, X4, X8)."""
     speaking = _speaking(facts)
     for node in facts.document.node.walk():
         if node.tag == "on" and "fresh-for" in node.attributes and _is_no_reaction(node):
@@ -80,7 +80,7 @@ def _stream(facts: Facts, form: Form, one: Form | Item) -> Iterator[Problem]:
 
 
 def _is_no_reaction(node: Node) -> bool:
-    """Whether a handler's author, or each of its events, says so (C5)."""
+    """Whether a handler is no reaction, by its attribute or by each of its events (C5)."""
     said = node.get("reactive")
     own = {name.partition(".")[0] for name in node.get("event", "").split()} <= NO_CAUSES
     return said == "false" or (said != "true" and own)
@@ -91,7 +91,7 @@ def _asks(items: Sequence[Item]) -> bool:
 
 
 def _speaking(facts: Facts) -> set[str]:
-    """The forms whose content certainly makes the robot say something."""
+    """The forms whose content certainly makes the robot speak."""
     return {
         form.id
         for form, run in facts.acts.of(CommandRun)
@@ -100,7 +100,7 @@ def _speaking(facts: Facts) -> set[str]:
 
 
 def _bad_hold(node: Node) -> bool:
-    """Whether an element's hold-for is not a time, which is a problem of its schema."""
+    """Whether an element's hold-for is not a time, which the schema reports."""
     try:
         return int(read_value("duration", node.get("hold-for", "1s"))) <= 0
     except ValueError:

@@ -1,4 +1,4 @@
-"""Questions that the user cannot answer, and questions that are asked for ever."""
+"""Questions that the user cannot answer, and questions that are repeated for ever."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ NO_NOINPUT = Diagnosis(
 
 
 def check_leaving(facts: Facts) -> Iterator[Problem]:
-    """3.3: a Command that leaves the user while a question is to be asked again."""
+    """Warn of a Command that leaves the user before a question is asked again (3.3)."""
     every = list(facts.document.handlers)
     for form, items in facts.forms:
         fields = [item for item in items if isinstance(item, Field)]
@@ -60,7 +60,7 @@ def check_leaving(facts: Facts) -> Iterator[Problem]:
 
 
 def _leaves(handler: Handler) -> Iterator[Problem]:
-    """Whether a handler drives away from a question and comes back to it."""
+    """Whether a handler leaves the user during a question and returns to it."""
     acts = all_acts(handler.content)
     if any(isinstance(act, Goto | Exit | Return | Throw) for act in acts):
         return
@@ -74,6 +74,6 @@ def _leaves(handler: Handler) -> Iterator[Problem]:
 
 
 def check_silence(facts: Facts) -> Iterator[Problem]:
-    """K1: questions that are repeated for ever while nobody answers."""
+    """Warn of questions that are repeated for ever while nobody answers (K1)."""
     for field in silent_fields(facts.document):
         yield NO_NOINPUT.at(field.node.place, field=field.name)

@@ -1,4 +1,4 @@
-"""Forms that nothing leads to, that nothing leaves, and content that is never reached."""
+"""Unreachable forms, forms that are never left, and unreachable content."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from prima.interpreter.elements import Field, Form, all_items
 from prima.interpreter.events import DEFAULTS, handlers_of
 
 LEAVING = (Goto, Return, Exit)
-"""Acts behind which nothing is reached."""
+"""Acts after which content is unreachable."""
 
 UNREACHABLE_FORM = UNREACHABLE.says(
     'Nothing leads to the form "{form}".', "Go to it from somewhere, or remove it."
@@ -53,7 +53,7 @@ NO_CALLER = Diagnosis(
 
 
 def check_reachable(facts: Facts) -> Iterator[Problem]:
-    """Forms that nothing leads to, or that are never left."""
+    """Warn of unreachable forms, and of forms that are never left."""
     forms, leads = facts.document.forms, facts.leads
     if not forms:
         return
@@ -65,7 +65,7 @@ def check_reachable(facts: Facts) -> Iterator[Problem]:
     left = _left(facts)
     for name, form in forms.items():
         if not name:
-            continue  # nothing can name it, which is a problem of its schema
+            continue  # nothing can name it, which the schema reports
         if name not in reached:
             yield UNREACHABLE_FORM.at(form.node.place_of("id"), form=name)
         elif name not in left:
@@ -105,9 +105,9 @@ def _left(facts: Facts) -> set[str]:
 
 
 def _ways(facts: Facts) -> set[str | None]:
-    """The forms that can be left but by an error; None if every form can, "" if all that ask can.
+    """Forms that can be left other than by an error; None: every form can, "": all that ask can.
 
-    A handler of errors does not count: nobody writes a state that is left only when it fails.
+    A handler of errors does not count: no state is meant to be left only when it fails.
     """
     failing = _acts_in(one for one in handlers_of(facts.document, facts.acts) if _fails(one))
     asking = _acts_in(one for one in facts.document.handlers if DEFAULTS.issuperset(one.events))
@@ -156,7 +156,7 @@ def _exiting(facts: Facts) -> set[str]:
 
 
 def check_content(facts: Facts) -> Iterator[Problem]:
-    """Content behind a goto, return or exit."""
+    """Warn of content after a goto, return or exit."""
     for _, content, _ in facts.document.contents():
         yield from _dead(content)
 

@@ -1,4 +1,4 @@
-"""Commands of a document that a robot does not have, or not in the way in which they are written."""
+"""Commands of a document that a robot lacks, or supports differently."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ NO_ARGUMENT = NO_SUCH_ARGUMENT.says('This robot\'s {command} has no additional a
 def check_commands(
     document: Document, commands: Mapping[str, CommandType], devices: frozenset[str] = frozenset()
 ) -> list[Problem]:
-    """Commands of a document that a robot cannot do: warnings, as a document may handle it."""
+    """Warn of Commands that a robot cannot carry out: a document may handle the failure."""
     problems = _outside_units(document, commands)
     heard = {name for handler in handlers_of(document) for name in handler.events}
     cannot: list[Problem] = []
@@ -49,7 +49,7 @@ def _cannot(
     devices: frozenset[str],
     heard: set[str],
 ) -> Problem:
-    """A Command that a robot lacks; ``heard`` are the events that the document handles."""
+    """The problem of a Command that a robot lacks; ``heard``: the events handled."""
     place, name = command.node.place, command.type
     if name not in TABLE_4_2:
         hint = suggestion(name, commands, *value_span(command.node, "type"))
@@ -68,11 +68,11 @@ def _cannot(
 
 
 def _arguments(command: CommandTemplate, row: CommandType) -> Iterator[Problem]:
-    """What is wrong with the arguments of a Command that only a robot's profile knows."""
+    """The problems of arguments of a Command that only a robot's profile defines."""
     for name, _ in command.extra:
         if name not in row.extra and name not in row.arguments:
             yield _no_argument(command, row, name)
-    if command.node.tag == "command":  # arguments of others are attributes, looked at already
+    if command.node.tag == "command":  # arguments of others are attributes, checked already
         given = dict(command.extra)
         yield from given_to(command.node, row, given, bool(command.text))
 

@@ -1,4 +1,4 @@
-"""Behaviour that goes on for ever while other applications wait (E4)."""
+"""Endless behaviour while other applications wait (E4)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Block, Form
 
 MANY_FORMS = 8
-"""Of forms that go round, so many are named."""
+"""Maximum number of forms named in a cycle."""
 
 NEVER_ENDS = ENDLESS.says(
     "tracking-human never ends by itself, and this state handles no event.",
@@ -28,7 +28,7 @@ GOES_TO_ITSELF = ENDLESS.says(
 
 
 def check_endless(facts: Facts) -> Iterator[Problem]:
-    """A feedback Command without an end of its own, in a state without handlers."""
+    """Warn of a feedback Command without an end of its own in a state without handlers."""
     for form, run in facts.acts.of(CommandRun):
         for command in run_commands(run.steps):
             if command.type != "tracking-human" or form is None:
@@ -39,7 +39,7 @@ def check_endless(facts: Facts) -> Iterator[Problem]:
 
 
 def check_rounds(facts: Facts) -> Iterator[Problem]:
-    """Forms that go to each other for ever without asking or waiting for anything."""
+    """Warn of forms that go to each other for ever without asking or waiting."""
     gotos = {form.id: _always(form) for form, items in facts.forms if items}
     told: set[str] = set()
     for start in gotos:
@@ -64,7 +64,7 @@ def _round(last: Goto, ring: list[str]) -> Problem:
 
 
 def _always(form: Form) -> Goto | None:
-    """The goto to a form by which a form is left for certain, without a question or a wait."""
+    """The goto by which a form is certainly left for another, without a question or a wait."""
     for item in form.items:
         if not isinstance(item, Block) or item.cond is not None or item.expr is not None:
             return None

@@ -1,4 +1,4 @@
-"""Forms and form items that a document names and does not have."""
+"""Missing forms and form items that a document names."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TWO_ITEMS = DUPLICATE_NAME.says('The form "{form}" has two items named "{name}".
 
 
 def check_targets(facts: Facts) -> Iterator[Problem]:
-    """Gotos, subdialogs and links to forms and items that are not there."""
+    """Check gotos, subdialogs and links for missing forms and items."""
     names = _item_names(facts)
     for holder, act in facts.acts.of(Goto):
         yield from _goto(facts, act, names[name_of(holder)])
@@ -51,7 +51,7 @@ def _item_names(facts: Facts) -> dict[str | None, set[str]]:
 
 def _form(facts: Facts, name: str, node: Node, attribute: str) -> Iterator[Problem]:
     forms = facts.document.forms
-    if name not in forms and "#" in node.get(attribute):  # else its schema has a problem
+    if name not in forms and "#" in node.get(attribute):  # otherwise the schema reports it
         hint = suggestion(name, forms, *value_span(node, attribute, name))
         yield UNKNOWN_FORM.at(node.place_of(attribute), hint, name=name)
 
@@ -65,7 +65,7 @@ def _item(facts: Facts, act: Goto, name: str, names: set[str]) -> Problem:
 
 
 def check_items(facts: Facts) -> Iterator[Problem]:
-    """Items of one name, and namelists with fields that are not there."""
+    """Check for items with the same name, and for missing fields in namelists."""
     for form, items in facts.forms:
         if items or form.filled:
             yield from _two_items(form, items)

@@ -1,4 +1,4 @@
-"""Variables and functions that code uses and nothing declares."""
+"""Undeclared variables and functions in code."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ PART = re.compile(r"(\s*\??\.\s*)([\w$]++)(?!\s*\()")
 PARTS = ("name", "message", "data")
 CALL = re.compile(r"\s*\(")
 SCOPED = ("document", "dialog", "application")
-"""Scopes that the name of a variable may begin with."""
+"""Scopes that may prefix the name of a variable."""
 VARIABLES = NameScope(HANDLED | {"session", "sensor"})
-"""What the language itself declares."""
+"""Names that the language itself declares."""
 ABSENT = {
     "console": 'Write <log expr="..."/>.',
     "alert": 'Write <log expr="..."/>.',
@@ -34,7 +34,7 @@ ABSENT = {
     "fetch": 'Write <send to="..."/>, which asks a service.',
     "require": "Write the functions into a <script>.",
 }
-"""What to write instead of what ECMAScript has elsewhere."""
+"""Remedies for names that ECMAScript has in other environments."""
 
 NOT_DECLARED = UNDECLARED_VARIABLE.says('The variable "{name}" is not declared.')
 NO_FUNCTION = UNDECLARED_VARIABLE.says('There is no function "{name}".', "Define it in a <script>.")
@@ -75,13 +75,13 @@ def _parts_of_event(expr: Expression, names: Names, known: Known) -> Iterator[Pr
 
 
 class Variables:
-    """The variables of a document: what code uses, and what acts give a value."""
+    """Checks the variables that a document's code uses and its acts assign."""
 
     def __init__(self, facts: Facts) -> None:
         self.facts = facts
 
     def of_expression(self, expr: Expression, known: Known) -> Iterator[Problem]:
-        """The names that an expression uses and nothing declares."""
+        """The undeclared names in an expression."""
         names = expression_names(expr.code)
         for name, start in names.free.items():
             if name in known:
@@ -108,12 +108,12 @@ class Variables:
 
     @cached_property
     def _handling(self) -> set[int]:
-        """The elements of all handlers: what is in them knows the event."""
+        """The elements of all handlers, in which the event's variables are visible."""
         handlers = handlers_of(self.facts.document, self.facts.acts)
         return {id(node) for handler in handlers for node in handler.node.walk()}
 
     def of_script(self, expr: Expression, known: Known) -> Iterator[Problem]:
-        """The names that a script uses and nothing declares."""
+        """The undeclared names in a script."""
         names = script_names(expr.code)
         for name, start in names.free.items():
             if name not in known:
@@ -122,7 +122,7 @@ class Variables:
         yield from _parts_of_event(expr, names, known)
 
     def given(self) -> Iterator[Problem]:
-        """Variables that acts give a value, clear or return."""
+        """Check variables that acts assign, clear or return."""
         for form, assign in self.facts.acts.of(Assign):
             names = self.facts.known_in(form)
             head, dot, rest = assign.name.partition(".")
@@ -169,7 +169,7 @@ class Variables:
 
 
 def _is_bare(expr: Expression, name: str) -> bool:
-    """Whether a name is all of an expression that may have been meant as a text."""
+    """Whether an expression is a single name that may have been meant as a text."""
     return expr.code.strip() == name and expr.node.tag != "value" and name not in ABSENT
 
 
@@ -178,7 +178,7 @@ def _quoted(hint: Hint, name: str) -> Hint:
 
 
 def _meant(place: Place, name: str, known: Known, spans: Sequence[Span] = ()) -> Hint:
-    """What was most likely meant by a name that nothing declares."""
+    """The name most likely meant by an undeclared one."""
     if name in ABSENT:
         return Hint(ABSENT[name])
     every = chain(VARIABLES, known.written())

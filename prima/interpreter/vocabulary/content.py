@@ -1,4 +1,4 @@
-"""Elements of executable content, but for Commands."""
+"""Elements of executable content other than Commands."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What to write instead of elements of other languages."""
+"""Remedies for elements of other languages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names of elements by what they do, and attributes that several have."""
+"""Names of elements by purpose, and attributes shared by several."""
 
 from __future__ import annotations
 

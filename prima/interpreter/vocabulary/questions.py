@@ -6,7 +6,7 @@ from prima.language.commands import TABLE_4_2
 from prima.markup.vocabulary import Element, attribute
 
 USUAL_CONFIDENCE = 0.5
-"""How sure a recogniser has to be where no document says so (VoiceXML 2.0, 6.3.2)."""
+"""The default of the minimum confidence (VoiceXML 2.0, 6.3.2)."""
 _ASKING = TABLE_4_2["q-and-a"].arguments
 PROPERTIES = {
     item.name: item
