@@ -126,7 +126,7 @@ class _AbnfReader:
     def _uri(self, token: Token, media: bool = False) -> str:
         uri, told, _ = token.partition("~")
         if not uri[1:-1].strip() or (told and not media):
-            message = f'"{token[:60]}" is no URI in angle brackets.'
+            message = f'"{token[:60]}" is not a URI in angle brackets.'
             self.note(token, "bad-value", message, "Write one such as <names.gram>.")
         return uri[1:-1].strip()
 
@@ -220,7 +220,7 @@ class _AbnfReader:
         match = _REPEAT.fullmatch(token)
         try:
             if match is None:
-                raise ValueError(f'"{token[:40]}" is no repeat such as <0-1> or <2- /0.5/>.')
+                raise ValueError(f'"{token[:40]}" is not a repeat such as <0-1> or <2- /0.5/>.')
             low, high = repeat(match[1])
             if match[2] is None:
                 return low, high, 0.0, 0.0
@@ -271,7 +271,7 @@ class _AbnfReader:
             return False
         message = f'"{token[:40]}" has a question mark, which is reserved after an expansion.'
         remedy = (
-            "Write <0-1> after what may be left out; drop a ? of a sentence, which nobody hears."
+            "Write <0-1> after what may be left out; drop the ? of a sentence: it is not heard."
         )
         self.note(token, "bad-token", message, remedy)
         return True
@@ -281,7 +281,7 @@ class _AbnfReader:
             return text
         pressed = keys(text)
         if pressed is None or len(pressed) != 1:
-            message = f'"{text[:40]}" is no key of a telephone.'
+            message = f'"{text[:40]}" is not a telephone key.'
             remedy = 'Keys are 0 to 9, "*", "#", and A to D.'
             self.note(token, "bad-token", message, remedy)
         return pressed or ""

@@ -32,7 +32,7 @@ _CLOSING = {"RPAR": '")"', "RSQB": '"]"', "SEMICOLON": '";"'}
 """Ends of alternatives, named if they may also continue."""
 _RESERVED = {
     "}": "A tag that holds a } itself is written {!{ ... }!}.",
-    "!": "A language stands only after a token, a rule or a bracket, before its repeat: oui!fr<2>.",
+    "!": "A language is allowed only after a token, a rule or a bracket, before its repeat: oui!fr<2>.",
     "*": 'Write <0-> for any number of times; a sign that is a key or said, in quotes: "*".',
     "+": 'Write <1-> for once or more; a sign that is said, in quotes: "+".',
 }
@@ -55,7 +55,7 @@ def unexpected(source: Source, error: UnexpectedInput) -> Problem:
     else:
         at = len(text) - len(text[error.pos_in_stream :].lstrip())
     found = text[at : at + 20].split("\n")[0].strip()
-    message = f'"{found}" cannot stand here.' if found else "The grammar ends too early."
+    message = f'"{found}" is not allowed here.' if found else "The grammar ends too early."
     remedy = _remedy(error, found, token)
     return Problem(source.at(at), "error", "not-abnf", message, remedy)
 
@@ -69,7 +69,7 @@ def _remedy(error: UnexpectedInput, found: str, token: Token | None) -> str:
     stopped: Any = error.interactive_parser
     accepted: set[str] = stopped.accepts()
     names = _CLOSING if "OR" in accepted else _EXPECTED
-    remedy = f"Here may stand {next(names[name] for name in names if name in accepted)}."
+    remedy = f"Expected {next(names[name] for name in names if name in accepted)}."
     if token is None:
         return f"{remedy} Signs are words only in quotes."
     if accepted >= {"NAME", "$END"} and (token in DECLARATIONS or found[0] == "{"):

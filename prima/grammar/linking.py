@@ -88,7 +88,7 @@ class Library:
         try:
             data = self._fetch(uri)
         except FAILURES as error:
-            message = f'The grammar "{uri[:200]}" cannot be had: {error}.'
+            message = f'The grammar "{uri[:200]}" cannot be fetched: {error}.'
             remedy = "Its name is read relative to the document that names it."
             self.problems.note(where, "no-such-file", message, remedy)
             return None
@@ -207,7 +207,7 @@ def joined(base: str, uri: str, where: Where) -> str:
         urlsplit(uri)
         urlsplit(base)
     except ValueError as error:
-        message = f'"{uri[:80]}" is no URI: {error}.'
+        message = f'"{uri[:80]}" is not a URI: {error}.'
         raise refuse(GrammarError, where(), "bad-value", message) from None
     return join(base, uri)
 

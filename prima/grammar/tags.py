@@ -23,7 +23,7 @@ from prima.script.parse import parse_script
 
 SISR = frozenset(["out", "rules", "meta"])
 """Variables of every tag of a rule (SISR 1.0)."""
-LOST = "what needs it is not taken"
+LOST = "answers that need it do not match"
 
 
 def tag_warnings(document: GrammarDocument) -> list[Problem]:

@@ -99,7 +99,7 @@ def name_problem(name: str) -> str:
     if name in RESERVED:
         return f'"{name}" is a special rule and cannot be defined.'
     if re.fullmatch(_NAME, name) is None:
-        return f'"{name[:60]}" is no name of a rule: letters, digits and "_", no digit first.'
+        return f'"{name[:60]}" is not a valid rule name: letters, digits and "_", no digit first.'
     return ""
 
 

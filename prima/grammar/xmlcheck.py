@@ -83,11 +83,11 @@ class GrammarChecker:
                 remedy = "Put it in a <rule>."
                 if not node.nodes:
                     remedy = 'Write it in SRGS: rules in XML, or "#ABNF 1.0;" before the text.'
-            message = f"Text cannot stand in <{node.tag}>."
+            message = f"Text is not allowed in <{node.tag}>."
             self.problems.note(partial(node.text_place, node.text), "stray-text", message, remedy)
 
     def no_elements(self, node: Node) -> None:
         """Note elements in one that holds none."""
         for child in node.nodes:
-            message = f"<{child.tag}> cannot stand in <{node.tag}>."
+            message = f"<{child.tag}> is not allowed in <{node.tag}>."
             self.note(child, "misplaced-element", message)

@@ -58,7 +58,7 @@ class _Reader(GrammarChecker):
         self.space = node.namespace
         self.attributes(node, VOICEXML if self.inline else {"scope"})
         if not self.inline and "scope" in node.attributes:
-            message = "scope says nothing in a grammar's file."
+            message = "scope has no effect in a grammar's file."
             remedy = "Write it where VoiceXML names the file."
             self.problems.warn(
                 partial(node.place_of, "scope"), "unknown-attribute", message, remedy
@@ -111,7 +111,7 @@ class _Reader(GrammarChecker):
                 seen_rule = True
                 self._rule(child)
             elif child.tag not in HEADER:
-                message = f"<{child.tag}> cannot stand in <grammar>."
+                message = f"<{child.tag}> is not allowed in <grammar>."
                 self.note(child, "misplaced-element", message, "Put it in a <rule>.")
             else:
                 if seen_rule:
@@ -181,13 +181,13 @@ class _Reader(GrammarChecker):
                 elif item.tag == "example" and node.tag == "rule":
                     self._example(item, first=not parts)
                 else:
-                    message = f"<{item.tag}> cannot stand in <{node.tag}>."
+                    message = f"<{item.tag}> is not allowed in <{node.tag}>."
                     self.note(item, "misplaced-element", message)
         return parts
 
     def _example(self, node: Node, first: bool) -> None:
         if not first:
-            message = "<example> stands after what the rule takes."
+            message = "<example> comes after the rule's expansion."
             self.note(node, "misplaced-element", message, "Put it first in the <rule>.")
         self.no_elements(node)
 
@@ -238,7 +238,7 @@ class _Reader(GrammarChecker):
         pressed = [keys(token) for token in found]
         for token, key in zip(found, pressed, strict=True):
             if key is None or len(key) != 1:
-                message = f'"{token[:40]}" is no key of a telephone.'
+                message = f'"{token[:40]}" is not a telephone key.'
                 remedy = "Keys are 0 to 9, *, #, and A to D, with spaces between them."
                 self.problems.note(partial(node.text_place, token), "bad-token", message, remedy)
                 return None
@@ -256,7 +256,7 @@ class _Reader(GrammarChecker):
             return []
         if "special" in node.attributes:
             if special not in RESERVED:
-                message = f'"{special}" is no special rule: NULL, VOID and GARBAGE are.'
+                message = f'"{special}" is not a special rule: they are NULL, VOID and GARBAGE.'
                 remedy = (
                     suggestion(special, RESERVED, *value_span(node, "special"))
                     or 'Write uri="#name" for a rule of your own.'
@@ -275,7 +275,7 @@ class _Reader(GrammarChecker):
             if not self.known(child, node):
                 continue
             if child.tag != "item":
-                message = f"<{child.tag}> cannot stand in <one-of>."
+                message = f"<{child.tag}> is not allowed in <one-of>."
                 self.note(child, "misplaced-element", message, "Put it in an <item>.")
                 continue
             parts.append(self._item(child, depth + 1))

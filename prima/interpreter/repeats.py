@@ -29,7 +29,7 @@ from prima.markup.tree import Node
 from prima.script.choices import choices
 
 SAID_AGAIN = TOLD_TWICE.says(
-    'If "{event}" comes while the {form} {asks} this ({line}), it {told} told twice: {why}'
+    'If "{event}" comes while the {form} {asks} this ({line}), it {told} said twice: {why}'
 )
 
 OWN = (
@@ -41,7 +41,7 @@ MOST_FOUND = 5_000
 """Maximum number of repetitions searched for: a list of problems ends long before."""
 STEPS_OF_AN_ITEM = 20
 """Checking an item counts as so many steps."""
-REMEDY = "Leave out the <goto>: what is said goes on then. Or give what is said a cond."
+REMEDY = "Leave out the <goto>: the speech then continues. Or give the speech a cond."
 GUESSED = " If it never leads there, name its targets in the expression: x ? '{0}this' : '{0}that'."
 
 

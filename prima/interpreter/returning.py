@@ -15,12 +15,14 @@ from prima.interpreter.elements import Form, Subdialog, all_items
 from prima.interpreter.entering import EnteredDocument, FormTarget, forms_of, is_left
 from prima.interpreter.events import beginnings
 
-REMEDY = "Handle the event here without <return>: what is said goes on then. Or give what is said a cond."
+REMEDY = (
+    "Handle the event here without <return>: the speech then continues. Or give the speech a cond."
+)
 
 Callers = dict[FormTarget, list[tuple[EnteredDocument, Form, Subdialog]]]
 
 CALLED_AGAIN = TOLD_TWICE.says(
-    'If "{event}" comes while this is {said} (line {line}), it is told twice: the form that called'
+    'If "{event}" comes while this is {said} (line {line}), it is said twice: the form that called'
     ' this one handles "{returned}" and calls it again.',
     REMEDY,
 )

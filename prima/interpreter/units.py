@@ -42,13 +42,13 @@ from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.tree import Node
 
 SPEAKS_LONG = LONG_UNIT.says(
-    "This unit speaks for about {seconds} s: no reaction can break in.", "Divide it (thesis 4.5)."
+    "This unit speaks for about {seconds} s: no reaction can start.", "Divide it (thesis 4.5)."
 )
 NOW_BEHIND_OTHERS = NOW_INSIDE.says(
-    "<{p}{tag}> is wanted now; it cannot stand in a <{p}par>, <{p}seq> or <{p}iu> behind others.",
+    "<{p}{tag}> is wanted now; it is not allowed in a <{p}par>, <{p}seq> or <{p}iu> after others.",
     "Put it first.",
 )
-CANNOT_BE_IN_UNIT = NOT_IN_UNIT.says("{why}; it cannot stand in a unit.", "{remedy}")
+CANNOT_BE_IN_UNIT = NOT_IN_UNIT.says("{why}; it is not allowed in a unit.", "{remedy}")
 
 LONGEST_UNIT_MS = 60_000
 """The default of ``longest``, a unit's longest duration."""

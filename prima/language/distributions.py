@@ -220,7 +220,7 @@ def _column(name: str, rows: list[tuple[int, list[str]]], column: str) -> tuple[
     """
     head = rows[0][1] if rows else []
     if any(";" in one for one in head):
-        raise ValueError(f"{name}: its cells stand between ';'; save it with ',' between them.")
+        raise ValueError(f"{name}: its cells are separated by ';'; save it with ','.")
     if column and column not in head:
         hint = did_you_mean(column, head)
         raise ValueError(f'{name} has no column "{column}". {hint}'.rstrip())

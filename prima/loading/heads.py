@@ -75,7 +75,7 @@ def check_files(head: Record, loaded: Loaded, name: str) -> None:
     """
     files = head["data"].get("files", {})
     if not isinstance(files, dict):
-        raise UsageError(f"{name}: the run record's files are none.")
+        raise UsageError(f"{name}: the run record's files are not an object.")
     for file, digest in files.items():
         if file in loaded.files and loaded.files[file] != digest:
             raise UsageError(f"{file} is not the file that the transcript was made with.")

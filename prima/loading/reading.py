@@ -121,7 +121,7 @@ class Reading:
         self.problems += problems
         self.documents.append(document)
         if node is not None:
-            who = "this scenario says EA" if said == "ea" else "this scenario does not say so"
+            who = "this scenario says EA" if said == "ea" else "this scenario does not"
             who = "this scenario says FA" if said == "fa" else who
             remedy = f'Write kind="{document.node.get("kind")}" here, or change the document.'
             self.problems += other_kind(document, f'"{src}"', who, place, remedy)

@@ -98,7 +98,7 @@ class Hosts:
         """
         host = host_of(uri)
         if urlsplit(uri).scheme not in ("http", "https"):
-            _refuse(f"{uri} is no address of the web")
+            _refuse(f"{uri} is not an http or https URI")
         if not {host, host.partition(":")[0]} & self._allowed:
             _refuse(not_allowed(uri))
 

@@ -38,7 +38,7 @@ def whole(path: str | Path) -> Iterator[IO[bytes]]:
         UsageError: it cannot be written.
     """
     if "\0" in str(path):
-        raise UsageError(f"{path}: cannot be written: it is no file's name.")
+        raise UsageError(f"{path}: cannot be written: it is not a file name.")
     try:
         with _opened(os.path.realpath(path)) as stream:
             yield stream

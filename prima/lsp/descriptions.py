@@ -99,9 +99,9 @@ VOICEXML_EVENTS = {
     "connection.disconnect.hangup": "The user has hung up.",
     "connection.disconnect.transfer": "The user has been transferred for good.",
     "error": "Every error.",
-    "error.badfetch": "A document cannot be had.",
+    "error.badfetch": "A document cannot be fetched.",
     "error.semantic": "Something wrong shows only when it is reached.",
-    "error.noauthorization": "What was asked for is not allowed.",
+    "error.noauthorization": "The request is not allowed.",
     "error.unsupported": "The platform lacks something.",
     "error.unsupported.format": "A format that is not supported.",
 }

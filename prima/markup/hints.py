@@ -100,8 +100,8 @@ def text_remedy(node: Node, spoken: bool) -> str:
 
 
 PAUSES = {
-    "break": 'Between Commands write <pause time="1s"/>; a <break> is a pause inside of a text.',
-    "pause": 'Inside of a text write <break time="1s"/>; a <pause> stands between Commands.',
+    "break": 'Between Commands write <pause time="1s"/>; a <break> is a pause inside a text.',
+    "pause": 'Inside a text write <break time="1s"/>; a <pause> goes between Commands.',
 }
 """The two kinds of pauses, each where the other belongs."""
 
@@ -136,4 +136,4 @@ def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
         return f"Put it into {with_article(f'<{holder}>')}."
     if set(allowed) & set(vocabulary.parents(parent.tag)):
         return f"Move it out of the <{parent.tag}>."
-    return INSTEAD.get(tag) or f"It may stand in {one_of(allowed)}."
+    return INSTEAD.get(tag) or f"It is allowed in {one_of(allowed)}."

@@ -193,7 +193,7 @@ class Engines:
         self._absent = ""
         """Why the next application has no engine."""
         if isolate not in ISOLATIONS:
-            raise ValueError(f'"{isolate}" is none of {", ".join(ISOLATIONS)}')
+            raise ValueError(f'"{isolate}" is not one of {", ".join(ISOLATIONS)}')
 
     def engine(self, name: str, kind: str, scopes: tuple[str, ...] = SCOPES) -> AnyEngine:
         """A new engine for an application, by its name and kind (``fa`` or ``ea``).

@@ -15,9 +15,9 @@ class NameScope(set[str]):
 
     @cached_property
     def written(self) -> list[str]:
-        """The names that documents may write, limited to the number considered for guesses.
+        """Names that documents may write, up to the number considered for guesses.
 
-        Used once all names have been added.
+        Only to be read after all names have been added.
         """
         meant = (one for one in self if IDENTIFIER.fullmatch(one) and not one.startswith("$"))
         return list(islice(meant, MANY_WORDS + 1))

@@ -45,7 +45,7 @@ class Names:
     changed: set[str] = field(default_factory=set)
     """Undeclared names that are updated: ``x++``, ``x += 1``."""
     now: dict[str, int] = field(default_factory=dict)
-    """Those read outside of functions, unless the code tests their type as well."""
+    """Undeclared names that are read outside of functions and whose type the code does not test."""
     uses: list[Use] = field(default_factory=list)
     """Occurrences of all these names, in the order of the text."""
     opaque: bool = False

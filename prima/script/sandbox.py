@@ -52,7 +52,7 @@ def reason(text: str, seconds: float) -> str:
     if message.startswith("Unknown quickjs tag"):
         return "its value is of a type that is absent here, such as BigInt"
     if message == "[object Object]":
-        return "it threw an object that is no Error"
+        return "it threw an object that is not an Error"
     return message
 
 

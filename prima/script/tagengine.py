@@ -133,7 +133,7 @@ class TagEngine:
         given = [self._member(environment, name) for name in ("rules", "meta", "next")]
         box = self._call(function, *given, self._call(self._context.eval, "({})"))
         if self.reached(environment) != DONE:
-            raise ScriptError("return stands outside of a function")
+            raise ScriptError("return outside of a function")
         return box
 
     def reached(self, environment: Any) -> int:

@@ -84,7 +84,7 @@ def _expectation(
         _check_subject(reader, node, given)
     _check_when(reader, node, triggers)
     if ordered and "state" in given:
-        message = "A state lasts: it cannot stand in <in-order>."
+        message = "A state lasts: it is not allowed in <in-order>."
         remedy = "Write it outside, and say when by at, said, asked, doing, done or on."
         reader.problem(node, "exclusive", message, "state", remedy)
     _check_other(reader, node, "after", ids)

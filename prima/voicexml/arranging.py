@@ -159,10 +159,10 @@ NESTED_TOO_DEEP = TOO_DEEP.says(
 NO_COMMAND = EMPTY.says("This <p:{tag}> holds no Command.", "Write Commands into it.")
 NO_ITEM = EMPTY.says("This <p:iu> holds no form item.", "Write {items} into it, or remove it.")
 NO_TEXT_HERE = STRAY_TEXT.says(
-    'Text cannot stand in <p:{tag}>: "{text}".', "Write it into a <{inside}>."
+    'Text is not allowed in <p:{tag}>: "{text}".', "Write it into a <{inside}>."
 )
-NOT_AMONG_ITEMS = MISPLACED_ELEMENT.says("<{name}> cannot stand in a <p:iu> around form items.")
-NOT_HERE = MISPLACED_ELEMENT.says("<{name}> cannot stand in <p:{parent}>.")
+NOT_AMONG_ITEMS = MISPLACED_ELEMENT.says("<{name}> is not allowed in a <p:iu> around form items.")
+NOT_HERE = MISPLACED_ELEMENT.says("<{name}> is not allowed in <p:{parent}>.")
 NO_ATTRIBUTE = UNKNOWN_ATTRIBUTE.says('<p:{tag}> has no attribute "{name}".')
 NOT_OF_ITS_KIND = BAD_VALUE.says('{name} "{value}" {wrong}')
 ONE_AFTER_THE_OTHER = SHARED_DEVICE.says(

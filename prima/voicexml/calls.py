@@ -206,9 +206,9 @@ def check_destination(uri: str, item: Node) -> None:
     scheme = uri.partition(":")[0].lower()
     known = scheme in ("tel", "sip", "sips")
     if ":" in uri and not known:
-        message = f'"{uri}" is called by nobody; write "tel:", "sip:" or "sips:"'
+        message = f'"{uri}" cannot be called; write "tel:", "sip:" or "sips:"'
         raise Thrown.at(item, "error.unsupported.uri", message)
     form = TELEPHONE if scheme == "tel" else ADDRESS
     if not known or form.fullmatch(scheme + uri[len(scheme) :]) is None:
-        message = f'"{uri}" is no number to call; write it as "tel:+1-555-1234"'
+        message = f'"{uri}" is not a telephone number; write it as "tel:+1-555-1234"'
         raise Thrown.at(item, "error.connection.baddestination", message)

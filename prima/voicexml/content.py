@@ -271,7 +271,7 @@ class Content(Speaker):
         """
         uri = self.word(node, "src", context, local)
         if not uri:
-            raise Thrown.at(node, "error.badfetch", "there is no URI")
+            raise Thrown.at(node, "error.badfetch", "the URI is missing")
         return context.page.resolve(uri, node)
 
     def data(self, node: Node, scope: Scope, context: Context, local: Scope) -> Flow:

@@ -145,7 +145,7 @@ class Documents:
             Thrown: ``error.badfetch``.
         """
         if not uri:
-            raise Thrown.at(node, "error.badfetch", "there is no URI")
+            raise Thrown.at(node, "error.badfetch", "the URI is missing")
         target, fragment = parted(legal(uri))
         page = None
         if target or request is not None:

@@ -46,7 +46,7 @@ def site_of(file: str, uri: str, folder: str = "") -> Site:
     parts = urlsplit(uri)
     if parts.scheme not in ("http", "https") or not parts.netloc or parts.query or parts.fragment:
         raise ValueError(
-            f'"{uri}" is no URI of a document.',
+            f'"{uri}" is not the URI of a document.',
             'Write the whole one, such as "https://example.org/app/main.vxml".',
         )
     if not folder:

@@ -1,7 +1,7 @@
 """A VoiceXML document as the values that checks of PRIMA's own language work on.
 
 What is found out without running anything is found out of both languages in the same way: what
-units reach (U5), how long they speak, what is told twice (O3). A sketch has what such checks need
+units reach (U5), how long they speak, what is said twice (O3). A sketch has what such checks need
 and nothing else: of a prompt its words, of a question that it asks.
 """
 

@@ -23,12 +23,12 @@ from prima.voicexml.sketch import Sketch
 PREFIX = "p:"
 OWN = ("noinput", "nomatch", "help", "cancel", "exit", "error", "maxspeechtimeout", "connection")
 """Prefixes of VoiceXML's own events, by which nothing is said twice."""
-REMEDY = "Leave out the <goto>: the dialog goes on then. Or give what is said a cond."
+REMEDY = "Leave out the <goto>: the dialog goes on then. Or give the speech a cond."
 LATER = " At run time it is error.semantic."
 
 
 def unit_errors(page: Page) -> list[Problem]:
-    """Commands of a document that cannot stand in its units, or that these cannot reach (U5)."""
+    """Commands of a document that is not allowed in its units, or that these cannot reach (U5)."""
     return list(_unit_problems(Sketch(page, None)))
 
 

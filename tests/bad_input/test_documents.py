@@ -131,7 +131,7 @@ def test_a_hundred_megabytes(tmp_path: Path) -> None:
 MEANING = [
     ("unknown-element", block("<speek>x</speek>"), "2:21", 'Did you mean "speak"?'),
     ("voicexml-element", block("<catch/>"), "2:21", 'Write <on event="...">'),
-    ("misplaced", form("<speak>x</speak>"), "2:14", "<speak> cannot stand in <form>. Put it into a <block>."),
+    ("misplaced", form("<speak>x</speak>"), "2:14", "<speak> is not allowed in <form>. Put it into a <block>."),
     ("unknown-attribute", block('<turn angel="3" angle="1"/>'), "2:27", 'Remove it: there is "angle" already.'),
     ("missing-attribute", block("<turn/>"), "2:21", "needs"),
     ("not-a-number", block('<turn angle="x"/>'), "2:34", "Write digits"),
@@ -188,7 +188,7 @@ MEANING = [
     ("second-line", block('<log expr="1 +&#10;\n )"/>'), "3:2", "is not ECMAScript"),
     ("references", block('<log expr="1 &lt; 2 &amp;&amp; &#x6e;o"/>'), "2:52", '"no" is not declared'),
     ("script-line", block("<script>\n var a = 1;\n <![CDATA[ a = ) ]]></script>"), "4:16", "ECMAScript"),
-    ("script-name", block("<script>var a;\n a = nobody;</script>"), "3:6", '"nobody", which nothing'),
+    ("script-name", block("<script>var a;\n a = nobody;</script>"), "3:6", '"nobody", which is not'),
     ("no-clock", block('<log expr="performance.now()"/>'), "2:32", '"performance" is not declared'),
     ("sensor", form('<watch name="w" when="sensr.x"/>'), "2:36", 'Did you mean "sensor"?'),
     ("event-comma", form('<on event="touch,message"/>'), "2:25", 'holds a comma. Write "touch message".'),

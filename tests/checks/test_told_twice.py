@@ -33,7 +33,7 @@ BACK = '<block><goto next="#a"/></block>'
 def test_what_an_event_makes_it_tell_twice_is_warned_of(first: str, then: str) -> None:
     (problem,) = told_twice_in(first + then)
     assert problem.severity == "warning" and problem.remedy.startswith("Leave out the <goto>")
-    assert "it is told twice" in problem.message and "(line 1)" in problem.message
+    assert "it is said twice" in problem.message and "(line 1)" in problem.message
 
 
 @pytest.mark.parametrize(
@@ -74,11 +74,11 @@ ANSWERED = '<field name="x" type="boolean"><prompt>Well?</prompt>{}<filled><exit
 AGAIN = {
     "a text": (form_of(SAYS + TO.format(BY.format("'#a'"))), "this leads back to"),
     "one of two": (form_of(SAYS + TO.format(BY.format("n ? 'end' : (first ? 'a' : 'end')"))) + END, "leads back"),
-    "anywhere": (form_of(SAYS + TO.format(BY.format("n"))), "it may be told twice: where this leads depends"),
-    "begins so": (form_of(SAYS + TO.format(BY.format("'#a' + n"))), "may be told twice"),
+    "anywhere": (form_of(SAYS + TO.format(BY.format("n"))), "it may be said twice: where this leads depends"),
+    "begins so": (form_of(SAYS + TO.format(BY.format("'#a' + n"))), "may be said twice"),
     "anywhere from elsewhere": (
-        CALLED_BACK + THEN.format(f"<block>{BY.format('n')}</block>"), "may be told twice"),
-    "anywhere, of the document": (form_of(SAYS) + TO.format(BY.format("n")), "may be told twice"),
+        CALLED_BACK + THEN.format(f"<block>{BY.format('n')}</block>"), "may be said twice"),
+    "anywhere, of the document": (form_of(SAYS) + TO.format(BY.format("n")), "may be said twice"),
     "a subdialog returns with an event": (
         '<form id="s"><subdialog name="d" src="#a"><on event="bang"><log>x</log></on></subdialog></form>'
         + ASKS.format("", TO.format('<return event="bang"/>')), "calls it again"),
@@ -222,9 +222,9 @@ HANDLED = "<catch event='message'>{}<goto next='#a'/></catch>"
         ("<form id='a'><block>Hi.</block><catch event='touch'><if cond='true'><goto next='#a'/></if>"
          "</catch></form>", "says this"),
         ("<form><block><prompt>Hi.</prompt></block><catch event='touch'><goto next='main.vxml'/></catch>"
-         "</form>", "the form #1 says this (line 2), it is told twice: this leads back to the form's"),
+         "</form>", "the form #1 says this (line 2), it is said twice: this leads back to the form's"),
         ("<menu id='a'>Well? <choice next='#a'>yes</choice>" + TOUCHED.format("", "a") + "</menu>",
-         'the menu "a" asks this (line 2), it is told twice: this leads back to the menu\'s beginning'),
+         'the menu "a" asks this (line 2), it is said twice: this leads back to the menu\'s beginning'),
         ("<form id='a'><p:iu xmlns:p='urn:prima:dialogue:1'><block>Hi.</block></p:iu>"
          + TOUCHED.format("", "a") + "</form>", "says this"),
         (ASKS_VOICE.format("", "<catch event='touch'><submit next='service:s#a'/></catch>"), "asks"),
@@ -279,9 +279,9 @@ VOICE_AGAIN: dict[str, tuple[str, str, dict[str, str]]] = {
     "one of two": (
         form_of(HQ + TOUCH.format("<goto expr=\"n ? 'other.vxml' : '#a'\"/>")), "leads back", {}),
     "anywhere": (form_of(HQ + TOUCH.format("<goto expr='n'/>")), "where this leads depends", {}),
-    "begins so": (form_of(HQ + TOUCH.format("<goto expr=\"'#' + n.substring(1)\"/>")), "may be told", {}),
+    "begins so": (form_of(HQ + TOUCH.format("<goto expr=\"'#' + n.substring(1)\"/>")), "may be said", {}),
     "begins with a file's name": (
-        form_of(HQ + TOUCH.format("<goto expr=\"'mai' + n\"/>")), "may be told", {}),
+        form_of(HQ + TOUCH.format("<goto expr=\"'mai' + n\"/>")), "may be said", {}),
     "another document": (
         form_of(HQ + TOUCH.format("<goto next='other.vxml'/>")), "leads back", {"other": OVER_THERE}),
     "a dialog of another document": (

@@ -11,8 +11,8 @@ import pytest
 from prima.grammar import GrammarError, load
 
 HEAD = "#ABNF 1.0;\nlanguage en;\nroot $r;\n"
-TOKEN = "Here may stand a token, or () for nothing."
-DECLARATION = "Here may stand a declaration such as root $name; or a rule such as $name = ...;."
+TOKEN = "Expected a token, or () for nothing."
+DECLARATION = "Expected a declaration such as root $name; or a rule such as $name = ...;."
 
 
 def problems(text: str) -> list[tuple[int, int, str, str]]:
@@ -28,17 +28,17 @@ def problems(text: str) -> list[tuple[int, int, str, str]]:
     [
         (HEAD + "$r = a | ;", 4, 10, ";", TOKEN),
         (HEAD + "$r = a\n   |\n /* b */ | c;", 6, 10, "| c;", TOKEN),
-        (HEAD + "$r = (a | [b);", 4, 13, ");", 'Here may stand "]".'),
-        (HEAD + "$r = (a;", 4, 8, ";", 'Here may stand ")".'),
-        (HEAD + "$r = a<2><3>;", 4, 10, "<3>;", 'Here may stand ";".'),
-        (HEAD + "$r a;", 4, 4, "a;", 'Here may stand "=".'),
-        (HEAD + "$r = a; b = c;", 4, 9, "b = c;", "Here may stand a rule, $name = ...;."),
+        (HEAD + "$r = (a | [b);", 4, 13, ");", 'Expected "]".'),
+        (HEAD + "$r = (a;", 4, 8, ";", 'Expected ")".'),
+        (HEAD + "$r = a<2><3>;", 4, 10, "<3>;", 'Expected ";".'),
+        (HEAD + "$r a;", 4, 4, "a;", 'Expected "=".'),
+        (HEAD + "$r = a; b = c;", 4, 9, "b = c;", "Expected a rule, $name = ...;."),
         (
             HEAD + "$r = a; mode voice;",
             4,
             9,
             "mode voice;",
-            "Here may stand a rule, $name = ...;. Declarations come before all rules.",
+            "Expected a rule, $name = ...;. Declarations come before all rules.",
         ),
         (HEAD + "import <a>; $r = a;", 4, 1, "import <a>; $r = a;", DECLARATION),
         (HEAD + "languages en; $r = a;", 4, 1, "languages en; $r = a", DECLARATION),
@@ -47,15 +47,15 @@ def problems(text: str) -> list[tuple[int, int, str, str]]:
             4,
             6,
             "a is b; $r = a;",
-            "Here may stand a text in quotes.",
+            "Expected a text in quotes.",
         ),
-        (HEAD + "meta 'a' 'b'; $r = a;", 4, 10, "'b'; $r = a;", "Here may stand the word is."),
+        (HEAD + "meta 'a' 'b'; $r = a;", 4, 10, "'b'; $r = a;", "Expected the word is."),
         (
             HEAD + "tag-format x; $r = a;",
             4,
             12,
             "x; $r = a;",
-            "Here may stand a URI in angle brackets, <uri>.",
+            "Expected a URI in angle brackets, <uri>.",
         ),
         (
             HEAD + "$r = a + b;",
@@ -76,7 +76,7 @@ def problems(text: str) -> list[tuple[int, int, str, str]]:
             4,
             11,
             "!en; $s = a;",
-            "A language stands only after a token, a rule or a bracket, before its repeat:"
+            "A language is allowed only after a token, a rule or a bracket, before its repeat:"
             " oui!fr<2>.",
         ),
         (
@@ -98,14 +98,14 @@ def problems(text: str) -> list[tuple[int, int, str, str]]:
 def test_what_cannot_stand_where_it_stands(
     text: str, line: int, column: int, found: str, remedy: str
 ) -> None:
-    assert problems(text) == [(line, column, f'"{found}" cannot stand here.', remedy)]
+    assert problems(text) == [(line, column, f'"{found}" is not allowed here.', remedy)]
 
 
 @pytest.mark.parametrize("end", ["", "  \n", " | // b"])
 def test_a_text_that_ends_too_early(end: str) -> None:
     text = HEAD + "$r = a" + end
     column = len(f"$r = a{end}".rstrip()) + 1
-    remedy = TOKEN if "|" in end else 'Here may stand ";".'
+    remedy = TOKEN if "|" in end else 'Expected ";".'
     assert problems(text) == [(4, column, "The grammar ends too early.", remedy)]
 
 
@@ -169,8 +169,8 @@ def test_abnf_without_its_header_is_told_which_to_write(text: str, kind: str) ->
     [
         ("$r = a?;", '"a?" has a question mark, which is reserved after an expansion.', "<0-1>"),
         ("$r = $s?; $s = a;", '"$s?" has a question mark', "<0-1>"),
-        ("$r = a*;", '"*;" cannot stand here.', "<0->"),
-        ("$r = a+;", '"+;" cannot stand here.', "<1->"),
+        ("$r = a*;", '"*;" is not allowed here.', "<0->"),
+        ("$r = a+;", '"+;" is not allowed here.', "<1->"),
     ],
 )
 def test_signs_of_other_languages_are_told_with_what_to_write(

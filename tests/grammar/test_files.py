@@ -91,7 +91,7 @@ def test_a_link_listens_by_a_file(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("grammar", "file", "code", "message"),
     [
-        ('src="none.grxml"', "a.xml", "no-such-file", 'The grammar "none.grxml" cannot be had'),
+        ('src="none.grxml"', "a.xml", "no-such-file", 'The grammar "none.grxml" cannot be fetched'),
         ('src="../outside.grxml"', "a.xml", "no-such-file", "outside the application's folder"),
         ('src="http://x.org/a"', "a.xml", "no-such-file", "no network is used"),
         ('src="sizes.grxml#siz"', "a.xml", "no-such-rule", 'has no rule "siz"'),

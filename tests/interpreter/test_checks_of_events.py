@@ -33,7 +33,7 @@ def test_an_event_is_known_in_its_handlers_alone(content: str, name: str, tmp_pa
     found = json.loads(done.stdout)
     found = [one for one in found if one["code"] == "undeclared-variable"]
     assert [one["column"] for one in found] == ([text.index(name) + 1] if name else [])
-    assert all(f'"{name}" is there in a handler only' in one["message"] for one in found)
+    assert all(f'"{name}" exists only in handlers' in one["message"] for one in found)
 
 
 @pytest.mark.parametrize(

@@ -155,7 +155,7 @@ def test_u5_an_expression_that_may_name_any_event_is_told() -> None:
     parts = {"field": CHOOSES.format("x"), "document": GOES.format("z")}
     _, problems = read(reaching(**parts))
     (problem,) = [one for one in problems if one.severity == "error"]
-    told = 'reaches it by the event "z", which the expression "x" may name; it cannot stand'
+    told = 'reaches it by the event "z", which the expression "x" may name; it is not allowed'
     assert told in problem.message
     assert "as a text, x ? 'this' : 'that', or leave the <iu> with <goto> first." in problem.remedy
 
@@ -166,19 +166,19 @@ def test_u5_an_expression_that_may_name_any_event_is_told() -> None:
         (
             {"field": '<filled><throw event="x"/></filled>', "document": GOES.format("x")},
             "<topological-move> leaves the user, and the unit in line 2 reaches it by the event"
-            ' "x"; it cannot stand in a unit. Handle "x" in the <iu> as well,'
+            ' "x"; it is not allowed in a unit. Handle "x" in the <iu> as well,'
             " or leave the <iu> with <goto> first.",
         ),
         (
             {"form": "<noinput><tracking-human/></noinput>"},
             "<tracking-human> works in a feedback loop, and the unit in line 2 reaches it by the"
-            ' event "noinput"; it cannot stand',
+            ' event "noinput"; it is not allowed',
         ),
         (
             {"form": '<filled><topological-move to="hall"/></filled>'},
-            "and the unit in line 2 reaches it; it cannot stand in a unit. Leave the <iu> with",
+            "and the unit in line 2 reaches it; it is not allowed in a unit. Leave the <iu> with",
         ),
-        ({"field": GOES.format("touch")}, "<topological-move> leaves the user; it cannot stand"),
+        ({"field": GOES.format("touch")}, "<topological-move> leaves the user; it is not allowed"),
     ],
 )
 def test_u5_no_command_that_a_unit_reaches_leaves_the_user(

@@ -368,7 +368,7 @@ def test_so_is_the_time_that_a_run_waits(
     ("path", "why"),
     [
         ("/round", "it is moved more than 5 times"),
-        ("/file", "file:///secret.xml is no address of the web"),
+        ("/file", "file:///secret.xml is not an http or https URI"),
         ("/large", "it is larger than 2 MB"),
         ("/bomb", "the host sends it compressed, as gzip"),
     ],

@@ -141,7 +141,7 @@ def test_explain_lists_all_codes() -> None:
 def test_explain_shows_the_wrong_example_the_message_and_the_right_one() -> None:
     told = prima("explain", "misplaced-element", cwd=ROOT)
     assert told.returncode == 0
-    assert "wrong.xml:3:5: error: <speak> cannot stand in <form>. Put it into a <block>." in (
+    assert "wrong.xml:3:5: error: <speak> is not allowed in <form>. Put it into a <block>." in (
         told.stdout
     )
     assert "    3 |     <speak>Hello.</speak>\n      |     ^~~~~~\n" in told.stdout

@@ -83,7 +83,7 @@ def test_what_is_thrown_is_told_within_the_limits(way: str) -> None:
 @pytest.mark.parametrize(
     ("thrown", "told"),
     [
-        ("{a: 1}", "it threw an object that is no Error"),
+        ("{a: 1}", "it threw an object that is not an Error"),
         ("Object.create(null)", "it threw a value that cannot be shown"),
         ("null", "it threw null, or used too much memory"),
     ],

@@ -98,7 +98,7 @@ def test_nobody_has_a_process_where_all_is_trusted() -> None:
 
 
 def test_an_unknown_isolation_is_refused() -> None:
-    with pytest.raises(ValueError, match='"some" is none of ea, all, none'):
+    with pytest.raises(ValueError, match='"some" is not one of ea, all, none'):
         Engines("some")
 
 

@@ -60,7 +60,7 @@ LOUD = app(
 @pytest.mark.parametrize(
     ("said", "kind", "told"),
     [
-        ("", "ea", "but this scenario does not say so: it runs as an EA."),
+        ("", "ea", "but this scenario does not: it runs as an EA."),
         ('kind="ea"', "ea", "but this scenario says EA: it runs as an EA."),
         ('kind="fa"', "fa", ""),
     ],

@@ -388,7 +388,7 @@ def test_what_a_foreach_cannot_hold_is_told_by_where_it_stands() -> None:
     (problem,) = check_page(
         f"<form><block><prompt>{EACH}<log>x</log></foreach></prompt></block></form>"
     )
-    assert problem.message == "<log> cannot stand in a <foreach> of a prompt."
+    assert problem.message == "<log> is not allowed in a <foreach> of a prompt."
     assert "foreach" not in problem.remedy
 
 

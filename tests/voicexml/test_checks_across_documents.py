@@ -37,7 +37,7 @@ def test_grammars_in_files_that_a_page_names_are_checked(tmp_path: Path) -> None
     done = prima("validate", "page.vxml", "--format", "short", cwd=tmp_path)
     assert [line.partition(" W")[0] for line in done.stdout.splitlines()] == [
         'g/tags.gram:6:3: warning: The tag uses "nope", which nothing in the grammar declares:'
-        " what needs it is not taken. For the text itself write 'nope' in quotes."
+        " answers that need it do not match. For the text itself write 'nope' in quotes."
         " [undeclared-variable]",
         'page.vxml:3:15: warning: The grammar "g/towns.gram" names no root rule.'
         " Name a rule: #name.",

@@ -25,7 +25,7 @@ from tests.helpers.voice import vxml
         ("<block/><filled/>", "misplaced-element", "beside the <p:iu>, with a namelist"),
         ("<block/><var name='v'/>", "misplaced-element", "Write it into the form, beside"),
         ("<subdialog src='#a'/><block/>", "misplaced-element", "Write it into the form, beside"),
-        ("<p:iu><block/></p:iu><block/>", "misplaced-element", "<p:iu> cannot stand in a <p:iu>"),
+        ("<p:iu><block/></p:iu><block/>", "misplaced-element", "<p:iu> is not allowed in a <p:iu>"),
         ("<blok/><block/>", "misplaced-element", "It holds <block>, <field>, <initial> or"),
         ("<field name='x' tipe='a'/>", "unknown-attribute", '"type"'),
         ("<field name='x'/><field name='x'/>", "duplicate-name", 'the name "x"'),
@@ -52,7 +52,7 @@ def test_wrong_attributes_of_units_are_told(attributes: str, code: str) -> None:
 
 def test_a_unit_stands_in_a_form_or_around_commands() -> None:
     [problem] = problems_of(vxml(f"<menu {P}><choice next='#a'>a</choice><p:iu/></menu>"))[:1]
-    assert problem.message == "<p:iu> cannot stand in <menu>."
+    assert problem.message == "<p:iu> is not allowed in <menu>."
     assert "around the items of a <form>" in problem.remedy
 
 
@@ -95,7 +95,7 @@ def test_a_command_wanted_now_stands_first(arranging: str) -> None:
     assert told("<p:stop-moving/><p:speak>a</p:speak>") == []
     [problem] = told("<p:speak>a</p:speak><p:stop-moving/>")
     assert problem.startswith(
-        "now-inside <p:stop-moving> is wanted now; it cannot stand in a <p:par>"
+        "now-inside <p:stop-moving> is wanted now; it is not allowed in a <p:par>"
     )
 
 

@@ -171,8 +171,8 @@ def test_without_a_folder_the_document_s_own_is_served(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("attributes", "code", "message"),
     [
-        ('uri="app/main.vxml"', "bad-value", '"app/main.vxml" is no URI of a document.'),
-        ('uri="https://e.example/a?b"', "bad-value", "is no URI of a document."),
+        ('uri="app/main.vxml"', "bad-value", '"app/main.vxml" is not the URI of a document.'),
+        ('uri="https://e.example/a?b"', "bad-value", "is not the URI of a document."),
         ('uri="https://e.example/x.vxml" folder="site"', "bad-value", "does not end as the"),
         ('uri="https://e.example/main.vxml" folder="other"', "bad-value", "is not in the folder"),
         ('folder="site"', "missing-attribute", 'A folder is served at a "uri".'),

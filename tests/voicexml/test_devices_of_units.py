@@ -135,19 +135,22 @@ def test_a_unit_owns_what_an_answer_for_another_item_leads_to() -> None:
         (
             {"field": '<filled><throw event="x"/></filled>', "outer": GOES.format("x")},
             "<p:topological-move> leaves the user, and the unit in line 3 reaches it by the event"
-            ' "x"; it cannot stand in a unit. Handle "x" in the <p:iu> as well,'
+            ' "x"; it is not allowed in a unit. Handle "x" in the <p:iu> as well,'
             " or leave the <p:iu> with <goto> first.",
         ),
         (
             {"form": "<noinput><p:tracking-human/></noinput>"},
             "<p:tracking-human> works in a feedback loop, and the unit in line 3 reaches it by the"
-            ' event "noinput"; it cannot stand',
+            ' event "noinput"; it is not allowed',
         ),
         (
             {"form": '<filled><p:topological-move to="hall"/></filled>'},
-            "and the unit in line 3 reaches it; it cannot stand in a unit. Leave the <p:iu> with",
+            "and the unit in line 3 reaches it; it is not allowed in a unit. Leave the <p:iu> with",
         ),
-        ({"field": GOES.format("touch")}, "<p:topological-move> leaves the user; it cannot stand"),
+        (
+            {"field": GOES.format("touch")},
+            "<p:topological-move> leaves the user; it is not allowed",
+        ),
         ({"content": '<p:topological-move to="hall"/>'}, "Move it out of the <p:iu>."),
     ],
 )

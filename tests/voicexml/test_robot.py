@@ -145,7 +145,7 @@ def problems_of(body: str) -> list[Problem]:
         ("<p:iu><p:par><p:tracking-human/></p:par></p:iu>", "not-in-unit", "feedback loop"),
         ("<p:par/>", "empty", "holds no Command"),
         ("<p:par><prompt>Hm.</prompt></p:par>", "misplaced-element", "Write what is said as"),
-        ("<p:par><p:par/></p:par>", "misplaced-element", "cannot stand in <p:par>"),
+        ("<p:par><p:par/></p:par>", "misplaced-element", "is not allowed in <p:par>"),
         ("<p:par>Hm.</p:par>", "stray-text", "Write it into a <p:speak>"),
         ("<p:iu longer='2s'><p:speak>a</p:speak></p:iu>", "unknown-attribute", '"longest"'),
         ("<p:iu longest='2'><p:speak>a</p:speak></p:iu>", "bad-value", "2"),

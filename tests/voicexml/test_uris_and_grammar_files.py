@@ -72,6 +72,6 @@ def test_a_scope_in_a_grammar_s_file_is_warned_of(tmp_path: Path) -> None:
     )
     [told] = validate([path])
     assert str(told) == (
-        f"{path}:1:96: warning: scope says nothing in a grammar's file. Write it where VoiceXML"
+        f"{path}:1:96: warning: scope has no effect in a grammar's file. Write it where VoiceXML"
         " names the file. [unknown-attribute]"
     )

@@ -79,7 +79,7 @@ ENDLESS = Diagnosis(
 
 TOLD_TWICE = Diagnosis(
     "told-twice",
-    "Told twice",
+    "Said twice",
     (
         "An event may come while a state says or asks something, and its handler leads back "
         "to the beginning of that state, directly or by way of others, of subdialogs that ask "

@@ -21,21 +21,21 @@ IDLE_HINT = Diagnosis(
     "Hint without effect",
     "A hint that can never have an effect: hold-for without stream, or a stream held in a state"
     " that handles no event to wait for, or that asks for no Command, or the time of a reaction"
-    " that is none.",
+    " on something that is not one.",
     rule="X3, X4, X8",
     severity="warning",
 )
-NOTHING_HELD = IDLE_HINT.says("hold-for says how long, but nothing is held.", 'Add stream="hold".')
+NOTHING_HELD = IDLE_HINT.says("hold-for has no effect: no stream is held.", 'Add stream="hold".')
 NO_EVENT = IDLE_HINT.says(
-    "The stream is held, but there is no event to wait for here.",
+    "The stream is held, but no event is waited for here.",
     'Handle the event with <on event="...">.',
 )
 NO_WORD = IDLE_HINT.says(
-    "The robot is to turn to the user before its first word, but says none here.",
+    "The robot is to turn to the user before its first word, but never speaks here.",
     "Remove the hint.",
 )
 NO_REACTION = IDLE_HINT.says(
-    "fresh-for says for how long a reaction is worth starting, but what is done here is none.",
+    "fresh-for limits how long a reaction is worth starting, but this is not a reaction.",
     "Remove the hint.",
 )
 HOLD_PRICE = Diagnosis(

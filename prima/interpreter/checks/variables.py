@@ -39,7 +39,7 @@ ABSENT = {
 NOT_DECLARED = UNDECLARED_VARIABLE.says('The variable "{name}" is not declared.')
 NO_FUNCTION = UNDECLARED_VARIABLE.says('There is no function "{name}".', "Define it in a <script>.")
 NO_EVENT_HERE = UNDECLARED_VARIABLE.says(
-    'No event is handled here: "{name}" is there in a handler only.',
+    'No event is handled here: "{name}" exists only in handlers.',
     "Keep what you need of it in a variable: the handler can <assign> it.",
 )
 NO_PART = UNDECLARED_VARIABLE.says(
@@ -52,7 +52,7 @@ NO_SENSOR = UNDECLARED_VARIABLE.says(
     severity="warning",
 )
 IN_SCRIPT = UNDECLARED_VARIABLE.says(
-    'The script uses "{name}", which nothing declares.', severity="warning"
+    'The script uses "{name}", which is not declared.', severity="warning"
 )
 
 

@@ -18,14 +18,14 @@ from prima.voicexml.vocabulary import COMMANDS, HOLDING, PRIMA_NAMESPACE, VOICEX
 
 UNKNOWN_COMMAND = UNKNOWN_ELEMENT.says("PRIMA has no Command <{tag}>.")
 NOT_HERE = MISPLACED_ELEMENT.says(
-    "A Command cannot stand in <{parent}>.", "It may stand in a prompt or among executable content."
+    "A Command is not allowed in <{parent}>.", "It is allowed in prompts and executable content."
 )
 ARRANGING_NOT_HERE = MISPLACED_ELEMENT.says(
-    "<p:{tag}> cannot stand in <{parent}>: it is around Commands.", NOT_HERE.remedy
+    "<p:{tag}> is not allowed in <{parent}>: it is around Commands.", NOT_HERE.remedy
 )
 UNIT_NOT_HERE = MISPLACED_ELEMENT.says(
-    "<p:iu> cannot stand in <{parent}>.",
-    "It stands around Commands in content, or around the items of a <form>.",
+    "<p:iu> is not allowed in <{parent}>.",
+    "Write it around Commands in content, or around the items of a <form>.",
 )
 NO_ATTRIBUTE = UNKNOWN_ATTRIBUTE.says('<{tag}> has no attribute "{name}".')
 NO_COMMAND = UNSUPPORTED_COMMAND.says('This robot has no Command "{command}".')

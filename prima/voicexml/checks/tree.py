@@ -45,7 +45,9 @@ IGNORED = WRONG_NAMESPACE.says(
     '<{tag}> is of another namespace, "{namespace}".', "It is ignored.", "warning"
 )
 UNKNOWN_HERE = UNKNOWN_ELEMENT.says("There is no <{tag}> in VoiceXML.")
-NOT_HERE = MISPLACED_ELEMENT.says("<{tag}> cannot stand in {holder}.", "It may stand in {others}.")
+NOT_HERE = MISPLACED_ELEMENT.says(
+    "<{tag}> is not allowed in {holder}.", "It is allowed in {others}."
+)
 
 
 def check_tree(root: Node) -> list[Problem]:
