@@ -49,8 +49,7 @@ def stage(
     demo = documents_folder()
     place = str(world or demo / "worlds" / "room.xml")
     body = str(robot or demo / "robots" / "papero.xml")
-    said = [says] if isinstance(says, str) else says
-    inside = f"{_standing(place)}{_applications(given, maps)}{_answers(said)}"
+    inside = f"{_standing(place)}{_applications(given, maps)}{_answers(says)}"
     try:
         loaded = load_whole(path_of(STAGE), _scenario(place, body, entrances, inside))
     except DocumentError as error:
@@ -58,13 +57,13 @@ def stage(
         if "duplicate-id" in own:
             _refuse_same_id(given)
         raise
-    problems = [one for one in loaded.problems if one.code != "other-kind"]
-    loaded.problems = sorted([*problems, *_other_kinds(given, loaded)])
+    loaded.problems = sorted(_problems(given, loaded))
     return without_ignored(loaded)
 
 
-def _other_kinds(given: list[tuple[str, str]], loaded: Loaded) -> Iterator[Problem]:
-    """Documents of another kind than their options."""
+def _problems(given: list[tuple[str, str]], loaded: Loaded) -> Iterator[Problem]:
+    """All problems; documents of another kind than their options are reported at these."""
+    yield from (one for one in loaded.problems if one.code != "other-kind")
     for (kind, _), document in zip(given, loaded.cast.documents, strict=False):
         own, place = document.node.get("kind"), document.node.attribute_place("kind")
         remedy = f'Name it with --{own}, or write kind="{kind}".'
@@ -93,10 +92,11 @@ def _applications(given: list[tuple[str, str]], maps: Iterable[str]) -> str:
     )
 
 
-def _answers(says: Iterable[str]) -> str:
+def _answers(says: str | Iterable[str]) -> str:
     """What the user says to the questions, one after the other."""
     from html import escape
 
+    said = [says] if isinstance(says, str) else says
     return "".join(
         f'<when asked="" count="{number}" after="1s"><say>{escape(text)}</say></when>'
         for number, text in enumerate(says, 1)

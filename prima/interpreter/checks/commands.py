@@ -43,16 +43,16 @@ def check_texts(facts: Facts) -> Iterator[Problem]:
         for command in run_commands(run.steps):
             yield from _literal(facts, command.node, command.text, form)
     for form, items in facts.forms:
-        for item in items:
-            for prompt in item.prompts if isinstance(item, Field) else ():
-                if not (prompt.text or prompt.timeout or prompt.bargein is not None):
-                    yield from _silent(prompt)
+        for field in (item for item in items if isinstance(item, Field)):
+            for prompt in field.prompts:
+                yield from _silent(prompt)
                 yield from _literal(facts, prompt.node, prompt.text, form)
 
 
 def _silent(prompt: Prompt) -> Iterator[Problem]:
     """A prompt without a text; behind another, it is how a question is asked again in silence."""
-    if prompt.count == 1:
+    says = prompt.text or prompt.timeout or prompt.bargein is not None
+    if prompt.count == 1 and not says:
         yield ASKS_NOTHING.at(prompt.node.place)
 
 

@@ -71,8 +71,13 @@ def check_reachable(facts: Facts) -> Iterator[Problem]:
         elif name not in left:
             diagnosis = DEAD_END_INSIDE if name in inside else DEAD_END
             yield diagnosis.at(form.node.place_of("id"), form=name)
+    yield from _returning(facts, reached - inside)
+
+
+def _returning(facts: Facts, uncalled: set[str]) -> Iterator[Problem]:
+    """Returns from forms that no subdialog calls."""
     for holder, act in facts.acts.of(Return):
-        if holder is not None and holder.id in reached - inside:
+        if holder is not None and holder.id in uncalled:
             yield NO_CALLER.at(act.node.place, form=holder.id)
 
 
