@@ -99,7 +99,7 @@ def _answers(says: str | Iterable[str]) -> str:
     said = [says] if isinstance(says, str) else says
     return "".join(
         f'<when asked="" count="{number}" after="1s"><say>{escape(text)}</say></when>'
-        for number, text in enumerate(says, 1)
+        for number, text in enumerate(said, 1)
         if text.strip()
     )
 
