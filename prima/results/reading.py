@@ -161,7 +161,7 @@ def _read_csv(path: Path) -> tuple[dict[str, list[Any]], str]:
         if len(head) > MOST_COLUMNS:
             raise ValueError(f"it has {len(head)} columns, and {MOST_COLUMNS} are read at most")
         if len(head) == 1 and ";" in head[0]:
-            raise ValueError("its cells stand between ';'; save it with ',' between them")
+            raise ValueError("its cells are separated by ';'; save it with ','")
         _check_head(head)
         columns: list[list[str]] = [[] for _ in head]
         last: tuple[int, list[str]] | None = None

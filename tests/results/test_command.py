@@ -81,7 +81,7 @@ WRONG = [
     (HEAD.replace("order", "ordre") + ROW, 'it has no column "order". Did you mean "ordre"?'),
     (HEAD.replace(",seconds", "") + ROW.replace(",1.5", ""), "it has no column of a measure"),
     (HEAD.replace(",seed", ",run") + ROW, 'it has two columns "run"'),
-    ((HEAD + ROW).replace(",", ";"), "its cells stand between ';'; save it with ',' between them"),
+    ((HEAD + ROW).replace(",", ";"), "its cells are separated by ';'; save it with ','"),
     (HEAD + "1,2\r\n" + ROW, "line 2 has 2 cells, and its head has 11"),
     (HEAD + ROW.replace("1.5", "long"), 'row 1, column "seconds": "long" is no number'),
     (HEAD + ROW.replace("1.5", "1e300"), "or too large a one; mend the table."),
