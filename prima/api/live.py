@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from prima.api.rehearsing import Sink, check_isolate, check_numbers, fetcher
+from prima.api.rehearsing import Sink, check_numbers, fetcher
 from prima.api.transcripts import Transcript
 from prima.errors import UsageError
 from prima.language.values import LONGEST_MS
@@ -140,22 +140,12 @@ def run_live(
     )  # fmt: skip
     check_numbers(bound=bound)
     check_numbers(0, patience=patience, until=until, late=late)
-    check_isolate(isolate)
     if not 0 < speed <= FASTEST:
         raise UsageError(f"The speed is {speed:g}: write a number above 0, up to {FASTEST:g}.")
     web = fetcher(hosts, len(chosen.fas) + len(chosen.eas) + 1)
+    named = tuple(paths_of(drivers))
     settings = LiveSettings(
-        policy,
-        bound,
-        patience,
-        isolate,
-        speed,
-        until,
-        sync,
-        late,
-        redact,
-        tuple(paths_of(drivers)),
-        web,
+        policy, bound, patience, isolate, speed, until, sync, late, redact, named, web
     )
     given = [None if path is None else str(path) for path in (output, resume)]
     visit = prepared(chosen, settings, *given)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from prima.api.transcripts import Transcript, rows_of
-from prima.errors import UsageError, one_of
+from prima.errors import UsageError
 from prima.loading import Loaded, load_scenario, seeded
 from prima.loading.heads import chosen_policy, run_record
 
@@ -74,7 +74,6 @@ def rehearse(
 
     check_numbers(bound=bound)
     check_numbers(0, patience=patience, seed=seed)
-    check_isolate(isolate)
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
     loaded = seeded(loaded, seed)
     cast = loaded.cast
@@ -169,15 +168,3 @@ def check_numbers(least: int = 1, **given: int | None) -> None:
     for name, number in given.items():
         if number is not None and (type(number) is not int or number < least):
             raise UsageError(f"{name}={number!r}: write a whole number from {least}.")
-
-
-def check_isolate(isolate: str) -> None:
-    """Refuse an unknown word for which scripts run in a process of their own.
-
-    Raises:
-        UsageError: it is one.
-    """
-    from prima.script.isolated import ISOLATIONS
-
-    if isolate not in ISOLATIONS:
-        raise UsageError(f'isolate="{isolate}": write {one_of(ISOLATIONS)}.')

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from prima.api.rehearsing import check_isolate, check_numbers
+from prima.api.rehearsing import check_numbers
 from prima.errors import UsageError
 from prima.experiments.cluster import pool_of
 from prima.experiments.explore import Exploration, ExplorationPlan
@@ -17,6 +17,7 @@ from prima.experiments.studyfile import Level, levels_text, question_of
 from prima.experiments.sweep import Output, Sweep
 from prima.experiments.table import arrow_table
 from prima.messages import Json
+from prima.script.isolated import check_isolation
 
 if TYPE_CHECKING:
     import pyarrow
@@ -68,7 +69,7 @@ def sweep(
     check_numbers(seeds=seeds, runs=runs, workers=workers, bound=bound)
     check_numbers(0, patience=patience)
     if isolate is not None:
-        check_isolate(isolate)
+        check_isolation(isolate)
     question = question_of(
         _names(scenarios),
         {path: levels_text(levels) for path, levels in (vary or {}).items()},
@@ -123,7 +124,7 @@ def explore(
     """
     check_numbers(within=within, depth=depth, runs=runs, workers=workers)
     check_numbers(0, step=step)
-    check_isolate(isolate)
+    check_isolation(isolate)
     moves = (moves,) if isinstance(moves, str) else moves
     plan = ExplorationPlan(
         os.fspath(scenario), tuple(moves), within, depth, step, runs, policy, isolate

@@ -239,7 +239,7 @@ def make_drivers(robot: Profile, site: Map, files: Iterable[str]) -> list[Driver
     """The drivers of a robot's document.
 
     Raises:
-        UsageError: the document names none, or one that does not exist.
+        UsageError: the document has no driver, or an unknown one.
     """
     if not robot.drivers:
         hint = 'Write <driver kind="..."/> in it, as docs/live.md shows.'

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
+from prima.errors import UsageError, one_of
 from prima.messages import Json
 from prima.script import worker
 from prima.script.ecmascript import UNDEFINED
@@ -179,6 +180,16 @@ class AbsentEngine:
         raise EngineLost(self.lost)
 
 
+def check_isolation(isolate: str) -> None:
+    """Refuse an unknown isolation.
+
+    Raises:
+        UsageError: it is not one of :data:`ISOLATIONS`.
+    """
+    if isolate not in ISOLATIONS:
+        raise UsageError(f'isolate="{isolate}": write {one_of(ISOLATIONS)}.')
+
+
 class Engines:
     """The engines of one run's applications, each in the process where its code may run.
 
@@ -192,8 +203,7 @@ class Engines:
         """The processes, by application; the one shared by FAs under the empty name."""
         self._absent = ""
         """Why the next application has no engine."""
-        if isolate not in ISOLATIONS:
-            raise ValueError(f'"{isolate}" is not one of {", ".join(ISOLATIONS)}')
+        check_isolation(isolate)
 
     def engine(self, name: str, kind: str, scopes: tuple[str, ...] = SCOPES) -> AnyEngine:
         """A new engine for an application, by its name and kind (``fa`` or ``ea``).

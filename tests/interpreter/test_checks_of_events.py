@@ -4,10 +4,18 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from tests.helpers.here import prima
+
+
+def problems(folder: Path, text: str, code: str) -> list[dict[str, Any]]:
+    """The problems of a document that have a code, as ``prima validate`` reports them."""
+    (folder / "a.xml").write_text(text)
+    done = prima("validate", "a.xml", "--format", "json", cwd=folder)
+    return [one for one in json.loads(done.stdout) if one["code"] == code]
 
 
 @pytest.mark.parametrize(
@@ -28,10 +36,7 @@ from tests.helpers.here import prima
 )  # fmt: skip
 def test_an_event_is_known_in_its_handlers_alone(content: str, name: str, tmp_path: Path) -> None:
     text = f'<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a">{content}</prima>'
-    (tmp_path / "a.xml").write_text(text)
-    done = prima("validate", "a.xml", "--format", "json", cwd=tmp_path)
-    found = json.loads(done.stdout)
-    found = [one for one in found if one["code"] == "undeclared-variable"]
+    found = problems(tmp_path, text, "undeclared-variable")
     assert [one["column"] for one in found] == ([text.index(name) + 1] if name else [])
     assert all(f'"{name}" exists only in handlers' in one["message"] for one in found)
 
@@ -53,9 +58,7 @@ def test_an_event_has_three_parts(code: str, says: str, tmp_path: Path) -> None:
         '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a"><form id="m">'
         f'<on event="message"><log expr="{code}"/></on></form></prima>'
     )
-    (tmp_path / "a.xml").write_text(text)
-    done = prima("validate", "a.xml", "--format", "json", cwd=tmp_path)
-    found = [one for one in json.loads(done.stdout) if one["code"] == "undeclared-variable"]
+    found = problems(tmp_path, text, "undeclared-variable")
     assert [(one["severity"], one["remedy"]) for one in found] == [("warning", says)] * bool(says)
 
 
@@ -76,7 +79,5 @@ def test_a_prompt_that_asks_nothing_is_told(prompts: str, told: int, tmp_path: P
         '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a"><form id="m">'
         f'<field name="x" type="text">{prompts}<noinput><exit/></noinput></field></form></prima>'
     )
-    (tmp_path / "a.xml").write_text(text)
-    done = prima("validate", "a.xml", "--format", "json", cwd=tmp_path)
-    found = [one for one in json.loads(done.stdout) if one["code"] == "nothing-to-say"]
+    found = problems(tmp_path, text, "nothing-to-say")
     assert [one["severity"] for one in found] == ["warning"] * told

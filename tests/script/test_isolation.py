@@ -9,6 +9,7 @@ import time
 
 import pytest
 
+from prima.errors import UsageError
 from prima.script import host, shared, worker
 from prima.script.evaluation import SCOPES, EngineLost, ScriptError
 from prima.script.isolated import Engines, IsolatedEngine
@@ -98,7 +99,7 @@ def test_nobody_has_a_process_where_all_is_trusted() -> None:
 
 
 def test_an_unknown_isolation_is_refused() -> None:
-    with pytest.raises(ValueError, match='"some" is not one of ea, all, none'):
+    with pytest.raises(UsageError, match='isolate="some": write'):
         Engines("some")
 
 

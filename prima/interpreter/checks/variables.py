@@ -20,7 +20,7 @@ from prima.script.known import Known, NameScope
 from prima.script.names import Names, expression_names, script_names
 
 PART = re.compile(r"(\s*\??\.\s*)([\w$]++)(?!\s*\()")
-"""What stands behind ``event`` where a part of it is asked for; a call asks for none."""
+"""Matches a property of ``event`` after its name, but not a method call."""
 PARTS = ("name", "message", "data")
 CALL = re.compile(r"\s*\(")
 SCOPED = ("document", "dialog", "application")
@@ -62,7 +62,7 @@ def place_in(expr: Expression, characters: int) -> Place:
 
 
 def _parts_of_event(expr: Expression, names: Names, known: Known) -> Iterator[Problem]:
-    """Parts that code asks an event for and that no event has."""
+    """Properties of ``event`` that no event has."""
     if "event" in known:
         return
     for use in names.uses:
