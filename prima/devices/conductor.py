@@ -34,6 +34,7 @@ from prima.devices.settings import FOREVER, DriverLimits
 from prima.devices.speech import SpeechMarks, Utterance
 from prima.devices.tasks import Goal, OpenGoals, Task
 from prima.messages import Command, Data, Ended, Failed, Inbound, Json, Listening, Order
+from prima.messages.times import earliest
 
 NO_RESOURCE = "error.noresource"
 """The outcome of a question whose answer cannot be recorded (VoiceXML 2.0, 5.2.6)."""
@@ -218,13 +219,13 @@ class Conductor:
     def due(self, visible: bool) -> int | None:
         """When the next report is due (ms), if known."""
         now = self._now
-        due = [task.ends for task in self.tasks.values() if task.ends and task.ends > now]
-        late = (goal.late(self._limits(goal.begin)) for goal in self._goals.open.values())
-        times = (self.sight.due(now, visible), self.ear.due(), *late)
-        due += [time for time in times if time is not None]
-        if self._inbound or any(task.failed for task in self.tasks.values()):
-            due.append(now + 1)
-        return min(due, default=None)
+        tasks = self.tasks.values()
+        ends = [task.ends for task in tasks if task.ends and task.ends > now]
+        late = [goal.late(self._limits(goal.begin)) for goal in self._goals.open.values()]
+        due = earliest(self.sight.due(now, visible), self.ear.due(), *ends, *late)
+        if self._inbound or any(task.failed for task in tasks):
+            due = earliest(due, now + 1)
+        return due
 
     def collect(self, now: int, visible: bool, where: Data) -> list[Inbound]:
         """What has to be reported to the session at ``now``.

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from prima.devices.goals import RecordingBounds
 from prima.messages import Command, Ended, Inbound
+from prima.messages.times import earliest
 
 
 @dataclass(slots=True)
@@ -123,8 +124,7 @@ class Ear:
 
     def due(self) -> int | None:
         """When the next question times out, if ever."""
-        ends = [one.until for one in self.questions.values() if one.until is not None]
-        return min(ends, default=None)
+        return earliest(*(one.until for one in self.questions.values()))
 
     def unanswered(self, now: int, behavior: str) -> list[Inbound]:
         """The end of a question whose time for an answer is over, if any (V3, noinput)."""

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from prima.devices.protocol import Devices, earliest
+from prima.devices.protocol import Devices
 from prima.interpreter.bounds import ElementVisit
 from prima.messages import Record
+from prima.messages.times import earliest
 from prima.session import Session
 
 MAX_RECORDS = 500_000
@@ -63,7 +64,7 @@ class Loop:
             Its records, or None if there is no such instant: nothing is due by then, or
             ``outcome`` says why the run has ended.
         """
-        if self.over:
+        if self._ended and self.over:
             self.outcome = "over"
         due = None if self.outcome else self.due()
         if due is None or due > until:

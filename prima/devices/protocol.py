@@ -7,15 +7,6 @@ from typing import Protocol
 from prima.messages import Inbound, Order, Record
 
 
-def earliest(*times: int | None) -> int | None:
-    """The earliest of some times (ms), ignoring None; None if there is no other."""
-    first: int | None = None
-    for time in times:
-        if time is not None and (first is None or time < first):
-            first = time
-    return first
-
-
 class Devices(Protocol):
     """A robot with its surroundings, simulated or real. Times are ms from the run's start.
 

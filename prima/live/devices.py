@@ -31,7 +31,6 @@ from prima.devices.goals import (
     Stopped,
 )
 from prima.devices.profile import Profile
-from prima.devices.protocol import earliest
 from prima.devices.settings import DriverLimits
 from prima.grammar.answers import Answers
 from prima.live.carried import lacking, limits_of, route
@@ -40,6 +39,7 @@ from prima.live.driver import Driver
 from prima.live.journal import KnownAtCut
 from prima.live.speaking import UserSpeech
 from prima.messages import ApplicationLoaded, Emergency, Heard, Inbound, Order, Record, Sensed
+from prima.messages.times import earliest
 from prima.sim.entrances import Entrances
 
 T = TypeVar("T")

@@ -194,16 +194,16 @@ class Maker:
         """One AB for a Command (U1) or for a group of them (U4)."""
         self.serial += 1
         number = self._behaviors[app.name] = self._behaviors.get(app.name, 0) + 1
-        made = Behavior(
-            f"{app.name}#{number}", self.serial, app, stream, None, None, NO_DEVICES, now, state
-        )
-        made.run, made.unit = run, unit
+        name, serial = f"{app.name}#{number}", self.serial
         if isinstance(what, Group):
+            devices = group_devices(what, self.table)
+            made = Behavior(name, serial, app, stream, None, None, devices, now, state)
             made.group, made.inside = what, Inside()
-            made.devices = group_devices(what, self.table)
         else:
-            made.command, made.type = what, self.table[what.type]
-            made.devices = made.type.occupied(what.text)
+            row = self.table[what.type]
+            devices = row.occupied(what.text)
+            made = Behavior(name, serial, app, stream, row, what, devices, now, state)
+        made.run, made.unit = run, unit
         return made
 
     def spanning(self, app: Application, stream: Stream, asked: OpenUnit, now: int) -> Behavior:

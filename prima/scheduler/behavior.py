@@ -222,11 +222,24 @@ class Behavior:
     """When it will have run for too long (U5, E1), once it has started."""
     told: Record | None = None
     """The common fields of its records: see :mod:`prima.scheduler.recorder`."""
+    id: str = field(init=False)
+    """The AB's name in the transcript; a loop of a feedback Command has its number (U2)."""
+    feedback: bool = field(init=False)
+    """Whether the Command makes one loop after another (U2)."""
+    leaves: bool = field(init=False)
+    """Whether the AB leaves the user; an AB in a unit never does (K2)."""
+    engages: bool = field(init=False)
+    """Whether the AB engages the user (K1)."""
+    priority: int = field(init=False)
+    """1 (high) or 0 (low), by K2."""
 
-    @property
-    def id(self) -> str:
-        """The AB's name in the transcript; a loop of a feedback Command has its number (U2)."""
-        return f"{self.name}.{self.loop}" if self.loop else self.name
+    def __post_init__(self) -> None:
+        row = self.type
+        self.id = self.name
+        self.feedback = row is not None and row.feedback
+        self.leaves = row is not None and row.leaves
+        self.engages = row is not None and row.engages
+        self.priority = HIGH if row is None else row.priority
 
     @property
     def in_order(self) -> tuple[str, ...]:
@@ -234,29 +247,9 @@ class Behavior:
         return in_order(self.devices)
 
     @property
-    def feedback(self) -> bool:
-        """Whether the Command makes one loop after another (U2)."""
-        return self.type is not None and self.type.feedback
-
-    @property
-    def leaves(self) -> bool:
-        """Whether the AB leaves the user; an AB in a unit never does (K2)."""
-        return self.type is not None and self.type.leaves
-
-    @property
-    def engages(self) -> bool:
-        """Whether the AB engages the user (K1)."""
-        return self.type is not None and self.type.engages
-
-    @property
     def asks(self) -> bool:
         """Whether it is or contains a question, which lasts as long as the user thinks."""
         return "speech-recognition" in self.devices
-
-    @property
-    def priority(self) -> int:
-        """1 (high) or 0 (low), by K2."""
-        return HIGH if self.type is None else self.type.priority
 
     @property
     def motion(self) -> str:
@@ -294,6 +287,7 @@ class Behavior:
         if self.loop:
             self.parent = self.id
         self.loop += 1
+        self.id = f"{self.name}.{self.loop}"
 
     def meant(self) -> list[Behavior]:
         """The AB itself, or those in memory for which it was inserted (X1, X4, X9)."""

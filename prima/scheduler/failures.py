@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from prima.messages import Command, Notice
+from prima.messages.times import earliest
 from prima.scheduler.behavior import RUNNING, Behavior
 from prima.scheduler.endings import close_unit, delete, delete_rest, note_rolling, remove, silence
 from prima.scheduler.mediation import Mediation
@@ -57,15 +58,14 @@ def _unit_that_fails(mediation: Mediation, ab: Behavior, event: str, reason: str
 
 def deadline(mediation: Mediation) -> int | None:
     """When the next unit, device or awaited event is overdue (ms)."""
-    late = [ab.late for ab in mediation.memory.running.values() if ab.late is not None]
-    lapse = _lapse(mediation.memory, mediation.absence)
-    if lapse is not None:
-        late.append(lapse)
-    if mediation.starving is not None and not mediation.halted:
+    memory = mediation.memory
+    late = [ab.late for ab in memory.running.values()]
+    late += [_lapse(memory, mediation.absence), *mediation.holds.values()]
+    if not mediation.halted:
         late.append(mediation.starving)
-    if mediation.has("x8") and not mediation.halted:
-        late += [ab.stale for ab in mediation.memory.waiting.values() if ab.stale is not None]
-    return min((*late, *mediation.holds.values()), default=None)
+        if "x8" in mediation.extensions:
+            late += [ab.stale for ab in memory.waiting.values()]
+    return earliest(*late)
 
 
 def _lapse(memory: WorkingMemory, absence: int) -> int | None:
@@ -136,13 +136,19 @@ def allowance(ab: Behavior) -> int:
     """How long an AB may run (ms): the times among its arguments and :data:`HANG_MS`."""
     row, command = ab.type, ab.command
     assert row is not None and command is not None
-    durations = {name for name, one in row.arguments.items() if one.kind == "duration"}
-    stated = sum(int(value) for name, value in command.args.items() if name in durations)
-    return HANG_MS + stated + _saying_ms(command)
+    known = row.arguments
+    stated = [
+        int(value)
+        for name, value in command.args.items()
+        if name in known and known[name].kind == "duration"
+    ]
+    return HANG_MS + sum(stated) + _saying_ms(command)
 
 
 def _saying_ms(command: Command) -> int:
     """How long a text may take to say (ms): its letters at its slowest rate, and its cues."""
+    if not command.text and not command.cues:
+        return 0
     times = [cue.value for cue in command.cues if cue.kind != "rate"]
     rates = [float(cue.value or 1) for cue in command.cues if cue.kind == "rate"]
     letters = MS_A_LETTER * len(command.text or "") / min([1.0, *rates])

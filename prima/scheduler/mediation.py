@@ -92,9 +92,12 @@ class Mediation:
     halted_units: dict[str, HaltedUnit] = field(default_factory=dict)
     """By the part whose device has yet to report how much was done (X2)."""
     maker: Maker = field(init=False)
+    extensions: frozenset[str] = field(init=False)
+    """The policy's extensions that are on."""
 
     def __post_init__(self) -> None:
         self.maker = Maker(self.table)
+        self.extensions = self.policy.extensions
 
     @property
     def now(self) -> int:
@@ -111,10 +114,6 @@ class Mediation:
     def longest_turn(self) -> int:
         """How long (ms) one utterance or question may keep the speaker (E3, E6)."""
         return min(self.patience, LONGEST_TURN_MS) if self.shared else LONGEST_TURN_MS
-
-    def has(self, extension: str) -> bool:
-        """Whether an extension is on."""
-        return self.policy.has(extension)
 
     def tell(self, app: Application, stream: Stream | None, *notices: Notice) -> None:
         """Notify an application of what became of its Commands."""

@@ -56,7 +56,9 @@ class Policy:
 
     def ranked(self, found: Iterable[Behavior], memory: WorkingMemory, now: int) -> list[Ranked]:
         """Waiting ABs with their ranks, sorted; no two ranks are equal (S2f)."""
-        return sorted(((self.rank(ab, memory, now), ab) for ab in found), key=lambda one: one[0])
+        ranked = [(self.rank(ab, memory, now), ab) for ab in found]
+        ranked.sort(key=lambda one: one[0])
+        return ranked
 
     def decided(self, winner: Rank, loser: Rank) -> str:
         """The rule by which one rank precedes another; the last rule if they are equal."""
@@ -71,7 +73,7 @@ class Policy:
                 return None
             if (kept := rules.x7(ab, memory)) is not None:
                 return kept
-        if self.extensions and self.has("x5") and rules.x5(ab, memory):
+        if "x5" in self.extensions and rules.x5(ab, memory):
             return rules.k1(ab, memory)
         return rules.refusal(ab, memory)
 

@@ -20,7 +20,10 @@ def prepare(mediation: Mediation, ab: Behavior) -> bool:
 
 def x1(mediation: Mediation, ab: Behavior) -> bool:
     """X1: restore the robot's state on which a suspended stream relies."""
-    if not (ab.stream.suspended and mediation.has("x1")) or first_of(ab.stream) is not None:
+    if (
+        not (ab.stream.suspended and "x1" in mediation.extensions)
+        or first_of(ab.stream) is not None
+    ):
         return False
     own = ab.type.effects if ab.type is not None else frozenset()
     return insert(mediation, ab, ab.stream.effects.missing(own, mediation.robot), "X1")
@@ -28,7 +31,7 @@ def x1(mediation: Mediation, ab: Behavior) -> bool:
 
 def x4(mediation: Mediation, ab: Behavior) -> bool:
     """X4: face the user before a conversation begins."""
-    if not (ab.connect and mediation.has("x4")):
+    if not (ab.connect and "x4" in mediation.extensions):
         return False
     ab.connect = False
     return not mediation.memory.in_view and insert(mediation, ab, [Command("face-human")], "X4")
@@ -93,7 +96,7 @@ def join_first(mediation: Mediation) -> None:
 
     Commands with ``now`` do not: they wait for nothing of their own application (O2).
     """
-    if not (mediation.has("x1") or mediation.has("x9")):
+    if not ("x1" in mediation.extensions or "x9" in mediation.extensions):
         return
     for ab in list(mediation.memory.waiting.values()):
         first = None if ab.inserted else first_of(ab.stream)

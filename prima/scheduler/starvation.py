@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from prima.messages.times import earliest
 from prima.scheduler import rules
 from prima.scheduler.behavior import Behavior, application
 from prima.scheduler.mediation import Mediation
@@ -70,7 +71,7 @@ def note_waits(mediation: Mediation) -> None:
     if not (mediation.patience and mediation.policy.floor):
         return
     due = [_due(mediation, ab) for ab in mediation.memory.waiting.values()]
-    mediation.starving = min((time for time in due if time is not None), default=None)
+    mediation.starving = earliest(*due)
 
 
 def _due(mediation: Mediation, ab: Behavior) -> int | None:

@@ -35,6 +35,7 @@ from prima.messages import (
     Sensed,
     Transferred,
 )
+from prima.messages.times import earliest
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.policy import Policy
 from prima.scheduler.recorder import Recorder
@@ -136,9 +137,7 @@ class Session:
         """When :meth:`step` next has to be called, if anything is due."""
         if self._wiring.turns:
             return self.recorder.now + 1
-        due = min(self._wiring.due.values(), default=None)
-        late = self.mediator.deadline()
-        return late if due is None else due if late is None else min(due, late)
+        return earliest(self.mediator.deadline(), *self._wiring.due.values())
 
     def close(self) -> None:
         """End the processes in which code was evaluated: the session is over."""

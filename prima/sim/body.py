@@ -9,6 +9,7 @@ from prima.devices.goals import SAY, Again, Begin, Broke, Cancel, Done, Report, 
 from prima.devices.goals import Call as Told
 from prima.devices.profile import BRAKING_MS, POINTING_MS, Profile
 from prima.messages import Occurred
+from prima.messages.times import earliest
 from prima.sim.locomotion import Locomotion, LocomotionMemory
 from prima.sim.measuring import STANDING, OwnSensors
 from prima.sim.routes import Routes
@@ -236,7 +237,7 @@ class Body:
             for time in (one.ends, one.tick)
             if time and not (one.begin.kind == SAY and _behavior(one.begin) in moving)
         ]
-        return min(times, default=None)
+        return earliest(*times)
 
     @property
     def moves_on(self) -> bool:
@@ -276,7 +277,7 @@ class Body:
         if kind in ("set-speed-and-time", "stop-moving"):
             self._stand(effort)
         if kind == "move-head":
-            self.world.pan = float(effort.begin.command.args["pan"])
+            self.world.turn_head(float(effort.begin.command.args["pan"]))
         data = self.world.pose() if "locomotion" in effort.begin.devices else {}
         if kind in self.profile.motions:
             data["strayed"] = round(effort.plan.strayed, 3)
@@ -309,10 +310,9 @@ class Body:
 
     def corners(self) -> list[Occurred]:
         """The events of corners that the body has come near."""
-        return [
-            Occurred(corner.event, "environment", {"corner": corner.id})
-            for corner in self.world.corners()
-        ]
+        if not (near := self.world.corners()):
+            return []
+        return [Occurred(one.event, "environment", {"corner": one.id}) for one in near]
 
 
 def _behavior(begin: Begin) -> str:

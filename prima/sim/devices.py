@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from prima.devices.profile import Profile
-from prima.devices.protocol import earliest
 from prima.interpreter.elements import Document
 from prima.interpreter.sensors import sensors_read
 from prima.messages import ApplicationLoaded, Inbound, Order, Record
+from prima.messages.times import earliest
 from prima.session import AnyDocument
 from prima.sim.entrances import Crossing, Entrances
+from prima.sim.happenings import Doing
 from prima.sim.map import Area, Map
 from prima.sim.people import People
 from prima.sim.robot import Robot
@@ -62,9 +63,7 @@ class SimulatedDevices:
         """Whether any of the latest inbound values came from the user."""
         self._stirred = True
         """Whether anything but positions may have changed since the due time was computed."""
-        self._due: int | None = None
-        """The due time without the user's actions."""
-        self._standing: int | None = 0
+        self._standing: int | None = None
         """When something is due even if nothing moves, as computed by :meth:`due`."""
 
     @property
@@ -75,18 +74,18 @@ class SimulatedDevices:
     def due(self) -> int | None:
         """When there is next something to collect (ms), if ever."""
         if self._stirred:
-            self._stirred, self._due = False, self._due_standing()
-        self._standing = earliest(self._due, self.people.due())
+            self._stirred, self._standing = False, self._due_standing()
         if self.world.moving or self.robot.body.moves_on:
             return earliest(self._standing, self.world.time + STEP_MS)
         return self._standing
 
     def _due_standing(self) -> int | None:
-        """The same, ignoring motion and the user."""
+        """The same, ignoring motion."""
         return earliest(
             0 if self._entrances.unseen else None,
             self._loads[0][0] if self._loads else None,
             self.robot.due(),
+            self.people.due(),
             self.services.due(),
             self.telephone.due(),
         )
@@ -143,6 +142,11 @@ class SimulatedDevices:
         if self._said:
             self.robot.ear.listen_on(now)
         self.people.observe(now, records)
+
+    def play(self, time: int, doings: list[Doing]) -> Callable[[], bool]:
+        """Let the first person do something: see :meth:`People.play`."""
+        self._stirred = True
+        return self.people.play(time, doings)
 
     def _loaded(self, name: str, place: str = "") -> ApplicationLoaded:
         """An application starts; a VoiceXML application is given the user's call."""

@@ -38,10 +38,8 @@ class Area:
 
     def holds(self, point: Point, margin: float = 0.0) -> bool:
         """Whether a point lies inside, or outside by no more than a margin."""
-        return (
-            self.low[0] - margin <= point[0] <= self.high[0] + margin
-            and self.low[1] - margin <= point[1] <= self.high[1] + margin
-        )
+        (x, y), (west, south), (east, north) = point, self.low, self.high
+        return west - margin <= x <= east + margin and south - margin <= y <= north + margin
 
 
 @dataclass(slots=True)

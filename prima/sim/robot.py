@@ -5,8 +5,8 @@ from __future__ import annotations
 from prima.devices.conductor import Conductor
 from prima.devices.goals import Report
 from prima.devices.profile import Profile
-from prima.devices.protocol import earliest
 from prima.messages import Data, Inbound, Occurred, Order
+from prima.messages.times import earliest
 from prima.sim.body import Body
 from prima.sim.routes import Routes
 from prima.sim.world import World

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import atan2, cos, degrees, dist, pi, radians, sin
 
 import pymunk
 
@@ -26,13 +26,13 @@ FAR = 3.0
 EPSILON = 1e-6
 
 
-distance: Callable[[Point, Point], float] = math.dist
+distance: Callable[[Point, Point], float] = dist
 """Metres between two points."""
 
 
 def bearing(a: Point, b: Point) -> float:
     """The direction from one point to another, in degrees."""
-    return math.degrees(math.atan2(b[1] - a[1], b[0] - a[0]))
+    return degrees(atan2(b[1] - a[1], b[0] - a[0]))
 
 
 def difference(angle: float, other: float) -> float:
@@ -73,13 +73,13 @@ class World:
         self._space.add(self._body, shape)
         self._free: tuple[Point, float] = (at, -1.0)
         """A place, and how far (m) around it there is no wall."""
-        self._looked: tuple[object, ...] = ()
-        """The positions from and to which the camera last looked, and its direction."""
-        self._visible = False
-        self._place(at, math.radians(heading))
+        self._visible: bool | None = None
+        """What the camera sees from here, as computed; None if anybody has moved since."""
+        self._place(at, radians(heading))
         self.drive = (0.0, 0.0)
         """The wheels' speeds: metres a second forward, degrees a second to the left."""
         self.pan = 0.0
+        """Where the head points, from the front (degrees)."""
         self.people: dict[str, Somebody] = {}
         """The people present, by name."""
         self._attended = ""
@@ -93,7 +93,7 @@ class World:
         self.position = position
         """Where the robot is (m)."""
         self._angle = angle
-        self.heading = math.degrees(angle) % 360.0
+        self.heading = degrees(angle) % 360.0
         """Where the robot's front points (degrees)."""
 
     # The robot -----------------------------------------------------------------
@@ -103,12 +103,16 @@ class World:
         x, y = self.position
         return {"x": round(x, 3), "y": round(y, 3), "heading": round(self.heading, 1) % 360.0}
 
+    def turn_head(self, pan: float) -> None:
+        """Turn the head (degrees from the front)."""
+        self.pan, self._visible = pan, None
+
     # People --------------------------------------------------------------------
 
     def put(self, name: str, at: Point | None) -> None:
         """Add a person; if they are the only one, the robot attends to them from the start."""
         self.people[name] = Somebody(at)
-        self._attended = name if len(self.people) == 1 else ""
+        self._attend(name if len(self.people) == 1 else "")
 
     @property
     def person(self) -> Point | None:
@@ -118,7 +122,10 @@ class World:
     def attend(self, name: str) -> None:
         """Attend to a person who has spoken or touched the robot."""
         if self.people[name].at is not None:
-            self._attended = name
+            self._attend(name)
+
+    def _attend(self, name: str) -> None:
+        self._attended, self._visible = name, None
 
     def walk(self, name: str, to: Point | None, speed: float) -> None:
         """Send a person somewhere in a straight line; with None they stay."""
@@ -128,22 +135,28 @@ class World:
     def leave(self, name: str) -> None:
         """Let a person leave: the robot attends to the next of the others whom it sees."""
         self.people[name] = Somebody(None)
-        if name == self._attended and len(self.people) > 1:
-            self._attended = ""
+        away = name == self._attended and len(self.people) > 1
+        self._attend("" if away else self._attended)
 
     def people_within(self, reach: float) -> list[Point]:
         """The positions of people within a distance (m), nearest to the robot first."""
-        near: list[tuple[float, Point]] = []
-        for one in self.people.values():
-            if one.at is not None and (gap := distance(self.position, one.at)) <= reach:
-                near.append((gap, one.at))
-        near.sort(key=lambda one: one[0])
-        return [at for _, at in near]
+        here = self.position
+        near = [
+            one.at
+            for one in self.people.values()
+            if one.at is not None and distance(here, one.at) <= reach
+        ]
+        if len(near) > 1:
+            near.sort(key=lambda at: distance(here, at))
+        return near
 
     # Seeing --------------------------------------------------------------------
 
     def clear(self, a: Point, b: Point) -> bool:
         """Whether no wall is between two points; a line that begins in a wall may leave it."""
+        at, free = self._free
+        if distance(at, a) < free and distance(at, b) < free:
+            return True
         found = self._space.segment_query_first(a, b, 0.0, WALLS)
         if found is not None and found.alpha == 0.0:
             return not any(crosses((a, b), wall) for wall in self.map.walls)
@@ -167,7 +180,10 @@ class World:
 
     def beside_walls(self, heading: float) -> float:
         """The direction (degrees) closest to another that does not lead the body into a wall."""
-        near = self._space.point_query_nearest(self.position, self.profile.radius + ROOM, WALLS)
+        reach = self.profile.radius + ROOM
+        if not self._wall_within(reach):
+            return heading
+        near = self._space.point_query_nearest(self.position, reach, WALLS)
         if near is None:
             return heading
         wall = bearing(self.position, (near.point.x, near.point.y))
@@ -183,20 +199,11 @@ class World:
         If it attends to nobody, it begins to attend to the nearest person it sees. Visibility is
         recomputed only if somebody has moved or turned.
         """
-        looks = self._looks()
-        if looks != self._looked:
-            if not self._attended and len(self.people) > 1 and self.find_somebody():
-                looks = self._looks()
-            self._looked = looks
+        if self._visible is None:
+            if not self._attended and len(self.people) > 1:
+                self.find_somebody()
             self._visible = self._look(self.person)
         return self._visible
-
-    def _looks(self) -> tuple[object, ...]:
-        """The positions from and to which the camera looks, and its direction."""
-        view = (self.position, self.heading, self.pan, self._attended)
-        if self._attended:
-            return (*view, self.person)
-        return (*view, *(one.at for one in self.people.values()))
 
     def find_somebody(self) -> bool:
         """Whether the robot sees anybody; it attends to the nearest, unless it sees its own."""
@@ -208,7 +215,7 @@ class World:
             if one.at is not None and self._look(one.at)
         ]
         if seen:
-            self._attended = min(seen)[1]
+            self._attend(min(seen)[1])
         return bool(seen)
 
     def _look(self, person: Point | None) -> bool:
@@ -236,9 +243,10 @@ class World:
         self.time = to
 
     def _step(self, seconds: float) -> None:
+        self._visible = None
         forward, turning = self.drive
         if forward or turning:
-            self._move(forward, math.radians(turning), seconds)
+            self._move(forward, radians(turning), seconds)
         for somebody in self.people.values():
             if somebody.goal is not None and somebody.at is not None:
                 self._step_person(somebody, somebody.at, somebody.goal, seconds)
@@ -248,7 +256,7 @@ class World:
         near = self._wall_within(self.profile.radius + abs(forward) * seconds + 0.05)
         if near and forward and self._wall_ahead(forward, seconds):
             forward = 0.0
-        along, across = forward * math.cos(self._angle), forward * math.sin(self._angle)
+        along, across = forward * cos(self._angle), forward * sin(self._angle)
         if near:
             body = self._body
             body.position, body.angle = self.position, self._angle
@@ -265,9 +273,9 @@ class World:
         """Whether continuing would press the body against a wall."""
         reach = self.profile.radius * 0.3 + abs(forward) * seconds + 0.05
         thick = self.profile.radius * THICK
-        angle = self._angle if forward > 0 else self._angle + math.pi
+        angle = self._angle if forward > 0 else self._angle + pi
         x, y = self.position
-        ahead = (x + reach * math.cos(angle), y + reach * math.sin(angle))
+        ahead = (x + reach * cos(angle), y + reach * sin(angle))
         return self._space.segment_query_first((x, y), ahead, thick, WALLS) is not None
 
     def _wall_within(self, reach: float) -> bool:

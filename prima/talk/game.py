@@ -102,7 +102,7 @@ class Game:
         """The question that the user does not answer."""
         self._busy: Callable[[], bool] | None = None
         for line in self.lines:
-            self.rehearsal.devices.people.play(line.at, line.doings)
+            self.rehearsal.devices.play(line.at, line.doings)
 
     # State ------------------------------------------------------------------------
 
@@ -261,7 +261,7 @@ class Game:
         if self.over:
             self.rehearsal.outcome = ""  # what is put in again goes on
         self.lines.append(Played(at, line.xml, doings, self._last_row()))
-        self._busy = self.rehearsal.devices.people.play(at, doings)
+        self._busy = self.rehearsal.devices.play(at, doings)
         return at
 
     def _thinking(self) -> int:

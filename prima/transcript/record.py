@@ -37,10 +37,10 @@ class Entry:
     """
 
     def __init__(self, record: Record, time: float | None = None) -> None:
-        held = dict(record)
-        if None in held.values():
-            held = {name: value for name, value in held.items() if value is not None}
-        self.__dict__ = held
+        if None in record.values():
+            self.__dict__ = {name: one for name, one in record.items() if one is not None}
+        else:
+            self.__dict__ = dict(record)
         if time is not None:
             self.time = time
 

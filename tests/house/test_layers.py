@@ -39,7 +39,7 @@ LAYERS = [
 """Lowest first; parts of one layer do not know each other."""
 
 INSIDE = {
-    "messages": [{"commands"}, {"actions", "inbound", "orders"}, {"__init__"}],
+    "messages": [{"commands", "times"}, {"actions", "inbound", "orders"}, {"__init__"}],
     "api": [{"transcripts"}, {"rehearsing", "views"}, {"live"}, {"__init__"}],
     "scheduler": [
         {"robot_state"},

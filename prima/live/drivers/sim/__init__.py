@@ -18,12 +18,12 @@ from prima.devices.goals import (
     Stopped,
 )
 from prima.devices.profile import Profile
-from prima.devices.protocol import earliest
 from prima.devices.settings import DriverSettings
 from prima.errors import UsageError
 from prima.language.values import BadValue, read_value
 from prima.live.driver import Driver
 from prima.messages import Sensed
+from prima.messages.times import earliest
 from prima.sim.body import Body
 from prima.sim.map import Map
 from prima.sim.routes import Routes
