@@ -72,12 +72,18 @@ class Quiet:
         cast.scenario.whens.clear()
         self.rehearsal: Rehearsal = Rehearsal(cast, policy_named("prima"))
         self.seen: Counter[str] = Counter()
+        self.moves = 0
+        """How often bodies have moved."""
+        self.rehearsal.devices.world.moved = self._move
+
+    def _move(self) -> None:
+        self.moves += 1
 
     def until(self, time: int) -> int:
         """Let time pass; gives how many instants were computed."""
         from prima.transcript.lines import line
 
-        instants = 0
+        instants, moves = 0, self.moves
         with open(os.devnull, "w", encoding="utf-8") as nowhere:
             while (records := self.rehearsal.advance(time)) is not None:
                 instants += 1
@@ -85,11 +91,11 @@ class Quiet:
                     nowhere.write(line(record))
                     self.seen[told(record)] += 1
         check(not self.rehearsal.outcome, f"the run has ended: {self.rehearsal.outcome}")
-        return instants
+        return instants + self.moves - moves
 
     def come(self, time: int) -> None:
         """The user comes at that time."""
-        self.rehearsal.devices.people.play(time, self.visit)
+        self.rehearsal.devices.play(time, self.visit)
 
     def check(self, visits: int) -> None:
         """Whether every visit was seen and answered.

@@ -124,7 +124,7 @@ class Ear:
 
     def due(self) -> int | None:
         """When the next question times out, if ever."""
-        return earliest(*(one.until for one in self.questions.values()))
+        return earliest(None, *(one.until for one in self.questions.values()))
 
     def unanswered(self, now: int, behavior: str) -> list[Inbound]:
         """The end of a question whose time for an answer is over, if any (V3, noinput)."""

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 
 from prima.devices.protocol import Devices
 from prima.interpreter.bounds import ElementVisit
-from prima.messages import Record
+from prima.messages import Inbound, Record
 from prima.messages.times import earliest
 from prima.session import Session
 
@@ -38,7 +38,7 @@ class Loop:
         self.outcome = ""
         """Why the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
         self.visits: list[ElementVisit] = []
-        """What applications entered in the latest instant."""
+        """What applications entered in the latest instant at which anything was decided."""
         self._made = 0
         self._deadline = session.deadline()
         """When the session has to be stepped even if nothing happens; only a step changes this."""
@@ -58,21 +58,27 @@ class Loop:
         yield self.finish(self.until)
 
     def advance(self, until: int) -> list[Record] | None:
-        """Carry out the next instant up to a time.
+        """Carry out the instants up to a time, to the first at which more than bodies moves.
 
         Returns:
-            Its records, or None if there is no such instant: nothing is due by then, or
+            Its records, or None if there is no such instant: nothing else is due by then, or
             ``outcome`` says why the run has ended.
         """
-        if self._ended and self.over:
-            self.outcome = "over"
-        due = None if self.outcome else self.due()
-        if due is None or due > until:
-            return None
-        if self._full:
-            self.outcome = "limit"
-            return None
-        return self.step(max(due, self.now))
+        while not self.outcome:
+            if self._ended and self.over:
+                self.outcome = "over"
+                break
+            due = self.due()
+            if due is None or due > until:
+                break
+            if self._full:
+                self.outcome = "limit"
+                break
+            self.now = now = max(due, self.now)
+            inbound = self.devices.collect(now)
+            if inbound or (self._deadline is not None and now >= self._deadline):
+                return self._decide(now, inbound)
+        return None
 
     def finish(self, until: int) -> list[Record]:
         """End the run at a time by which nothing else is due; returns its last records."""
@@ -98,12 +104,8 @@ class Loop:
         """When the next instant is due, if ever."""
         return earliest(self.devices.due(), self._deadline)
 
-    def step(self, now: int) -> list[Record]:
-        """Carry out one instant. If a body only moved, nothing is reported or decided."""
-        self.now, self.visits = now, []
-        inbound = self.devices.collect(now)
-        if not inbound and (self._deadline is None or now < self._deadline):
-            return []
+    def _decide(self, now: int, inbound: list[Inbound]) -> list[Record]:
+        """Let the session process what has come in, and the devices carry out its orders."""
         session = self.session
         orders = session.step(now, inbound)
         records, self.visits = session.drain(), session.drain_visits()

@@ -182,8 +182,8 @@ class Algorithm:
         def is_defined(name: str) -> bool:
             return self.owner.engine.defined(frame.dialog, name)
 
-        for filled in own:
-            if not is_defined(item.name):
+        for index, filled in enumerate(own):
+            if index and not is_defined(item.name):
                 break  # an earlier one has cleared it
             fiber.local = None
             self.owner.note(filled.node)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 
-def earliest(*times: int | None) -> int | None:
+def earliest(first: int | None, *others: int | None) -> int | None:
     """The earliest of some times, ignoring None; None if there is no other."""
-    first: int | None = None
-    for time in times:
+    for time in others:
         if first is None or (time is not None and time < first):
             first = time
     return first

@@ -112,7 +112,9 @@ def _again(transcript: Transcript, loaded: Loaded) -> RobotWalk | None:
     rehearsal = _rehearsal(loaded, transcript.run().head)
     if rehearsal is None:
         return None
-    watch = WalkWatch(rehearsal.devices.world)
+    world = rehearsal.devices.world
+    watch = WalkWatch(world)
+    world.moved = watch.look
     expected: Sequence[Record] = transcript.records
     place = 1
     for records in rehearsal.run():

@@ -60,12 +60,12 @@ def deadline(mediation: Mediation) -> int | None:
     """When the next unit, device or awaited event is overdue (ms)."""
     memory = mediation.memory
     late = [ab.late for ab in memory.running.values()]
-    late += [_lapse(memory, mediation.absence), *mediation.holds.values()]
+    late += mediation.holds.values()
     if not mediation.halted:
         late.append(mediation.starving)
         if "x8" in mediation.extensions:
             late += [ab.stale for ab in memory.waiting.values()]
-    return earliest(*late)
+    return earliest(_lapse(memory, mediation.absence), *late)
 
 
 def _lapse(memory: WorkingMemory, absence: int) -> int | None:

@@ -55,7 +55,9 @@ class Recorder:
 
     def end(self, ab: Behavior, outcome: str, goal: bool, data: Data, inbound: bool) -> None:
         """Record the end of an AB, or of a loop of one."""
-        fields: Record = {"outcome": outcome, "inbound": inbound or None}
+        fields: Record = {"outcome": outcome}
+        if inbound:
+            fields["inbound"] = True
         if ab.feedback:
             fields["goal"] = goal
         if data:
@@ -135,8 +137,8 @@ class Recorder:
 
 
 def describe(ab: Behavior) -> Record:
-    """Set the fields that an AB's records share, with placeholders for those that most have."""
-    ab.told = {
+    """Set the fields that an AB's records share, with placeholders for those that all have."""
+    told: Record = {
         "time": 0,
         "phase": "",
         "actor": "robot",
@@ -144,14 +146,13 @@ def describe(ab: Behavior) -> Record:
         "behavior": "",
         "tree": ab.stream.name,
         "command": ab.type.name if ab.type else "iu",
-        "text": ab.command.text if ab.command else None,
-        "unit": ab.unit.id if ab.unit else None,
-        "rule": None,
-        "devices": None,
-        "outcome": None,
-        "inbound": None,
     }
-    return ab.told
+    if ab.command is not None and ab.command.text is not None:
+        told["text"] = ab.command.text
+    if ab.unit is not None:
+        told["unit"] = ab.unit.id
+    ab.told = told
+    return told
 
 
 def shown_cues(cues: tuple[Cue, ...]) -> list[dict[str, Json]]:

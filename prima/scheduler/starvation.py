@@ -71,7 +71,7 @@ def note_waits(mediation: Mediation) -> None:
     if not (mediation.patience and mediation.policy.floor):
         return
     due = [_due(mediation, ab) for ab in mediation.memory.waiting.values()]
-    mediation.starving = earliest(*due)
+    mediation.starving = earliest(None, *due)
 
 
 def _due(mediation: Mediation, ab: Behavior) -> int | None:

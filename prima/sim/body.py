@@ -237,7 +237,7 @@ class Body:
             for time in (one.ends, one.tick)
             if time and not (one.begin.kind == SAY and _behavior(one.begin) in moving)
         ]
-        return earliest(*times)
+        return earliest(None, *times)
 
     @property
     def moves_on(self) -> bool:

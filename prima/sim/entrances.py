@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from math import inf
 
 from prima.messages import ApplicationLoaded, ApplicationUnloaded
-from prima.sim.map import Area, Point
+from prima.sim.map import EPSILON, Area, Point, distance
 
 THRESHOLD = 0.5
 """The robot has left an area when it is this far (m) outside."""
@@ -21,13 +22,14 @@ class Entrances:
     def __init__(self, offers: Sequence[tuple[Area, str]]) -> None:
         self.offers = offers
         self._inside: set[str] = set()
-        self._crossed: Point | None = None
-        """The robot's place when the areas were last compared with it."""
+        self._compared: tuple[Point, float] | None = None
+        """Where the robot was when the areas were last compared with its place, and how far (m)
+        it has to go from there to get into or out of one."""
 
     @property
     def unseen(self) -> bool:
         """Whether there are areas not yet compared with the robot's place."""
-        return self._crossed is None and bool(self.offers)
+        return self._compared is None and bool(self.offers)
 
     def enter(self, applications: Collection[str]) -> None:
         """Assume that the robot is in the areas of these applications."""
@@ -35,16 +37,21 @@ class Entrances:
 
     def cross(self, here: Point) -> list[Crossing]:
         """Load the applications of areas that the robot has entered; unload those it has left."""
-        if here is self._crossed or not self.offers:
-            return []
-        self._crossed = here
+        if self._compared is not None:
+            at, far = self._compared
+            if distance(at, here) < far:
+                return []
         crossed: list[Crossing] = []
+        nearest = inf
         for area, name in self.offers:
             inside = area.id in self._inside
-            if not inside and area.holds(here):
+            beyond = area.beyond(here, THRESHOLD if inside else 0.0)
+            if not inside and beyond <= 0.0:
                 self._inside.add(area.id)
                 crossed.append(ApplicationLoaded(name, area.title))
-            elif inside and not area.holds(here, THRESHOLD):
+            elif inside and beyond > 0.0:
                 self._inside.discard(area.id)
                 crossed.append(ApplicationUnloaded(name, area.title))
+            nearest = min(nearest, abs(beyond))
+        self._compared = here, nearest - EPSILON
         return crossed

@@ -7,10 +7,10 @@ from itertools import pairwise
 
 from prima.devices.profile import Motion, Profile
 from prima.messages import Command, Json
-from prima.sim.map import Point
+from prima.sim.map import Point, distance
 from prima.sim.plan import off_line
 from prima.sim.routes import Routes
-from prima.sim.world import World, bearing, difference, distance
+from prima.sim.world import World, bearing, difference
 
 ARRIVED = 0.1
 """A goal is reached at this distance (m)."""

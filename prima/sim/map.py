@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from math import dist
 
 from prima.devices.reading import RENAME, Reader
 from prima.errors import Problem
@@ -13,6 +15,11 @@ from prima.sim.vocabulary.world import WORLD
 Point = tuple[float, float]
 MAX_AREAS = 256
 """Maximum number of areas of a world."""
+EPSILON = 1e-6
+"""A distance (m) too small to matter."""
+
+distance: Callable[[Point, Point], float] = dist
+"""Metres between two points."""
 
 
 @dataclass(slots=True)
@@ -36,10 +43,13 @@ class Area:
     src: str
     node: Node
 
-    def holds(self, point: Point, margin: float = 0.0) -> bool:
-        """Whether a point lies inside, or outside by no more than a margin."""
+    def beyond(self, point: Point, margin: float = 0.0) -> float:
+        """How far (m) a point lies beyond a margin around it; less than 0 within.
+
+        Nobody gets in or out without going at least so far.
+        """
         (x, y), (west, south), (east, north) = point, self.low, self.high
-        return west - margin <= x <= east + margin and south - margin <= y <= north + margin
+        return max(west - margin - x, x - (east + margin), south - margin - y, y - (north + margin))
 
 
 @dataclass(slots=True)

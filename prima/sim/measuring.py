@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from prima.messages import Json
-from prima.sim.world import World, distance
+from prima.sim.map import distance
+from prima.sim.world import World
 
 ITS_OWN = frozenset({"human", "position", "moving"})
 """The sensors that it measures itself, by the first part of their names."""

@@ -12,9 +12,10 @@ from prima.interpreter.selection import takes
 from prima.messages import Heard, Inbound, Json, Narrated, Occurred, Record
 from prima.sim.happenings import Doing, When
 from prima.sim.incidents import happen
+from prima.sim.map import distance
 from prima.sim.robot import Robot
 from prima.sim.scenario import Scenario
-from prima.sim.world import World, distance
+from prima.sim.world import World
 
 KEYS = frozenset("0123456789*# ")
 """What is pressed by default."""

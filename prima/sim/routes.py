@@ -7,8 +7,8 @@ from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING
 
-from prima.sim.map import Map, Point
-from prima.sim.world import World, distance
+from prima.sim.map import Map, Point, distance
+from prima.sim.world import World
 
 if TYPE_CHECKING:
     from networkx import Graph

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import atan2, cos, degrees, dist, pi, radians, sin
+from math import atan2, cos, degrees, inf, pi, radians, sin
 
 import pymunk
 
 from prima.devices.profile import Profile
-from prima.sim.map import Corner, Map, Point
+from prima.sim.map import EPSILON, Corner, Map, Point, distance
 from prima.sim.plan import crosses, off_line
 
 STEP_MS = 50
@@ -23,11 +23,6 @@ THICK = 0.7
 """The share of the body's radius that must be free of walls on both sides of its way."""
 FAR = 3.0
 """The radius (m) around the robot within which walls are considered."""
-EPSILON = 1e-6
-
-
-distance: Callable[[Point, Point], float] = dist
-"""Metres between two points."""
 
 
 def bearing(a: Point, b: Point) -> float:
@@ -82,11 +77,14 @@ class World:
         """Where the head points, from the front (degrees)."""
         self.people: dict[str, Somebody] = {}
         """The people present, by name."""
+        self.moved: Callable[[], None] | None = None
+        """Called after bodies have moved, if anybody wants to know."""
         self._attended = ""
         """The person to whom the robot attends; of several, nobody until it has seen one."""
-        self._inside: set[str] = {corner.id for corner in plan.corners if self._near(corner)}
-        self._searched = self.position
-        """Where the robot was when nearby corners were last computed."""
+        self._inside: set[str] = {one.id for one in plan.corners if self._beyond(one) <= 0.0}
+        self._searched: tuple[Point, float] = (at, 0.0)
+        """Where the robot was when nearby corners were last computed, and how far (m) it has to go
+        from there to get near or away from one."""
 
     def _place(self, position: Point, angle: float) -> None:
         """Note the body's position; physics is updated only when needed."""
@@ -240,6 +238,8 @@ class World:
             step = min(STEP_MS, to - self.time)
             self._step(step / 1000)
             self.time += step
+            if self.moved is not None:
+                self.moved()
         self.time = to
 
     def _step(self, seconds: float) -> None:
@@ -299,17 +299,22 @@ class World:
 
     def corners(self) -> list[Corner]:
         """Corners that the robot has come near since the last call."""
-        if self.position is self._searched:
+        at, far = self._searched
+        if distance(at, self.position) < far:
             return []
-        self._searched = self.position
         reached = []
+        nearest = inf
         for corner in self.map.corners:
-            if not self._near(corner):
+            beyond = self._beyond(corner)
+            nearest = min(nearest, abs(beyond))
+            if beyond > 0.0:
                 self._inside.discard(corner.id)
             elif corner.id not in self._inside:
                 self._inside.add(corner.id)
                 reached.append(corner)
+        self._searched = self.position, nearest - EPSILON
         return reached
 
-    def _near(self, corner: Corner) -> bool:
-        return distance(self.position, corner.at) <= corner.radius
+    def _beyond(self, corner: Corner) -> float:
+        """How far (m) the robot is beyond the radius of a corner; less than 0 within."""
+        return distance(self.position, corner.at) - corner.radius

@@ -165,10 +165,8 @@ class Game:
         """Carry out the next instant up to a time; return its rows, or None if there is none."""
         until = min(until, LONGEST_MS)
         records = self.rehearsal.advance(until)
-        if records is None:
-            return None
         self.clock = max(self.clock, self.rehearsal.now)
-        return self._take(records)
+        return None if records is None else self._take(records)
 
     def _take(self, records: list[Record]) -> list[Row]:
         if self._sink is not None:
@@ -274,8 +272,8 @@ class Game:
 
     def end_line(self) -> Iterator[list[Row]]:
         """Let time pass until the last line has been carried out."""
-        while self.busy and (rows := self.advance(LONGEST_MS)) is not None:
-            yield rows
+        while self.busy and (due := self.due()) is not None:
+            yield self.advance(due) or []
 
     def _last_row(self) -> str:
         if not self.table.rows:
