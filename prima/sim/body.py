@@ -247,16 +247,14 @@ class Body:
     def collect(self, now: int) -> list[Report]:
         """Advance the body, and return its devices' reports at ``now``."""
         self._now, self.arrived = now, False
-        reports: list[Report] = []
-        # Moves set the wheels first; a dance adds to them (X5).
         efforts = list(self.efforts.values())
+        # Moves set the wheels first; a dance adds to them (X5).
         if len(efforts) > 1 and self.profile.motions:
             efforts.sort(key=lambda one: one.begin.kind in self.profile.motions)
-        for effort in efforts:
-            reports += self._get_on(now, effort)
-        return reports
+        ends = [self._get_on(now, effort) for effort in efforts]
+        return [end for end in ends if end is not None]
 
-    def _get_on(self, now: int, effort: Effort) -> list[Report]:
+    def _get_on(self, now: int, effort: Effort) -> Report | None:
         """Let a goal set the wheels; returns its end, if it has ended."""
         steers = None if effort.lost else effort.control
         if steers is not None and steers() and effort.ends is None and effort.tick is None:
@@ -266,8 +264,8 @@ class Body:
             effort.looped = now
             return self._end_loop(now, effort)
         if effort.ends is not None and effort.ends <= now:
-            return [self._end(effort)]
-        return []
+            return self._end(effort)
+        return None
 
     def _end(self, effort: Effort) -> Report:
         self._forget(effort)
@@ -284,7 +282,7 @@ class Body:
             self._stand(effort)
         return Done(key, data)
 
-    def _end_loop(self, now: int, effort: Effort) -> list[Report]:
+    def _end_loop(self, now: int, effort: Effort) -> Report | None:
         """A loop of a feedback Command ends: the goal is reached, unreachable, or goes on."""
         kind, plan = effort.begin.kind, effort.plan
         if kind == "active-sensing-human":
@@ -292,11 +290,11 @@ class Body:
         else:
             reached = kind in self.profile.durations or plan.goal
         if reached:
-            return [self._end(effort)]
+            return self._end(effort)
         if plan.path is not None and self.locomotion.blocked(plan):
             effort.fails = "locomotion", "the way is blocked"
-            return [self._end(effort)]
-        return []
+            return self._end(effort)
+        return None
 
     def _search_on(self, now: int, effort: Effort) -> bool:
         """Turn-and-Search: found, keep looking, or turn by the camera's angle and try again."""

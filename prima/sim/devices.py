@@ -75,7 +75,7 @@ class SimulatedDevices:
         """When there is next something to collect (ms), if ever."""
         if self._stirred:
             self._stirred, self._standing = False, self._due_standing()
-        if self.world.moving or self.robot.body.moves_on:
+        if self.world.moves() or self.robot.body.moves_on:
             return earliest(self._standing, self.world.time + STEP_MS)
         return self._standing
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
+from math import copysign
 
 from prima.devices.profile import Motion, Profile
 from prima.messages import Command, Json
@@ -152,12 +153,15 @@ class Locomotion:
 
     def _toward(self, point: Point, near: float) -> None:
         """Drive toward a point: turn on the spot first, then go, slower when near."""
-        self._go(*self._round_person(bearing(self.world.position, point), point), near)
+        heading, fastest = self._round_person(bearing(self.world.position, point), point)
+        self._go(heading, fastest, near)
 
     def _go(self, heading: float, fastest: float, near: float) -> None:
         world, profile = self.world, self.profile
         off = difference(heading, world.heading)
-        turning = max(min(off * 3.0, profile.turn_speed), -profile.turn_speed)
+        turning = off * 3.0
+        if abs(turning) > profile.turn_speed:
+            turning = copysign(profile.turn_speed, turning)
         if abs(off) > 30.0:
             world.drive = (0.0, turning)
         else:
@@ -191,9 +195,10 @@ class Locomotion:
         if path is None:
             return True
         while path:
-            left = distance(world.position, path[0])
-            if left > (ARRIVED if len(path) == 1 else PASSED):
-                self._toward(path[0], left if len(path) == 1 else 10.0)
+            point, last = path[0], len(path) == 1
+            left = distance(world.position, point)
+            if left > (ARRIVED if last else PASSED):
+                self._toward(point, left if last else 10.0)
                 return False
             path.pop(0)
         heading = command.args.get("heading")

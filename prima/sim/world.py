@@ -81,6 +81,8 @@ class World:
         """Called after bodies have moved, if anybody wants to know."""
         self._attended = ""
         """The person to whom the robot attends; of several, nobody until it has seen one."""
+        self._user: Somebody | None = None
+        """The same, with their place."""
         self._inside: set[str] = {one.id for one in plan.corners if self._beyond(one) <= 0.0}
         self._searched: tuple[Point, float] = (at, 0.0)
         """Where the robot was when nearby corners were last computed, and how far (m) it has to go
@@ -115,7 +117,7 @@ class World:
     @property
     def person(self) -> Point | None:
         """The position (m) of the person to whom the robot attends."""
-        return self.people[self._attended].at if self._attended else None
+        return self._user.at if self._user is not None else None
 
     def attend(self, name: str) -> None:
         """Attend to a person who has spoken or touched the robot."""
@@ -123,7 +125,7 @@ class World:
             self._attend(name)
 
     def _attend(self, name: str) -> None:
-        self._attended, self._visible = name, None
+        self._attended, self._user, self._visible = name, self.people.get(name), None
 
     def walk(self, name: str, to: Point | None, speed: float) -> None:
         """Send a person somewhere in a straight line; with None they stay."""
@@ -200,7 +202,7 @@ class World:
         if self._visible is None:
             if not self._attended and len(self.people) > 1:
                 self.find_somebody()
-            self._visible = self._look(self.person)
+            self._visible = self._user is not None and self._look(self._user.at)
         return self._visible
 
     def find_somebody(self) -> bool:
@@ -225,16 +227,15 @@ class World:
 
     # Time ----------------------------------------------------------------------
 
-    @property
-    def moving(self) -> bool:
-        """Whether a physics step is needed."""
+    def moves(self) -> bool:
+        """Whether anybody moves, so that a physics step is needed."""
         if self.drive != (0.0, 0.0):
             return True
         return any(one.goal is not None for one in self.people.values())
 
     def advance(self, to: int) -> None:
         """Let time pass until ``to`` (ms)."""
-        while self.time < to and self.moving:
+        while self.time < to and self.moves():
             step = min(STEP_MS, to - self.time)
             self._step(step / 1000)
             self.time += step

@@ -40,8 +40,7 @@ class Measure:
     def __init__(self, observer: Observer | None = None) -> None:
         self.records = 0
         self._last = 0.0
-        self._collisions = 0
-        self._starved = 0
+        self._counted = {"collision": 0, "starve": 0}
         self._watches = observer is None
         self._observer = observer or Observer(delays=False)
 
@@ -49,14 +48,15 @@ class Measure:
         """Add a record."""
         self.records += 1
         self._last = entry.time
-        self._collisions += entry.phase == "collision"
-        self._starved += entry.phase == "starve"
+        if entry.phase in self._counted:
+            self._counted[entry.phase] += 1
         if self._watches:
             self._observer.add(entry)
 
     def summary(self) -> Summary:
         """The result so far."""
-        return _summary(self._last, self.criteria(), self._collisions, self._starved)
+        counted = self._counted
+        return _summary(self._last, self.criteria(), counted["collision"], counted["starve"])
 
     def criteria(self) -> Criteria:
         """The thesis's criteria so far."""

@@ -118,7 +118,7 @@ def test_a_device_that_breaks_stops_the_wheels_and_nobody_else(tmp_path: Path, h
     made = rehearse(tmp_path, body, BREAKS.format("locomotion", how), other=other)
     assert not [r for r in made.records if r["phase"] == "fail" and r["app"] == "other"]
     rehearsal = Rehearsal(api.load_scenario(tmp_path / "scenario.xml").cast, policy_named("prima"))
-    moving = [(rehearsal.now, rehearsal.devices.world.moving) for _ in rehearsal.run()]
+    moving = [(rehearsal.now, rehearsal.devices.world.moves()) for _ in rehearsal.run()]
     assert {time for time, moves in moving if moves} <= set(range(700))
     assert (0, True) in moving
 

@@ -107,7 +107,7 @@ class SimDriver(Driver):
 
     def due(self) -> int | None:
         """When the body next has something to report."""
-        moves = self.world.moving or self.body.moves_on
+        moves = self.world.moves() or self.body.moves_on
         moved = self.world.time + STEP_MS if moves else None
         return earliest(self.body.due(), moved, *(when for when, _ in self._later))
 
