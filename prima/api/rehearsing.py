@@ -35,7 +35,7 @@ def rehearse(
     patience: int | None = None,
     visits: bool = False,
     rows: bool = False,
-    folded: bool = False,
+    entries: bool = False,
     seed: int | None = None,
 ) -> Transcript:
     """Run a scenario in simulation.
@@ -56,7 +56,7 @@ def rehearse(
             speaker, 0 for no bound; by default the scenario's own.
         visits: whether to keep the elements that applications reach in their documents.
         rows: whether to make the table's rows even if the records are not kept.
-        folded: whether to fold the run for :meth:`Transcript.run` even if the records are not kept.
+        entries: whether to keep the records as :class:`Entry` in ``entries`` of the transcript.
         seed: determines all random values of the run; by default the scenario's own.
 
     Raises:
@@ -67,7 +67,6 @@ def rehearse(
     from collections import deque
 
     from prima.sim.rehearsal import Rehearsal
-    from prima.transcript.fold import Fold
     from prima.transcript.lines import finished, line
     from prima.transcript.measures import Measure
     from prima.transcript.record import Entry
@@ -84,18 +83,17 @@ def rehearse(
     web = fetcher(hosts, len(cast.documents))
     rehearsal = Rehearsal(cast, chosen, bound, web, isolate, patience)
     head = run_record(loaded, name, bound, patience)
-    fold = Fold() if folded else None
-    measure = Measure(fold.observer if fold is not None else None)
+    measure = Measure()
     made = Transcript([], cast.scenario.id, measure=measure)
 
-    def entries() -> Iterator[Entry]:
+    def told() -> Iterator[Entry]:
         for records in chain([[head]], rehearsal.run()):
             for record in records:
                 entry = Entry(record, record["time"] / 1000)
                 measure.add(entry)
-                if fold is not None:
-                    fold.add(entry)
                 yield entry
+                if entries:
+                    made.entries.append(entry)
                 if keep:
                     made.records.append(finished(record))
                 if sink is not None:
@@ -104,10 +102,9 @@ def rehearse(
                 made.visits += rehearsal.visits
 
     if rows:
-        made.made = rows_of(made.name, entries())
+        made.made = rows_of(made.name, told())
     else:
-        deque(entries(), maxlen=0)
-    made.folded = fold.run() if fold is not None else None
+        deque(told(), maxlen=0)
     made.failures = list(rehearsal.session.failures)
     made.defects = list(rehearsal.session.defects)
     made.outcome = rehearsal.outcome

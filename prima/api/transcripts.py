@@ -47,8 +47,8 @@ class Transcript:
 
     made: list[Row] | None = None
     """The rows, if they were made during the run."""
-    folded: Run | None = field(default=None, repr=False, compare=False)
-    """The run, if it was folded while it was made."""
+    entries: list[Entry] = field(default_factory=list, repr=False, compare=False)
+    """The records as the views see them, if they were kept so."""
     _run: Run | None = field(default=None, repr=False, compare=False)
 
     def kept(self) -> list[Record]:
@@ -73,8 +73,6 @@ class Transcript:
         """
         from prima.transcript.run import run_of
 
-        if self.folded is not None:
-            return self.folded
         if self._run is None or len(self._run.entries) != len(self.records):
             self._run = run_of(self.kept(), self.name)
         return self._run

@@ -192,7 +192,7 @@ class Stage:
             patience=self.settings.patience,
             visits=expects,
             rows=True,
-            folded=expects,
+            entries=expects,
         )
 
     def _run(self, variant: Variant) -> Made:
@@ -252,7 +252,7 @@ def failed_expectations(loaded: Loaded, transcript: api.Transcript) -> list[Fail
     scenario = loaded.cast.scenario
     if not scenario.expectations:
         return []
-    facts = make_run(transcript.run(), transcript.rows(), states_of(transcript.visits))
+    facts = make_run(transcript.entries, transcript.rows(), states_of(transcript.visits))
     return check(scenario, facts)
 
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from prima.testing.tracing import StateHistory
 from prima.transcript.record import Entry
 from prima.transcript.row import Row
-from prima.transcript.run import Run
 from prima.transcript.spans import base
 
 
@@ -65,25 +64,30 @@ class RunFacts:
     """Why applications ended."""
 
 
-def make_run(run: Run, rows: list[Row], states: StateHistory) -> RunFacts:
-    """Collect the facts of a run."""
-    ended = {one.app: one.outcome for one in run.of("unload") if one.actor == "mediator"}
-    return RunFacts(list(_facts(run)), rows, states, round(run.end * 1000), ended)
+def make_run(entries: Sequence[Entry], rows: list[Row], states: StateHistory) -> RunFacts:
+    """Collect the facts of a run from its records."""
+    unloads = [one for one in entries if one.phase == "unload" and one.actor == "mediator"]
+    ended = {one.app: one.outcome for one in unloads}
+    end = round(entries[-1].time * 1000) if entries else 0
+    return RunFacts(list(_facts(entries)), rows, states, end, ended)
 
 
-def _facts(run: Run) -> Iterable[Fact]:
+def _facts(entries: Iterable[Entry]) -> Iterable[Fact]:
     """The facts that can be expected or waited for: of loops only the first, and no decisions."""
+    asked: dict[str, Entry] = {}
     texts: dict[str, str] = {}
     number = 0
-    for entry in run.entries:
+    for entry in entries:
         phase, name = entry.phase, base(entry.behavior)
+        if phase == "request":
+            asked.setdefault(name, entry)
         if phase == "start" and entry.text:
             texts[name] = entry.text
         ended = phase == "end" and entry.outcome != "again"
         gone = phase == "unload" and entry.actor == "mediator"
         first = phase == "start" and entry.first
         if first or ended or gone or phase in ("listening", "event", "log", "send"):
-            request = run.asked(name) or entry
+            request = asked.get(name, entry)
             time = round(entry.time * 1000)
             yield Fact(number, time, phase, entry, request, texts.get(name, ""))
             number += 1

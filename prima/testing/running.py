@@ -101,7 +101,7 @@ def _rehearse(loaded: Loaded, choice: TestOptions, made: Result) -> None:
     states = states_of(transcript.visits)
     made.simulated = transcript.run().end
     rows = transcript.rows()
-    made.failures = check(scenario, make_run(transcript.run(), rows, states))
+    made.failures = check(scenario, make_run(transcript.run().entries, rows, states))
     if made.failures:
         made.status = "failed"
     own = choice.policy in (None, scenario.policy)

@@ -31,18 +31,13 @@ class Summary:
 
 
 class Measure:
-    """Measures during a run, without keeping records.
+    """Measures during a run, without keeping records."""
 
-    Args:
-        observer: one that already receives every record; by default its own.
-    """
-
-    def __init__(self, observer: Observer | None = None) -> None:
+    def __init__(self) -> None:
         self.records = 0
         self._last = 0.0
         self._counted = {"collision": 0, "starve": 0}
-        self._watches = observer is None
-        self._observer = observer or Observer(delays=False)
+        self._observer = Observer(delays=False)
 
     def add(self, entry: Entry) -> None:
         """Add a record."""
@@ -50,8 +45,7 @@ class Measure:
         self._last = entry.time
         if entry.phase in self._counted:
             self._counted[entry.phase] += 1
-        if self._watches:
-            self._observer.add(entry)
+        self._observer.add(entry)
 
     def summary(self) -> Summary:
         """The result so far."""

@@ -209,7 +209,7 @@ def test_a_run_takes_no_notice_of_expectations(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", DEMOS, ids=lambda path: path.stem)
 def test_triggers_are_those_of_when(path: Path) -> None:
     records = api.rehearse(path).records
-    run = make_run(run_of(records), [], StateHistory())
+    run = make_run(run_of(records).entries, [], StateHistory())
     begun = [one for one in records if one["phase"] == "start"]
     words = {("doing", one["command"]) for one in begun} | {
         ("done", one["command"]) for one in begun
@@ -252,7 +252,7 @@ def test_what_a_run_has_said_is_what_it_is_expected_to_say(path: Path, tmp_path:
         last = scenario.node.all("in-order")[-1]
         own = set(map(id, last.nodes))
         scenario.expectations = [one for one in scenario.expectations if id(one.node) in own]
-        run = make_run(transcript.run(), transcript.rows(), StateHistory())
+        run = make_run(transcript.run().entries, transcript.rows(), StateHistory())
         return len(check(scenario, run))
 
     assert failures(said) == 0
