@@ -158,22 +158,25 @@ def situations(seconds: float = 0.5) -> dict[str, float]:
     Args:
         seconds: how long each is run again and again; the median run counts.
     """
-    from prima import api
     from prima.experiments.study import situations as ten
 
-    found: dict[str, float] = {}
-    for path in ten():
-        loaded = api.load_scenario(path)
-        first = api.rehearse(loaded, keep=False)
-        check(not first.failures, f"{path.stem}: {first.failures}")
-        runs: list[float] = []
-        while sum(runs) < seconds:
-            began = process_time()
-            again = api.rehearse(loaded, keep=False)
-            runs.append(process_time() - began)
-            check(again.summary() == first.summary(), f"{path.stem}: another run is another one")
-        found[loaded.cast.scenario.id] = first.summary().seconds / median(runs)
-    return found
+    return {path.stem: speed(path, seconds) for path in ten()}
+
+
+def speed(path: Path, seconds: float) -> float:
+    """Simulated seconds a second of processor time: the median run of a scenario counts."""
+    from prima import api
+
+    loaded = api.load_scenario(path)
+    first = api.rehearse(loaded, keep=False)
+    check(not first.failures, f"{path.stem}: {first.failures}")
+    runs: list[float] = []
+    while sum(runs) < seconds:
+        began = process_time()
+        again = api.rehearse(loaded, keep=False)
+        runs.append(process_time() - began)
+    check(again.summary() == first.summary(), f"{path.stem}: another run is another one")
+    return first.summary().seconds / median(runs)
 
 
 def main() -> None:

@@ -246,6 +246,13 @@ def simulated() -> list[Row]:
             for number in range(1, 11)
         ),
         Row(
+            "The ten situations in one process, their median",
+            "× real time",
+            Call(simulation.ten_situations, (SECONDS,)),
+            least=4_500,
+            rounds=3,
+        ),
+        Row(
             "Memory, from hour 10 to hour 100, twenty visits an hour",
             "MB more",
             Call(simulation.visits_memory, (100,), (2,)),
