@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from prima.graph.model import clean, short
 from prima.markup.tree import Node
+from prima.script.comparison import comparison
+from prima.script.literals import strings
 
 SAID = 44
 """Maximum length of speech."""
 TOLD = 60
 """Maximum length of a condition."""
-LITERAL = re.compile(r"""'([^'\\\n]*)'|"([^"\\\n]*)\"""")
 ASKED = frozenset({"noinput", "nomatch", "help"})
 """Events after which a question is asked again by default."""
 YES = {"yes": "no", "no": "yes"}
@@ -47,15 +47,13 @@ NO_REPLY = AnswerLabel("", False)
 
 def condition(code: str, reply: AnswerLabel = NO_REPLY) -> str:
     """A condition; if it is about the answer just given, that answer."""
-    code = " ".join(code.split())
-    if reply.name:
-        own = rf"(?:dialog\.)?{re.escape(reply.name)}"
-        truth = re.fullmatch(rf"(!?) ?{own}(?: ?===? ?(true|false))?", code)
-        if reply.is_yes_or_no and truth:
-            return "yes" if (truth[1] == "") == (truth[2] != "false") else "no"
-        if match := re.fullmatch(rf"{own} ?===? ?(?:{LITERAL.pattern})", code):
-            return quoted(match[1] or match[2] or "")
-    return "if " + short(clean(code), TOLD)
+    found = comparison(code) if reply.name else None
+    if found is not None and found.name in (reply.name, f"dialog.{reply.name}"):
+        if isinstance(found.value, str):
+            return quoted(found.value)
+        if reply.is_yes_or_no:
+            return "yes" if found.value else "no"
+    return "if " + short(clean(" ".join(code.split())), TOLD)
 
 
 def joined(base: str, conditions: Iterable[str]) -> str:
@@ -84,8 +82,7 @@ def handled(events: Iterable[str], count: int, cond: str, hints: dict[str, list[
 def literals(code: str, names: Iterable[str]) -> list[str]:
     """The names that an expression contains as literals."""
     known = set(names)
-    held = [(match[1] or match[2] or "").strip() for match in LITERAL.finditer(code)]
-    found = [name.removeprefix("#") for name in held]
+    found = [text.strip().removeprefix("#") for text in strings(code)]
     return [name for name in dict.fromkeys(found) if name in known]
 
 

@@ -129,7 +129,7 @@ class Memory:
                     self.unit_ends[record["behavior"]] = record["time"]
                 case "held" if record["outcome"] == "begun":
                     self.begins[record["time"], record["tree"]] = place
-                case "start" if record["rule"] == "U4":
+                case "start" if record.get("rule") == "U4" and record.get("unit"):
                     self.groups.add(record["unit"])
                 case "request" if record["command"] == "iu" and record.get("unit"):
                     self.nested.add(record["behavior"])

@@ -28,8 +28,8 @@ class Telling(LeavingRules):
         """Check a record before it is processed."""
         phase = record["phase"]
         rule = ALONE.get(phase)
-        if rule is not None and record["rule"] != rule:
-            self.report(13, rule, f"a {phase} is told by {record['rule']}")
+        if rule is not None and record.get("rule") != rule:
+            self.report(13, rule, f"a {phase} is told by {record.get('rule')}")
         name = base(record.get("winner") or record.get("behavior") or "")
         if phase == "request":
             self.requests.setdefault(name, record)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
-from prima.script.parse import Code, Node
+from prima.script.parse import Code, Node, parse_expression
 
 WORDS = {"true": True, "false": False, "null": None}
 NUMBER = frozenset("0123456789.eE+-")
@@ -66,6 +67,17 @@ def string(code: Code, node: Node) -> str:
             text = ESCAPES.get(text[1:], text[1:])
         pieces.append(text)
     return "".join(pieces)
+
+
+def strings(expression: str) -> Iterator[str]:
+    """The texts in quotes in an expression."""
+    code = parse_expression(expression)
+    for node in code.walk() if code is not None else ():
+        if node.type == "string" and code is not None:
+            try:
+                yield string(code, node)
+            except Beyond:
+                continue
 
 
 def _plain(code: Code, node: Node) -> Any:

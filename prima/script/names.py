@@ -30,6 +30,8 @@ class Use:
     """Whether it is declared there; a scope's member is declared by assignment."""
     parted: bool = False
     """Whether it is a scope's member whose own member is read, an error if undefined."""
+    part: tuple[int, str] | None = None
+    """The offset and name of its member that is used and not called, if any."""
 
 
 @dataclass(slots=True)
@@ -46,6 +48,8 @@ class Names:
     """Undeclared names that are updated: ``x++``, ``x += 1``."""
     now: dict[str, int] = field(default_factory=dict)
     """Undeclared names that are read outside of functions and whose type the code does not test."""
+    called: set[int] = field(default_factory=set)
+    """The offsets of names that are called."""
     uses: list[Use] = field(default_factory=list)
     """Occurrences of all these names, in the order of the text."""
     opaque: bool = False
@@ -99,24 +103,26 @@ def _names(code: str, script: bool) -> Names:
 
 
 def _of_walk(walk: Walk) -> Names:
-    made = Names(set(walk.top.names), opaque=walk.opaque)
+    made = Names(set(walk.top.names), called=walk.called, opaque=walk.opaque)
     for start, name, how, scope in sorted(walk.found, key=lambda one: one[0]):
         if how in OBJECTS:
             made.uses.append(Use(name, start, how, start in walk.given, start in walk.parted))
         else:
-            _add(made, walk.top, start, name, how, scope)
+            _add(made, walk, start, name, how, scope)
     for _, name, how, _ in walk.found:
         if how == "ask":
             made.now.pop(name, None)
     return made
 
 
-def _add(made: Names, top: CodeScope, start: int, name: str, how: str, scope: CodeScope) -> None:
+def _add(made: Names, walk: Walk, start: int, name: str, how: str, scope: CodeScope) -> None:
+    top = walk.top
     home = scope.home(name)
     if home is not None and home is not top:
         return
     if how != "change":  # also read there
-        made.uses.append(Use(name, start, declares=how == "declare"))
+        part = walk.parts.get(start)
+        made.uses.append(Use(name, start, declares=how == "declare", part=part))
     if home is None and how == "read":
         made.read.setdefault(name, start)
         if scope.function is top:

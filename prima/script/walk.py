@@ -70,6 +70,12 @@ class Walk:
         """Offsets of scopes' members that are assigned."""
         self.parted: set[int] = set()
         """Offsets of scopes' members whose own members are read."""
+        self.called: set[int] = set()
+        """Offsets of names that are called."""
+        self.parts: dict[int, tuple[int, str]] = {}
+        """By the offset of a name, the offset and name of its member that is used, not called."""
+        self._methods: set[int] = set()
+        """The identities of members that are called."""
 
     def go(self) -> Walk:
         """Walk the tree."""
@@ -196,8 +202,11 @@ class Walk:
     def call(self, node: Node, scope: CodeScope) -> None:
         """``eval`` may declare and read anything."""
         function = node.child_by_field_name("function")
-        if function is not None and self.code.of(function) == "eval":
-            self.opaque = True
+        if function is not None and function.type == "identifier":
+            self.called.add(self.code.start(function))
+            self.opaque = self.opaque or self.code.of(function) == "eval"
+        elif function is not None:
+            self._methods.add(function.id)
         self.all(node, scope)
 
     def member(self, node: Node, scope: CodeScope) -> None:
@@ -206,6 +215,10 @@ class Walk:
         self.push(holder, scope)
         if (found := self.of_scope(node)) is not None:
             self.tell(found[1], found[0], scope)
+        part = node.child_by_field_name("property")
+        named = holder is not None and holder.type == "identifier"
+        if named and part is not None and node.id not in self._methods:
+            self.parts[self.code.start(node)] = self.code.start(part), self.code.of(part)
         whole = node.child_by_field_name("optional_chain") is None
         if whole and holder is not None and (found := self.of_scope(holder)) is not None:
             self.parted.add(self.code.start(found[1]))

@@ -43,7 +43,6 @@ FILES = ("src", "srcexpr")
 """Attributes of an external script."""
 LISTED = re.compile(r"\S+")
 """A name in a list of names."""
-MENTIONED = re.compile(rf"\b(?:{'|'.join(sorted(OBJECTS))})\b")
 
 Text = Callable[[Page, Node], str | None]
 """Gives the text of a script in a file, if it can be read."""
@@ -179,7 +178,7 @@ class _Look:
     def mentioning(self, page: Page, node: Node) -> Iterator[Names]:
         """The names of an element's code that names scopes."""
         for attribute, code in node.attributes.items():
-            if is_code(node, attribute) and MENTIONED.search(code):
+            if is_code(node, attribute):
                 yield expression_names(code)
         if node.key == "script":
             yield self.script(page, node)
@@ -304,7 +303,7 @@ def _listed(node: Node, attribute: str) -> Iterator[Read]:
 def _members(node: Node) -> Iterator[Read]:
     """Members of scopes, such as ``document.x``, that must exist."""
     for attribute, code in node.attributes.items():
-        if is_code(node, attribute) and MENTIONED.search(code):
+        if is_code(node, attribute):
             yield from _parted(node, attribute, expression_names(code))
     if node.key == "script" and node.attributes.keys().isdisjoint(FILES):
         yield from _parted(node, "", script_names(node.own_text))

@@ -97,7 +97,7 @@ INSIDE = {
         {"sandbox", "surrogates"},
         {"budget", "evaluation", "globals", "parse", "wire"},
         {"choices", "ecmascript", "known", "literals", "walk"},
-        {"names", "operations"},
+        {"comparison", "constants", "names", "operations"},
         {"hoisting", "syntax"},
         {"compile", "data", "tagengine", "wrapping"},
         {"engine"},

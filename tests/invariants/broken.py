@@ -375,8 +375,10 @@ def spoken_between(patch: pytest.MonkeyPatch) -> None:
 
 def always_substituted(patch: pytest.MonkeyPatch) -> None:
     """X6 works though it is off."""
+    complete = Mediation.__post_init__
 
-    def has(policy: Policy, extension: str) -> bool:
-        return extension == "x6"
+    def with_x6(mediation: Mediation) -> None:
+        complete(mediation)
+        mediation.extensions = frozenset({"x6"})
 
-    rebind(patch, Policy, "has", has)
+    rebind(patch, Mediation, "__post_init__", with_x6)

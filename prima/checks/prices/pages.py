@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import posixpath
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from urllib.parse import urldefrag, urlsplit
@@ -12,6 +11,7 @@ from prima.checks.prices.model import Gap
 from prima.errors import DocumentError
 from prima.markup.tree import Node
 from prima.markup.uris import parted
+from prima.script.choices import choices
 from prima.voicexml.document import FetchError, Page, VoiceDocument
 from prima.voicexml.reading import read_page
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
@@ -26,8 +26,6 @@ TARGETS = {
     "choice": ("next", "expr"),
 }
 """Elements that lead elsewhere: the attribute with the target, and the one that computes it."""
-WITHIN = re.compile(r"""\s*(['"])#[^'"]*\1(\s*\+\s*[\w.$]+)*\s*""")
-"""An expression that names some dialog of its own document."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +70,7 @@ class PricedPages:
         plain, computed = TARGETS[node.tag]
         code = node.get(computed)
         if code:
-            if WITHIN.fullmatch(code):
+            if all(one.text.startswith("#") for one in choices(code)):
                 return PageTarget(page, tuple(page.dialogs))
             place = node.attribute_place(computed)
             return PageTarget(gap=Gap(place, "an expression says where it goes on"))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import chain
@@ -19,10 +18,7 @@ from prima.script.globals import HANDLED
 from prima.script.known import Known, NameScope
 from prima.script.names import Names, expression_names, script_names
 
-PART = re.compile(r"(\s*\??\.\s*)([\w$]++)(?!\s*\()")
-"""Matches a property of ``event`` after its name, but not a method call."""
 PARTS = ("name", "message", "data")
-CALL = re.compile(r"\s*\(")
 SCOPED = ("document", "dialog", "application")
 """Scopes that may prefix the name of a variable."""
 VARIABLES = NameScope(HANDLED | {"session", "sensor"})
@@ -66,9 +62,11 @@ def _parts_of_event(expr: Expression, names: Names, known: Known) -> Iterator[Pr
     if "event" in known:
         return
     for use in names.uses:
-        found = PART.match(expr.code, use.start + len("event"))
-        if use.name == "event" and not use.holder and found and found[2] not in PARTS:
-            place, name = place_in(expr, found.start(2)), found[2]
+        if use.name != "event" or use.holder or use.part is None:
+            continue
+        start, name = use.part
+        if name not in PARTS:
+            place = place_in(expr, start)
             span = Span.of(place, name)
             remedy = replaced(f"Write event.data.{name}.", f"data.{name}", span)
             yield NO_PART.at(place, suggestion(name, PARTS, span) or remedy, name=name)
@@ -87,7 +85,7 @@ class Variables:
             if name in known:
                 continue
             place = place_in(expr, start)
-            if CALL.match(expr.code, start + len(name)):
+            if start in names.called:
                 yield self._no_function(expr, place, name, known)
             else:
                 bare = _is_bare(expr, name)
