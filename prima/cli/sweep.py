@@ -199,9 +199,10 @@ def _print(made: Sweep, pool: Pool) -> None:
 
     write_for_programs()
     head = [one.name for one in made.columns]
-    click.echo(line(head), nl=False)
     worst, exit_column = 0, head.index("exit")
-    for row in made.results(pool):
+    for number, row in enumerate(made.results(pool)):
+        if number == 0:  # nothing is printed for a pool that is not there
+            click.echo(line(head), nl=False)
         code = row[exit_column]
         worst = max(worst, code if isinstance(code, int) else 0)
         click.echo(line(row), nl=False)
