@@ -69,11 +69,15 @@ class PricedPages:
         """The target of an element of a page."""
         plain, computed = TARGETS[node.tag]
         code = node.get(computed)
+        if code and all(one.text.startswith("#") for one in choices(code)):
+            return PageTarget(page, tuple(page.dialogs))
         if code:
-            if all(one.text.startswith("#") for one in choices(code)):
-                return PageTarget(page, tuple(page.dialogs))
             place = node.attribute_place(computed)
             return PageTarget(gap=Gap(place, "an expression says where it goes on"))
+        return self._literal(page, node, plain)
+
+    def _literal(self, page: Page, node: Node, plain: str) -> PageTarget:
+        """The target that an attribute names literally."""
         uri = node.get(plain).strip()
         if not uri:
             return PageTarget()
