@@ -70,26 +70,25 @@ class Quiet:
         cast.scenario.whens.clear()
         self.rehearsal: Rehearsal = Rehearsal(cast, policy_named("prima"))
         self.seen: Counter[str] = Counter()
-        self.moves = 0
-        """How often bodies have moved."""
-        self.rehearsal.devices.world.moved = self._move
+        self.instants = 0
+        """How many instants were computed."""
+        self.rehearsal.devices.watcher = self._count
 
-    def _move(self) -> None:
-        self.moves += 1
+    def _count(self) -> None:
+        self.instants += 1
 
     def until(self, time: int) -> int:
         """Let time pass; gives how many instants were computed."""
         from prima.transcript.lines import line
 
-        instants, moves = 0, self.moves
+        before = self.instants
         with open(os.devnull, "w", encoding="utf-8") as nowhere:
             while (records := self.rehearsal.advance(time)) is not None:
-                instants += 1
                 for record in records:
                     nowhere.write(line(record))
                     self.seen[told(record)] += 1
         check(not self.rehearsal.outcome, f"the run has ended: {self.rehearsal.outcome}")
-        return instants + self.moves - moves
+        return self.instants - before
 
     def come(self, time: int) -> None:
         """The user comes at that time."""

@@ -112,9 +112,8 @@ def _again(transcript: Transcript, loaded: Loaded) -> RobotWalk | None:
     rehearsal = _rehearsal(loaded, transcript.run().head)
     if rehearsal is None:
         return None
-    world = rehearsal.devices.world
-    watch = WalkWatch(world)
-    world.moved = watch.look
+    watch = WalkWatch(rehearsal.devices.world)
+    rehearsal.devices.watcher = watch.look
     expected: Sequence[Record] = transcript.records
     place = 1
     for records in rehearsal.run():

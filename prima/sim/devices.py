@@ -58,6 +58,8 @@ class SimulatedDevices:
                 zip(scenario.applications, cast.documents, strict=False)
             )
         )
+        self.watcher: Callable[[], None] | None = None
+        """Called at each instant, if anybody wants to know where everybody is."""
         self._entrances = Entrances(cast.offers)
         self._said = False
         """Whether any of the latest inbound values came from the user."""
@@ -104,6 +106,8 @@ class SimulatedDevices:
         self.people.follow()
         if self._watched:
             inbound += self.robot.sense(self.people.sensors)
+        if self.watcher is not None:
+            self.watcher()
         return inbound
 
     def _happened(self, now: int, crossed: list[Crossing]) -> list[Inbound]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import atan2, cos, degrees, inf, pi, radians, sin
 
@@ -77,8 +76,6 @@ class World:
         """Where the head points, from the front (degrees)."""
         self.people: dict[str, Somebody] = {}
         """The people present, by name."""
-        self.moved: Callable[[], None] | None = None
-        """Called after bodies have moved, if anybody wants to know."""
         self._attended = ""
         """The person to whom the robot attends; of several, nobody until it has seen one."""
         self._user: Somebody | None = None
@@ -239,8 +236,6 @@ class World:
             step = min(STEP_MS, to - self.time)
             self._step(step / 1000)
             self.time += step
-            if self.moved is not None:
-                self.moved()
         self.time = to
 
     def _step(self, seconds: float) -> None:
