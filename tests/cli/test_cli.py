@@ -15,7 +15,8 @@ from click.testing import CliRunner
 
 from prima.cli import COMMANDS, cli
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers import command
+from tests.helpers.here import prima
 
 DEMO = ROOT / "documents" / "scenarios" / "follow-during-navigation.xml"
 
@@ -46,16 +47,16 @@ def test_json_where_a_machine_may_read(tmp_path: Path) -> None:
     bad.write_text(
         '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="x">\n  <from/></prima>'
     )
-    result = prima("validate", bad, "--format", "json")
+    result = command.prima("validate", bad, "--format", "json")
     assert result.returncode == 1
     first = json.loads(result.stdout)[0]
     assert (first["line"], first["column"]) in {(1, 1), (2, 3)}
-    lines = prima("run", DEMO, "--format", "json").stdout.splitlines()
+    lines = command.prima("run", DEMO, "--format", "json").stdout.splitlines()
     assert json.loads(lines[0])["phase"] == "run"
     assert json.loads(lines[-1])["phase"] == "over"
     a = tmp_path / "a.jsonl"
     a.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    assert json.loads(prima("diff", a, a, "--format", "json").stdout)["differs"] is False
+    assert json.loads(command.prima("diff", a, a, "--format", "json").stdout)["differs"] is False
 
 
 def test_explain_a_code_and_a_row(tmp_path: Path) -> None:
@@ -81,7 +82,7 @@ def test_explain_a_code_and_a_row(tmp_path: Path) -> None:
     ],
 )
 def test_a_misspelt_word_gets_a_suggestion(args: tuple[str, ...], hint: str) -> None:
-    result = prima(*args)
+    result = command.prima(*args)
     assert result.returncode == 2
     assert hint in result.stderr
 

@@ -11,7 +11,7 @@ import pytest
 from prima.cli.common import check_output
 from prima.errors import UsageError
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 
 SCENARIO = """<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" title="s"
   world="world.xml" robot="robot.xml" until="5s">

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.sweeps import VISIT, write_visit
 
 SWEEP = ["sweep", "visit.xml", "--vary", "touch=empirical(delays.csv)", "--seeds", "3"]

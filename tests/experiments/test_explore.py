@@ -18,7 +18,7 @@ from prima.errors import UsageError
 from prima.experiments.explore import Exploration, ExplorationPlan
 from prima.experiments.sweep import Sweep, SweepQuestion
 from tests.helpers.batches import files, until
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.sweeps import VISIT, write_visit
 
 TWO = VISIT.replace("<expect", '<when id="again" at="4s"><touch sensor="head"/></when>\n  <expect')

@@ -21,7 +21,7 @@ from prima.experiments.sweep import Output, Sweep, SweepQuestion
 from prima.experiments.variants import Made, Stage
 from prima.pool import Died
 from tests.helpers.batches import until
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.sweeps import write_visit
 
 LEVELS = "touch=0s..8s/100ms"

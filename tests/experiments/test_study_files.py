@@ -9,7 +9,8 @@ import pytest
 
 from prima.errors import UsageError
 from prima.experiments.studyfile import read_study
-from tests.helpers.command import prima
+from tests.helpers import command
+from tests.helpers.here import prima
 from tests.helpers.sweeps import write_visit
 
 STUDY = """
@@ -142,6 +143,6 @@ def test_large_studies_are_refused_soon_and_with_their_line() -> None:
         (f'touch = "{"s" * 900_000}"', "is not a time. Write a number with its unit"),
     ):
         Path("study.toml").write_text(f"{STUDY.partition('touch')[0]}{written}", encoding="utf-8")
-        done = prima("sweep", "study.toml", "--plan", timeout=60)
+        done = command.prima("sweep", "study.toml", "--plan", timeout=60)
         assert done.returncode == 2 and why in done.stderr and "study.toml:8" in done.stderr
         assert len(done.stderr) < 5_000

@@ -17,7 +17,7 @@ from prima.experiments.scenariotext import Variant
 from prima.experiments.sweep import Output, Sweep, SweepQuestion, estimate
 from prima.experiments.variants import Stage, signature
 from tests.helpers.batches import files
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.sweeps import VISIT, write_visit
 
 TOUCH = {"touch": "0s..6s/2s"}

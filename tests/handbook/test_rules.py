@@ -16,7 +16,7 @@ from prima.report import strip
 from prima.scheduler.policy import BASELINES
 from prima.transcript.rules import RULES
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.pages import run
 
 

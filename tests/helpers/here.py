@@ -1,10 +1,13 @@
-"""The command line in this process: what needs no pool, terminal, signal or input."""
+"""The command line in this process: what needs no pool, terminal or signal."""
 
 from __future__ import annotations
 
 import io
+import os
 import sys
-from contextlib import chdir, redirect_stderr, redirect_stdout
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
 from dataclasses import asdict
 from pathlib import Path
 from subprocess import CompletedProcess
@@ -14,28 +17,67 @@ from prima import cli
 from prima.markup.limits import LIMITS
 
 
-def prima(*args: object, cwd: str | Path = ".") -> CompletedProcess[str]:
-    """Run ``prima`` with arguments; a traceback, or a defect that it reports, fails the test."""
+def prima(
+    *args: object,
+    cwd: str | Path = ".",
+    input: str | bytes = "",
+    env: Mapping[str, str] | None = None,
+    encoding: str = "utf-8",
+    together: bool = False,
+) -> CompletedProcess[str]:
+    """Run ``prima`` with arguments; a traceback, or a defect that it reports, fails the test.
+
+    Args:
+        args: The words of the command.
+        cwd: Its folder.
+        input: What it reads from a file as its stdin.
+        env: Its whole environment, as far as Python has not read that when it started.
+        encoding: That of its stdout at the beginning, as PYTHONIOENCODING sets it.
+        together: Whether its stderr goes to its stdout.
+    """
     words = [str(one) for one in args]
     code: object = 0
-    out, err = _stream(), _stream()
-    limits = asdict(LIMITS)
+    out = _stream(encoding)
+    err = out if together else _stream("utf-8")
     argv = patch.object(sys, "argv", ["prima", *words])
-    with chdir(cwd), redirect_stdout(out), redirect_stderr(err), argv:
+    environment = patch.dict(os.environ, dict(os.environ if env is None else env), clear=True)
+    with chdir(cwd), environment, _own_process(input), redirect_stdout(out), redirect_stderr(err):
         try:
-            cli.main()
+            with argv:
+                cli.main()
         except SystemExit as ended:
             code = ended.code
-        finally:
-            for name, number in limits.items():  # --limit is for one process
-                setattr(LIMITS, name, number)
     errors = _text(err)
     assert "Traceback" not in errors and "defect of prima" not in errors, errors
-    return CompletedProcess(words, int(str(code or 0)), _text(out), errors)
+    return CompletedProcess(words, int(str(code or 0)), _text(out), "" if together else errors)
 
 
-def _stream() -> io.TextIOWrapper:
-    return io.TextIOWrapper(io.BytesIO(), "utf-8", "surrogateescape", newline="")
+@contextmanager
+def _own_process(input: str | bytes) -> Iterator[None]:
+    """Give back afterwards what a command changes for the rest of its process."""
+    limits = asdict(LIMITS)  # --limit
+    hook = sys.unraisablehook
+    kept = os.dup(0), os.dup(1)
+    given = input.encode("utf-8", "surrogateescape") if isinstance(input, str) else input
+    try:
+        with tempfile.TemporaryFile() as file:
+            file.write(given)
+            file.seek(0)
+            os.dup2(file.fileno(), 0)
+        with open(0, encoding="utf-8", closefd=False) as stdin, patch.object(sys, "stdin", stdin):
+            yield
+    finally:
+        for number, one in enumerate(kept):  # stdout is closed where nobody reads it any more
+            os.dup2(one, number)
+            os.close(one)
+        sys.unraisablehook = hook
+        for name, number in limits.items():
+            setattr(LIMITS, name, number)
+
+
+def _stream(encoding: str) -> io.TextIOWrapper:
+    errors = "surrogateescape" if encoding == "utf-8" else "strict"
+    return io.TextIOWrapper(io.BytesIO(), encoding, errors, newline="")
 
 
 def _text(stream: io.TextIOWrapper) -> str:

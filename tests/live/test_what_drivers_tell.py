@@ -13,7 +13,8 @@ import pytest
 from prima.devices.goals import At, Broke, Done, Lost, News, Report, Sees, Stopped
 from prima.live.wellformed import WRONG, well_formed
 from prima.messages import Emergency, Heard, Narrated, Occurred, Sensed
-from tests.helpers.command import prima
+from tests.helpers import command
+from tests.helpers.here import prima
 
 CYCLE: list[Any] = []
 CYCLE.append(CYCLE)
@@ -94,7 +95,7 @@ def live(folder: Path, what: str) -> tuple[int, str, list[dict[str, Any]]]:
         "<block><speak>Hi.</speak><exit/></block></form></prima>"
     )
     words = ["--driver", "odd.py", "--robot", "robot.xml", "--ea", "hi.xml", "--until", "8s"]
-    ran = prima("live", *words, "-o", "m.jsonl", cwd=folder)
+    ran = command.prima("live", *words, "-o", "m.jsonl", cwd=folder)
     records = [json.loads(line) for line in (folder / "m.jsonl").read_text().splitlines()]
     again = prima("replay", "m.jsonl", cwd=folder)
     assert (again.returncode, again.stderr) == (0, "the same, byte for byte\n")

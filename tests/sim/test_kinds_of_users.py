@@ -13,7 +13,7 @@ from prima.errors import DocumentError
 from prima.invariants import callers, check
 from prima.loading import load_scenario, load_text
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.rehearsing import rehearse, told
 
 HEAD = '<user xmlns="urn:prima:user:1" version="1.0" id="kind"'

@@ -22,7 +22,7 @@ from prima.testing.summary import format_result
 from prima.testing.tracing import StateHistory, states_of
 from prima.transcript.run import run_of
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.testing import DEMOS, DESK, FIRST, outcome, write
 
 # Expectations ----------------------------------------------------------------------

@@ -11,7 +11,7 @@ from prima.errors import UsageError
 from prima.testing.golden import difference
 from prima.testing.running import TestOptions, run_one
 from prima.transcript.table import format_rows
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.testing import DESK, write
 
 

@@ -23,7 +23,7 @@ from prima.testing.junit import junit
 from prima.testing.running import TestOptions, run_all
 from prima.testing.summary import format_result
 from tests import ROOT
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.testing import DEMOS, DESK, FIRST, outcome, write
 
 
@@ -92,7 +92,7 @@ def test_an_interrupt_ends_all_of_it(jobs: str, tmp_path: Path) -> None:
     )
     maps = Path(f"/proc/{running.pid}/maps")
     end = time.monotonic() + 30
-    while b"lxml" not in maps.read_bytes() and time.monotonic() < end:
+    while b"pyexpat" not in maps.read_bytes() and time.monotonic() < end:
         time.sleep(0.05)  # before, the interrupt is Python's own
     time.sleep(1)
     os.killpg(running.pid, signal.SIGINT)

@@ -9,8 +9,8 @@ import pytest
 from prima import api
 from prima.errors import Problem
 from prima.voicexml.reading import read_page
-from tests.helpers.command import prima
 from tests.helpers.dialogs import block, codes, run
+from tests.helpers.here import prima
 from tests.helpers.voice import vxml
 
 
