@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -35,11 +36,20 @@ def visit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a sweep that was not interrupted."""
+    place = tmp_path_factory.mktemp("swept")
+    write_visit(place)
+    (place / "whole").mkdir()
+    assert prima(*ARGUMENTS, "-o", "whole/t.csv", cwd=place).returncode == 0
+    return place / "whole"
+
+
 @pytest.fixture
-def whole(visit: Path) -> bytes:
-    """The table that an interrupted sweep has to come to."""
-    (visit / "whole").mkdir()
-    assert prima(*ARGUMENTS, "-o", "whole/t.csv").returncode == 0
+def whole(visit: Path, swept: Path) -> bytes:
+    """The table that an interrupted sweep has to come to, in a folder with all that belongs to it."""
+    shutil.copytree(swept, visit / "whole")
     return Path("whole/t.csv").read_bytes()
 
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from functools import lru_cache
 from pathlib import Path
 
@@ -17,31 +15,25 @@ from prima.sim.vocabulary.scenario import SCENARIO
 from prima.sim.vocabulary.user import USER
 from prima.sim.vocabulary.world import WORLD
 from tests import ROOT
+from tests.helpers.here import prima
 
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 FENCE = re.compile(
     r"^```(?P<language>\w*)(?: (?P<name>\S+))?\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL
 )
 NAMESPACES = {one.namespace: one for one in (DIALOGUE, WORLD, ROBOT, SCENARIO, USER, SERVICES)}
-MODULE = [sys.executable, "-m", "prima"]
 
 
 def run(words: list[str], folder: Path, given: str | None = None) -> tuple[int, list[str]]:
+    """A command of a page: its exit code, and the lines that it prints."""
     paths = [
         sorted(path.relative_to(folder).as_posix() for path in folder.glob(word))
         if "*" in word
         else [word]
         for word in words
     ]
-    done = subprocess.run(
-        [*MODULE, *(name for names in paths for name in names)],
-        cwd=folder,
-        input=given,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        encoding="utf-8",
-        timeout=120,
-    )
+    names = [name for names in paths for name in names]
+    done = prima(*names, cwd=folder, input=given or "", together=True)
     return done.returncode, [line.rstrip() for line in done.stdout.splitlines()]
 
 
