@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import networkx
@@ -314,6 +315,7 @@ def modules() -> dict[str, ast.Module]:
 MODULES = modules()
 
 
+@cache
 def imported(tree: ast.Module, types_too: bool = False) -> set[str]:
     """Names of modules imported anywhere in a module, inside functions as well."""
     names: set[str] = set()
