@@ -28,8 +28,9 @@ from prima.experiments.sweep import Sweep, SweepQuestion
 from prima.experiments.variants import Made, Stage
 from prima.pool import Died
 from tests import ROOT
+from tests.helpers import command
 from tests.helpers.batches import files, until
-from tests.helpers.command import prima
+from tests.helpers.here import prima
 from tests.helpers.sweeps import write_visit
 
 ENVIRONMENT = {
@@ -108,11 +109,11 @@ def test_a_cluster_makes_the_same_files(dask: Cluster) -> None:
     for folder in ("local", "there"):
         Path(folder).mkdir()
     assert prima("sweep", "visit.xml", *VARY, "-o", "local/t.csv").returncode == 0
-    done = prima("sweep", "visit.xml", *VARY, "-o", "there/t.csv", "--on", dask.address)
+    done = command.prima("sweep", "visit.xml", *VARY, "-o", "there/t.csv", "--on", dask.address)
     assert done.returncode == 0, done.stderr
     assert files("there") == files("local")
     local = prima("explore", "visit.xml", "-o", "local/e")
-    there = prima("explore", "visit.xml", "-o", "there/e", "--on", dask.address)
+    there = command.prima("explore", "visit.xml", "-o", "there/e", "--on", dask.address)
     assert there.stdout == local.stdout, there.stderr
     assert files("there") == files("local")
     table = package.sweep("visit.xml", {"touch": "1s|2s"}, on=dask.address)
@@ -141,10 +142,10 @@ def test_a_worker_killed_in_the_middle_loses_nothing(dask: Cluster) -> None:
 def test_a_cluster_whose_workers_have_all_gone(dask: Cluster, monkeypatch: Any) -> None:
     """It says so, ends after a while, and goes on with --resume as soon as there is one."""
     monkeypatch.setenv("PRIMA_CLUSTER_PATIENCE", "9")
-    command = ["sweep", "visit.xml", "-o", "t.csv", "--on", dask.address, *VARY]
+    words = ["sweep", "visit.xml", "-o", "t.csv", "--on", dask.address, *VARY]
     only = dask.worker("--nthreads", "1", "--no-nanny")
     made = subprocess.Popen(
-        [sys.executable, "-m", "prima", *command],
+        [sys.executable, "-m", "prima", *words],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
     until(lambda: Path("t.csv").exists() and Path("t.csv").read_bytes().count(b"\n") > 20)
@@ -155,7 +156,7 @@ def test_a_cluster_whose_workers_have_all_gone(dask: Cluster, monkeypatch: Any) 
     assert "has had no worker for 9 s. Start some, and go on with --resume." in err
     assert Path("t.csv").read_bytes().count(b"\n") > 20
     dask.worker()
-    done = prima(*command, "--resume")
+    done = command.prima(*words, "--resume")
     assert done.returncode == 0, done.stderr
     Path("local").mkdir()
     prima("sweep", "visit.xml", *VARY, "-o", "local/t.csv")
@@ -215,13 +216,13 @@ def test_a_worker_that_ends_while_it_is_asked(
 def test_a_plan_counts_the_cluster_s_workers(dask: Cluster) -> None:
     for _ in range(3):
         dask.worker()
-    done = prima("sweep", "visit.xml", *VARY, "--plan", "--on", dask.address)
+    done = command.prima("sweep", "visit.xml", *VARY, "--plan", "--on", dask.address)
     assert "322 runs: about" in done.stdout and "with 3 processes" in done.stdout, done.stderr
 
 
 def test_nobody_answers() -> None:
     began = time.monotonic()
-    done = prima("sweep", "visit.xml", "--on", "tcp://127.0.0.1:9")
+    done = command.prima("sweep", "visit.xml", "--on", "tcp://127.0.0.1:9")
     assert (done.returncode, done.stdout) == (2, "")
     assert "no scheduler" in done.stderr and "dask scheduler" in done.stderr, done.stderr
     assert time.monotonic() - began < 40
