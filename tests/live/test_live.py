@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.helpers import here
+
 ROOT = Path(__file__).parents[2]
 ROBOT = "documents/robots/simulated.xml"
 HELLO = """<prima xmlns="urn:prima:dialogue:1" version="1.0" id="hello" kind="ea">
@@ -50,7 +52,7 @@ def test_a_run_prints_its_rows_and_writes_a_journal_that_replays(
     assert (ran.returncode, ran.stderr) == (0, "")
     assert '"Hello there."' in ran.stdout
     assert json.loads(journal.read_text().splitlines()[-1])["phase"] == "over"
-    again = prima("replay", str(journal))
+    again = here.prima("replay", str(journal), cwd=ROOT)
     assert (again.returncode, again.stderr) == (0, "the same, byte for byte\n")
     shown = prima("show", str(journal), "--why")
     assert shown.returncode == 0, shown.stderr
@@ -65,10 +67,10 @@ def test_a_journal_replays_wherever_it_and_its_documents_are_moved(tmp_path: Pat
     ran = prima("live", "--robot", ROBOT, "--ea", str(before / "hello.xml"), "-o", str(journal))
     assert ran.returncode == 0, ran.stderr
     before.rename(after)
-    again = prima("replay", str(after / "visit.jsonl"))
+    again = here.prima("replay", str(after / "visit.jsonl"), cwd=ROOT)
     assert again.returncode == 0, again.stderr
     (after / "hello.xml").write_text(HELLO.replace("there", "you"))
-    other = prima("replay", str(after / "visit.jsonl"))
+    other = here.prima("replay", str(after / "visit.jsonl"), cwd=ROOT)
     assert other.returncode == 2
     assert "has changed" in other.stderr or "is not the file" in other.stderr
 
@@ -97,7 +99,7 @@ def test_an_interrupt_makes_the_robot_safe_and_says_how_to_go_on(
     on = prima("live", "--resume", str(journal), "--speed", "50", "--until", "20s")
     assert on.returncode == 0, on.stderr
     assert "the run was cut off here, and goes on" in on.stdout
-    assert prima("replay", str(journal)).returncode == 0
+    assert here.prima("replay", str(journal), cwd=ROOT).returncode == 0
 
 
 def test_a_machine_that_stood_still_is_reported_and_the_run_goes_on(tmp_path: Path) -> None:
@@ -122,7 +124,7 @@ def test_a_machine_that_stood_still_is_reported_and_the_run_goes_on(tmp_path: Pa
     _, told = running.communicate(timeout=60)
     assert running.returncode == 0, told
     assert re.search(r"An instant was carried out \d\S* s late", told)
-    assert prima("replay", str(journal)).returncode == 0
+    assert here.prima("replay", str(journal), cwd=ROOT).returncode == 0
 
 
 def test_every_command_of_the_simulated_robot_passes_the_preflight() -> None:
@@ -292,4 +294,4 @@ def test_an_area_of_the_site_brings_its_application(tmp_path: Path) -> None:
         ("goes", None),
         ("hello", "the shop"),
     ]
-    assert prima("replay", str(journal)).returncode == 0
+    assert here.prima("replay", str(journal), cwd=ROOT).returncode == 0

@@ -14,6 +14,7 @@ import pytest
 
 from prima.live.journal import known
 from prima.messages import Record
+from tests.helpers import here
 from tests.live.test_live import ROBOT, ROOT, prima
 from tests.live.test_services import ASKS, Host, document, host
 
@@ -57,7 +58,7 @@ def test_what_was_asked_is_asked_again_or_has_failed(
     assert on.returncode == 0, on.stderr
     assert line in on.stdout
     assert len(host.asked) == times
-    assert prima("replay", str(journal)).returncode == 0
+    assert here.prima("replay", str(journal), cwd=ROOT).returncode == 0
     if times == 1:
         errors = [r for r in map(json.loads, journal.read_text().splitlines()) if r.get("event")]
         (told,) = [r["data"]["message"] for r in errors if r["event"] == "error.service.library"]
@@ -131,7 +132,7 @@ def test_a_scenario_goes_on_and_gives_the_rehearsals_transcript(share: float, wh
     on = prima("live", "--speed", "1000", "--resume", str(journal))
     assert on.returncode == 0, on.stderr
     assert journal.read_text() == text
-    assert prima("replay", str(journal)).returncode == 0
+    assert here.prima("replay", str(journal), cwd=ROOT).returncode == 0
 
 
 def test_a_scenario_that_a_host_has_answered_does_not_go_on(whole: Path) -> None:

@@ -13,6 +13,7 @@ import pytest
 
 from prima import api
 from tests import ROOT
+from tests.helpers import here
 from tests.helpers.talking import ASKS, DOCUMENTS, TICKS, TOUCHED, room, start
 
 
@@ -79,9 +80,9 @@ def test_applications_alone_are_played_in_a_room(tmp_path: Path) -> None:
     ],
 )
 def test_wrong_usage_is_refused(tmp_path: Path, words: list[str], message: str) -> None:
-    done = prima(tmp_path, b"", *words)
+    done = here.prima("talk", *words, cwd=tmp_path)
     assert done.returncode == 2
-    assert message in done.stderr.decode()
+    assert message in done.stderr
 
 
 def test_what_is_piped_may_come_from_windows(tmp_path: Path) -> None:
@@ -169,7 +170,7 @@ def test_applications_are_talked_to_in_another_world_and_on_another_robot(tmp_pa
         (["--world", "void.xml"], "has no place for the robot"),
         (["--robot", str(world)], "office.xml"),
     ):
-        refused = prima(tmp_path, b"", "--ea", "ea.xml", *more)
-        assert refused.returncode in (1, 2) and told in refused.stderr.decode(), refused.stderr
-    refused = prima(tmp_path, b"", str(path), "--world", str(world))
-    assert refused.returncode == 2 and b"a scenario names its own" in refused.stderr
+        refused = here.prima("talk", "--ea", "ea.xml", *more, cwd=tmp_path)
+        assert refused.returncode in (1, 2) and told in refused.stderr, refused.stderr
+    refused = here.prima("talk", path, "--world", world, cwd=tmp_path)
+    assert refused.returncode == 2 and "a scenario names its own" in refused.stderr
