@@ -24,7 +24,7 @@ class RecordingBounds:
     """How long the user has to be silent for it to end."""
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Begin:
     """A goal begins. An AB has one for its motion, one for its text, one for its answer.
 
@@ -50,26 +50,26 @@ class Begin:
     """When the recording ends."""
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Again:
     """A feedback Command makes another loop: its goal goes on. Most drivers can ignore this."""
 
     key: str
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Cancel:
     """A goal has to end as soon as it can: :class:`Stopped` confirms it."""
 
     key: str
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Stand:
     """The body has to stop if it is still rolling (F5)."""
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Safe:
     """Everything has to stop at once; the devices are considered lost."""
 
@@ -79,21 +79,21 @@ class Safe:
 Call = Begin | Again | Cancel | Stand | Safe
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Accepted:
     """A driver has begun a goal."""
 
     key: str
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Progress:
     """A driver is still working at a goal."""
 
     key: str
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Done:
     """A goal has been reached."""
 
@@ -101,7 +101,7 @@ class Done:
     data: Data = field(default_factory=dict)
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Stopped:
     """A goal has ended because it was cancelled, or was already over by then."""
 
@@ -112,7 +112,7 @@ class Stopped:
     """For a text: how many of its characters had been said, if known."""
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Broke:
     """A goal was not reached: the device failed or refused it."""
 
@@ -123,7 +123,7 @@ class Broke:
     """For a recording: whether the robot is unable to record though its devices work."""
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Lost:
     """A driver is gone, and the devices with it."""
 
@@ -131,7 +131,7 @@ class Lost:
     reason: str
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Back:
     """Devices that were lost work again."""
 
@@ -144,7 +144,7 @@ Report = Accepted | Progress | Done | Stopped | Broke | Lost | Back
 # Other reports of drivers -----------------------------------------------------------------
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class At:
     """Where the robot is: metres, and degrees to the left of the x axis, in the map's frame."""
 
@@ -153,7 +153,7 @@ class At:
     heading: float
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Sees:
     """Whether the camera sees the user and, if so, their distance (m) and degrees to the left."""
 
@@ -162,7 +162,7 @@ class Sees:
     angle: float | None = None
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Speaks:
     """The user begins to speak, or has fallen silent.
 

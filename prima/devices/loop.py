@@ -65,7 +65,7 @@ class Loop:
             ``outcome`` says why the run has ended.
         """
         while not self.outcome:
-            if self._ended and self.over:
+            if self.over:
                 self.outcome = "over"
                 break
             due = self.due()

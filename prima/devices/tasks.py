@@ -76,14 +76,16 @@ class Task:
     """How much of it had been done then by its times, if they are known."""
     heard: int | None = None
     """How many characters of the rest of its text had been said, if the device reports it."""
-    id: str = field(init=False)
-    """The AB's name."""
-    name: str = field(init=False)
-    """The same without the number of its loop."""
 
-    def __post_init__(self) -> None:
-        self.id = self.order.behavior
-        self.name = self.id.partition(".")[0]
+    @property
+    def id(self) -> str:
+        """The AB's name."""
+        return self.order.behavior
+
+    @property
+    def name(self) -> str:
+        """The same without the number of its loop."""
+        return self.id.partition(".")[0]
 
     def has(self, *kinds: str) -> bool:
         """Whether a goal of one of these kinds is under way."""

@@ -42,7 +42,7 @@ def u2(mediation: Mediation, ab: Behavior, goal: bool, data: Data, inbound: bool
     mediation.recorder.end(ab, outcome, goal, data, inbound)
     if not goal:
         note_rolling(mediation, ab)
-    if "x1" in mediation.extensions:
+    if "x1" in mediation.policy.extensions:
         _note_effects(mediation, ab, data, ending)
     if not inbound:
         _note_answer(mediation, ab, outcome)

@@ -16,7 +16,7 @@ from prima.scheduler.selection import able
 
 def x8(mediation: Mediation) -> bool:
     """X8: give up reactions that were not started in time; whether there were any."""
-    if "x8" not in mediation.extensions or mediation.halted:
+    if "x8" not in mediation.policy.extensions or mediation.halted:
         return False
     stale = [ab for ab in mediation.memory.waiting.values() if _is_stale(ab, mediation.now)]
     if not stale:

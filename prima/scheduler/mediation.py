@@ -92,12 +92,9 @@ class Mediation:
     halted_units: dict[str, HaltedUnit] = field(default_factory=dict)
     """By the part whose device has yet to report how much was done (X2)."""
     maker: Maker = field(init=False)
-    extensions: frozenset[str] = field(init=False)
-    """The policy's extensions that are on."""
 
     def __post_init__(self) -> None:
         self.maker = Maker(self.table)
-        self.extensions = self.policy.extensions
 
     @property
     def now(self) -> int:

@@ -130,7 +130,7 @@ class Mediator:
 
     def offered(self) -> Behavior | None:
         """X8: the question that is offered what the listening one refuses, if any."""
-        return freshness.offered(self._all) if "x8" in self._all.extensions else None
+        return freshness.offered(self._all) if "x8" in self._all.policy.extensions else None
 
     def coming_question(self, name: str) -> Behavior | None:
         """X10: the question that an application is asking, or asks next."""
@@ -140,7 +140,7 @@ class Mediator:
 
     def has(self, extension: str) -> bool:
         """Whether an extension is on."""
-        return extension in self._all.extensions
+        return extension in self._all.policy.extensions
 
     def failed(self, behavior: str, device: str, reason: str) -> None:
         """E1: a device fails."""

@@ -37,10 +37,6 @@ class Policy:
     extensions: frozenset[str] = frozenset()
     """Which of :data:`EXTENSIONS` are on."""
 
-    def has(self, extension: str) -> bool:
-        """Whether an extension is on."""
-        return extension in self.extensions
-
     def rank(self, ab: Behavior, memory: WorkingMemory, now: int) -> Rank:
         """Where a waiting AB ranks: the smallest goes first (S2)."""
         return (

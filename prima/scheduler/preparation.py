@@ -21,7 +21,7 @@ def prepare(mediation: Mediation, ab: Behavior) -> bool:
 def x1(mediation: Mediation, ab: Behavior) -> bool:
     """X1: restore the robot's state on which a suspended stream relies."""
     if (
-        not (ab.stream.suspended and "x1" in mediation.extensions)
+        not (ab.stream.suspended and "x1" in mediation.policy.extensions)
         or first_of(ab.stream) is not None
     ):
         return False
@@ -31,7 +31,7 @@ def x1(mediation: Mediation, ab: Behavior) -> bool:
 
 def x4(mediation: Mediation, ab: Behavior) -> bool:
     """X4: face the user before a conversation begins."""
-    if not (ab.connect and "x4" in mediation.extensions):
+    if not (ab.connect and "x4" in mediation.policy.extensions):
         return False
     ab.connect = False
     return not mediation.memory.in_view and insert(mediation, ab, [Command("face-human")], "X4")
@@ -96,7 +96,7 @@ def join_first(mediation: Mediation) -> None:
 
     Commands with ``now`` do not: they wait for nothing of their own application (O2).
     """
-    if not ("x1" in mediation.extensions or "x9" in mediation.extensions):
+    if not ("x1" in mediation.policy.extensions or "x9" in mediation.policy.extensions):
         return
     for ab in list(mediation.memory.waiting.values()):
         first = None if ab.inserted else first_of(ab.stream)

@@ -43,7 +43,7 @@ def _take_in(mediation: Mediation, app: Application, asked: Request, unit: Behav
     else:
         stream, parent = place(mediation, app, reaction, unit)
     x3(mediation, stream, asked)
-    stream.words = asked.words if "x9" in mediation.extensions else None
+    stream.words = asked.words if "x9" in mediation.policy.extensions else None
     made = mediation.maker.chain(app, stream, asked, mediation.now, unit)
     for ab in made:
         if not ab.waits_for:
@@ -60,7 +60,7 @@ def _take_in(mediation: Mediation, app: Application, asked: Request, unit: Behav
 
 def x8(mediation: Mediation, ab: Behavior, asked: Request) -> None:
     """X8: the latest time at which a reaction is still worth starting."""
-    if asked.fresh is not None and ab.reaction is not None and "x8" in mediation.extensions:
+    if asked.fresh is not None and ab.reaction is not None and "x8" in mediation.policy.extensions:
         ab.stale = mediation.now + asked.fresh
 
 
@@ -84,7 +84,7 @@ def e3(mediation: Mediation, app: Application, asked: Request, refused: CommandR
 
 def x6(mediation: Mediation, app: Application, asked: Request) -> None:
     """X6: substitute other Commands for those that the robot lacks."""
-    if "x6" not in mediation.extensions:
+    if "x6" not in mediation.policy.extensions:
         return
     for command, lacking in substitute(asked.steps, mediation.table):
         mediation.recorder.add(
@@ -117,7 +117,7 @@ def _devices_of(mediation: Mediation, types: tuple[str, ...]) -> frozenset[str]:
     table, devices = mediation.table, NO_DEVICES
     for name in types:
         row = table.get(name)
-        if row is not None and row.substitute and "x6" in mediation.extensions:
+        if row is not None and row.substitute and "x6" in mediation.policy.extensions:
             row = table[row.substitute]
         if row is not None and not row.substitute:
             devices |= row.devices

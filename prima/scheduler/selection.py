@@ -66,7 +66,7 @@ def _wait_for_devices(mediation: Mediation, ab: Behavior, held: Held) -> Refusal
     refusal = s1(mediation, ab) or s3(mediation, ab, held)
     if refusal is None:
         return None
-    yielding = refusal[0] == "S1" and "x2" in mediation.extensions
+    yielding = refusal[0] == "S1" and "x2" in mediation.policy.extensions
     if yielding and x2(mediation, ab, in_the_way(mediation, ab), held):
         return None
     _hold_back(mediation, ab, held)
@@ -78,7 +78,7 @@ def s1(mediation: Mediation, ab: Behavior) -> Refusal | None:
     if not mediation.policy.exclusive:
         return None
     other = mediation.memory.conflict(ab)
-    if other is not None and "x5" in mediation.extensions and ab.motion:
+    if other is not None and "x5" in mediation.policy.extensions and ab.motion:
         other = next(iter(in_the_way(mediation, ab)), None)
     return None if other is None else ("S1", other.id)
 
@@ -100,7 +100,7 @@ def _hold_back(mediation: Mediation, ab: Behavior, held: Held) -> None:
 def in_the_way(mediation: Mediation, ab: Behavior) -> list[Behavior]:
     """X5: all running ABs that have to end before this one may start."""
     conflicts = mediation.memory.conflicts(ab)
-    if "x5" not in mediation.extensions:
+    if "x5" not in mediation.policy.extensions:
         return conflicts
     return [other for other in conflicts if {ab.motion, other.motion} != COMPOSED]
 
@@ -146,7 +146,7 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     # An AB that takes no device and no floor keeps no other from starting.
     taking = bool(ab.devices) or ab.reaction is not None
     rivals = able(mediation, lower, held) if taking else []
-    composed = "x5" in mediation.extensions and rules.x5(ab, memory)
+    composed = "x5" in mediation.policy.extensions and rules.x5(ab, memory)
     why = _admitted_by(mediation, ab, composed)
     reaction, ab.reaction, ab.stale = ab.reaction, None, None
     ab.reacted = goes_before(ab, reaction, memory)
@@ -167,7 +167,9 @@ def _outdone(
     mediation: Mediation, rivals: list[Ranked], ab: Behavior, lower: list[Ranked], held: Held
 ) -> list[Ranked]:
     """The ABs that could have started instead of an AB and cannot start beside it."""
-    if "x5" not in mediation.extensions and all(other.devices & ab.devices for _, other in rivals):
+    if "x5" not in mediation.policy.extensions and all(
+        other.devices & ab.devices for _, other in rivals
+    ):
         return rivals
     still = {other.name for _, other in able(mediation, lower, held)}
     return [one for one in rivals if one[1].name not in still]
@@ -201,7 +203,7 @@ def run(mediation: Mediation, ab: Behavior, aside: bool = False) -> None:
     if ab.feedback:
         ab.next_loop()
     mediation.started.append(ab)
-    beside = "x5" in mediation.extensions and memory.conflict(ab) is not None
+    beside = "x5" in mediation.policy.extensions and memory.conflict(ab) is not None
     memory.start(ab, now)
     _note_start(mediation, ab, aside)
     if ab.command is not None:

@@ -152,7 +152,7 @@ def x3(mediation: Mediation, stream: Stream, asked: Request) -> None:
     """X3: a stream's latest request determines whether it is held afterwards."""
     if stream.held_until is not None:
         let_go(mediation, stream, "joined")
-    if "x3" in mediation.extensions:
+    if "x3" in mediation.policy.extensions:
         stream.hold, stream.hold_state = asked.hold, asked.state
 
 
@@ -177,7 +177,7 @@ def let_go(mediation: Mediation, stream: Stream, outcome: str) -> None:
 
 def drop_hints(mediation: Mediation, app: Application, state: int | None) -> None:
     """X3: release what a state that is left, or an application that ends, has held."""
-    if "x3" not in mediation.extensions:
+    if "x3" not in mediation.policy.extensions:
         return
     for stream in mediation.memory.streams.values():
         if stream.app is app and stream.hold and state in (None, stream.hold_state):

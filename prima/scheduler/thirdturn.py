@@ -12,7 +12,7 @@ def owe(mediation: Mediation) -> None:
     """X7: when a question has been answered, note its asker's response."""
     memory = mediation.memory
     stream, memory.answered = memory.answered, None
-    if stream is not None and "x7" in mediation.extensions:
+    if stream is not None and "x7" in mediation.policy.extensions:
         memory.owed = acknowledgement(stream, memory)
 
 

@@ -95,19 +95,17 @@ def changed_names(piece: str) -> set[str] | None:
 def _only_reads(name: Node) -> bool:
     """Whether code only reads a variable's content at one of its occurrences."""
     whole, outer = name, name.parent
-    while outer is not None and outer.type in STEPS and _part(outer, "object") == whole:
+    while (
+        outer is not None and outer.type in STEPS and outer.child_by_field_name("object") == whole
+    ):
         whole, outer = outer, outer.parent
     if outer is None:
         return False
-    operator = _part(outer, "operator")
+    operator = outer.child_by_field_name("operator")
     how = "" if operator is None else operator.type
     if whole == name:  # only its declaration, and a loop over its keys, do not pass it on
         part = {"variable_declarator": "name", "for_in_statement": "right"}.get(outer.type)
-        return part is not None and _part(outer, part) == whole and how != "of"
+        return part is not None and outer.child_by_field_name(part) == whole and how != "of"
     part = WRITTEN.get(outer.type)
-    written = part is not None and _part(outer, part) == whole
+    written = part is not None and outer.child_by_field_name(part) == whole
     return how != "delete" and outer.type not in WRITES and not written
-
-
-def _part(node: Node, name: str) -> Node | None:
-    return node.child_by_field_name(name)

@@ -70,7 +70,7 @@ class Session:
         self.recorder = Recorder()
         self.mediator = Mediator(policy, commands, self.recorder, bound, absence, patience)
         self._wiring = Wiring(self._apps, self.mediator, self.recorder)
-        self._hearing = Hearing(self._wiring, policy.has("x10"))
+        self._hearing = Hearing(self._wiring, "x10" in policy.extensions)
         self._sensors: dict[str, Json] = {}
 
     @property

@@ -76,10 +76,8 @@ class World:
         """Where the head points, from the front (degrees)."""
         self.people: dict[str, Somebody] = {}
         """The people present, by name."""
-        self._attended = ""
-        """The person to whom the robot attends; of several, nobody until it has seen one."""
         self._user: Somebody | None = None
-        """The same, with their place."""
+        """The person to whom the robot attends; of several, nobody until it has seen one."""
         self._inside: set[str] = {one.id for one in plan.corners if self._beyond(one) <= 0.0}
         self._searched: tuple[Point, float] = (at, 0.0)
         """Where the robot was when nearby corners were last computed, and how far (m) it has to go
@@ -108,8 +106,8 @@ class World:
 
     def put(self, name: str, at: Point | None) -> None:
         """Add a person; if they are the only one, the robot attends to them from the start."""
-        self.people[name] = Somebody(at)
-        self._attend(name if len(self.people) == 1 else "")
+        somebody = self.people[name] = Somebody(at)
+        self._attend(somebody if len(self.people) == 1 else None)
 
     @property
     def person(self) -> Point | None:
@@ -119,10 +117,10 @@ class World:
     def attend(self, name: str) -> None:
         """Attend to a person who has spoken or touched the robot."""
         if self.people[name].at is not None:
-            self._attend(name)
+            self._attend(self.people[name])
 
-    def _attend(self, name: str) -> None:
-        self._attended, self._user, self._visible = name, self.people.get(name), None
+    def _attend(self, somebody: Somebody | None) -> None:
+        self._user, self._visible = somebody, None
 
     def walk(self, name: str, to: Point | None, speed: float) -> None:
         """Send a person somewhere in a straight line; with None they stay."""
@@ -131,9 +129,10 @@ class World:
 
     def leave(self, name: str) -> None:
         """Let a person leave: the robot attends to the next of the others whom it sees."""
-        self.people[name] = Somebody(None)
-        away = name == self._attended and len(self.people) > 1
-        self._attend("" if away else self._attended)
+        somebody = self.people[name]
+        somebody.at = somebody.goal = None
+        away = somebody is self._user and len(self.people) > 1
+        self._attend(None if away else self._user)
 
     def people_within(self, reach: float) -> list[Point]:
         """The positions of people within a distance (m), nearest to the robot first."""
@@ -197,14 +196,14 @@ class World:
         recomputed only if somebody has moved or turned.
         """
         if self._visible is None:
-            if not self._attended and len(self.people) > 1:
+            if self._user is None and len(self.people) > 1:
                 self.find_somebody()
             self._visible = self._user is not None and self._look(self._user.at)
         return self._visible
 
     def find_somebody(self) -> bool:
         """Whether the robot sees anybody; it attends to the nearest, unless it sees its own."""
-        if self._attended and self._look(self.person):
+        if self._look(self.person):
             return True
         seen = [
             (distance(self.position, one.at), name)
@@ -212,7 +211,7 @@ class World:
             if one.at is not None and self._look(one.at)
         ]
         if seen:
-            self._attend(min(seen)[1])
+            self._attend(self.people[min(seen)[1]])
         return bool(seen)
 
     def _look(self, person: Point | None) -> bool:

@@ -375,10 +375,5 @@ def spoken_between(patch: pytest.MonkeyPatch) -> None:
 
 def always_substituted(patch: pytest.MonkeyPatch) -> None:
     """X6 works though it is off."""
-    complete = Mediation.__post_init__
-
-    def with_x6(mediation: Mediation) -> None:
-        complete(mediation)
-        mediation.extensions = frozenset({"x6"})
-
-    rebind(patch, Mediation, "__post_init__", with_x6)
+    only = property(lambda policy: frozenset({"x6"}), lambda policy, extensions: None)
+    rebind(patch, Policy, "extensions", only)

@@ -172,13 +172,8 @@ def waits_for_what_runs(ab: Behavior, memory: WorkingMemory) -> tuple[str, str] 
     return next((("F2", one.id) for one in memory.running.values() if one.app is not ab.app), None)
 
 
-complete = Mediation.__post_init__
-
-
-def makes_channels(mediation: Mediation) -> None:
-    """K3: X4 is always on."""
-    complete(mediation)
-    mediation.extensions = frozenset({"x4"})
+makes_channels = property(lambda policy: frozenset({"x4"}), lambda policy, extensions: None)
+"""K3: X4 is always on."""
 
 
 def chance(patch: pytest.MonkeyPatch) -> None:
@@ -291,7 +286,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("c6", "never raised", put(Handling, "check_watches", lambda *given: [])),
     ("f4", "all wait for what runs", put(rules, "f2", waits_for_what_runs)),
     ("k2", "one priority", put(CommandType, "priority", property(lambda row: 1))),
-    ("k3", "a channel is made", put(Mediation, "__post_init__", makes_channels)),
+    ("k3", "a channel is made", put(Policy, "extensions", makes_channels)),
     ("v1", "the question first", put(Hearing, "_follow_links", lambda *given: False)),
     ("v2", "dropped", put(WorkingMemory, "conflict", nothing)),
     ("v3", "events first", put(Session, "_class", lambda session, value: (0, 0))),
