@@ -64,20 +64,17 @@ class Loop:
             Its records, or None if there is no such instant: nothing else is due by then, or
             ``outcome`` says why the run has ended.
         """
-        while not self.outcome:
-            if self.over:
-                self.outcome = "over"
-                break
-            due = self.due()
-            if due is None or due > until:
-                break
+        if self.over and not self.outcome:
+            self.outcome = "over"
+        while not self.outcome and (due := self.due()) is not None and due <= until:
             if self._full:
                 self.outcome = "limit"
                 break
-            self.now = now = max(due, self.now)
-            inbound = self.devices.collect(now)
-            if inbound or (self._deadline is not None and now >= self._deadline):
-                return self._decide(now, inbound)
+            if due > self.now:
+                self.now = due
+            inbound = self.devices.collect(self.now)
+            if inbound or (self._deadline is not None and self.now >= self._deadline):
+                return self._decide(self.now, inbound)
         return None
 
     def finish(self, until: int) -> list[Record]:

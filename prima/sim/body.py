@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
 from prima.devices.goals import SAY, Again, Begin, Broke, Cancel, Done, Report, Stand, Stopped
 from prima.devices.goals import Call as Told
@@ -11,9 +12,9 @@ from prima.devices.profile import BRAKING_MS, POINTING_MS, Profile
 from prima.messages import Occurred
 from prima.messages.times import earliest
 from prima.sim.locomotion import Locomotion, LocomotionMemory
-from prima.sim.measuring import STANDING, OwnSensors
+from prima.sim.measuring import OwnSensors
 from prima.sim.routes import Routes
-from prima.sim.world import World
+from prima.sim.world import STANDING, World
 
 FAILING_MS = 300
 """How long a broken device tries before it reports failure."""
@@ -153,12 +154,12 @@ class Body:
             case "set-position" | "set-position-and-direction":
                 plan.path = [(float(args["x"]), float(args["y"]))]
             case "tracking-human":
-                effort.control = lambda: move.track(plan, begin.command)
+                effort.control = partial(move.track, plan, begin.command)
             case "active-sensing-human":
-                effort.control = lambda: move.search(plan)
+                effort.control = partial(move.search, plan)
         if plan.path is not None:
             plan.track = [self.world.position, *plan.path]
-            effort.control = lambda: move.drive_path(plan, begin.command)
+            effort.control = partial(move.drive_path, plan, begin.command)
 
     def _begin_once(self, now: int, effort: Effort) -> None:
         """Begin a goal that ends by itself."""
@@ -170,7 +171,7 @@ class Body:
             case "turn" | "set-direction" | "turn-and-speak":
                 self._turn(now, effort)
             case "face-human" | "face-human-and-speak":
-                effort.control = lambda: self.locomotion.face(effort.plan)
+                effort.control = partial(self.locomotion.face, effort.plan)
             case "set-speed-and-time":
                 self.world.drive = (float(args["speed"]), float(args["turn-speed"]))
                 effort.ends = now + int(args["time"])
@@ -185,7 +186,7 @@ class Body:
                 self._gesture(now, effort, str(args["name"]))
             case other:
                 if other in self.profile.motions:
-                    effort.control = lambda: self._dance(effort)
+                    effort.control = partial(self._dance, effort)
                 lasts = self.profile.durations.get(other, 1)
                 effort.ends = max(begin.spoken, now + lasts, now + 1)
 
@@ -199,7 +200,7 @@ class Body:
             self._refuse(now, effort, "localization", f'there is no place "{args["toward"]}"')
             return
         effort.plan.turn_left = left
-        effort.control = lambda: self.locomotion.turn(effort.plan)
+        effort.control = partial(self.locomotion.turn, effort.plan)
 
     def _gesture(self, now: int, effort: Effort, name: str) -> None:
         lasts = self.profile.gestures.get(name)
@@ -251,8 +252,11 @@ class Body:
         # Moves set the wheels first; a dance adds to them (X5).
         if len(efforts) > 1 and self.profile.motions:
             efforts.sort(key=lambda one: one.begin.kind in self.profile.motions)
-        ends = [self._get_on(now, effort) for effort in efforts]
-        return [end for end in ends if end is not None]
+        reports: list[Report] = []
+        for effort in efforts:
+            if (report := self._get_on(now, effort)) is not None:
+                reports.append(report)
+        return reports
 
     def _get_on(self, now: int, effort: Effort) -> Report | None:
         """Let a goal set the wheels; returns its end, if it has ended."""

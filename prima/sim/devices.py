@@ -78,7 +78,8 @@ class SimulatedDevices:
         if self._stirred:
             self._stirred, self._standing = False, self._due_standing()
         if self.world.moves() or self.robot.body.moves_on:
-            return earliest(self._standing, self.world.time + STEP_MS)
+            step = self.world.time + STEP_MS
+            return step if self._standing is None or step < self._standing else self._standing
         return self._standing
 
     def _due_standing(self) -> int | None:

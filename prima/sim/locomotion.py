@@ -11,7 +11,7 @@ from prima.messages import Command, Json
 from prima.sim.map import Point, distance
 from prima.sim.plan import off_line
 from prima.sim.routes import Routes
-from prima.sim.world import World, bearing, difference
+from prima.sim.world import STANDING, World, bearing, difference
 
 ARRIVED = 0.1
 """A goal is reached at this distance (m)."""
@@ -64,7 +64,7 @@ class Locomotion:
 
     def stand(self) -> None:
         """Stop the wheels."""
-        self.world.drive = (0.0, 0.0)
+        self.world.drive = STANDING
 
     # Ways ---------------------------------------------------------------------------
 
@@ -129,7 +129,7 @@ class Locomotion:
         """Turn by the rest of an angle."""
         plan.turn_left -= self._turned(plan)
         if abs(plan.turn_left) <= ALIGNED:
-            self.world.drive = (0.0, 0.0)
+            self.stand()
             return True
         self._rotate(plan.turn_left)
         return False
@@ -141,12 +141,12 @@ class Locomotion:
         if world.sees_person() and world.person is not None:
             off = difference(bearing(world.position, world.person), world.heading)
             if abs(off) <= 5.0:
-                world.drive = (0.0, 0.0)
+                self.stand()
                 return True
             self._rotate(off)
             return False
         if plan.scanned >= 360.0:
-            world.drive = (0.0, 0.0)
+            self.stand()
             return True
         self._rotate(90.0)
         return False
@@ -162,10 +162,9 @@ class Locomotion:
         turning = off * 3.0
         if abs(turning) > profile.turn_speed:
             turning = copysign(profile.turn_speed, turning)
-        if abs(off) > 30.0:
-            world.drive = (0.0, turning)
-        else:
-            world.drive = (min(fastest, max(near * 1.5, 0.1)), turning)
+        if near * 1.5 < fastest:
+            fastest = min(fastest, max(near * 1.5, 0.1))
+        world.drive = (0.0 if abs(off) > 30.0 else fastest, turning)
 
     def _round_person(self, heading: float, goal: Point) -> tuple[float, float]:
         """The direction and speed that pass a person who is in the way, if anyone is."""
@@ -207,7 +206,7 @@ class Locomotion:
             if abs(off) > ALIGNED:
                 self._rotate(off)
                 return False
-        world.drive = (0.0, 0.0)
+        self.stand()
         plan.goal = True
         return True
 
@@ -226,7 +225,7 @@ class Locomotion:
             if abs(off) > 5.0:
                 self._rotate(off)
             else:
-                world.drive = (0.0, 0.0)
+                self.stand()
         elif not seen and left <= PASSED:
             plan.sought = None  # they are not where they were last seen: look around
         else:
@@ -242,7 +241,7 @@ class Locomotion:
             self._rotate(plan.turn_left)
         else:
             plan.turn_left = 0.0
-            self.world.drive = (0.0, 0.0)
+            self.stand()
         return False
 
     def dance(

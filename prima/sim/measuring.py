@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from prima.messages import Json
 from prima.sim.map import distance
-from prima.sim.world import World
+from prima.sim.world import STANDING, World
 
 ITS_OWN = frozenset({"human", "position", "moving"})
 """The sensors that it measures itself, by the first part of their names."""
-STANDING = (0.0, 0.0)
-"""The wheels' speeds when the robot is still."""
 
 
 class OwnSensors:

@@ -314,8 +314,9 @@ class People:
         if person is None:
             return
         here = world.position
-        if distance(here, person) > keep + 0.2:
-            share = keep / distance(here, person)
+        gap = distance(here, person)
+        if gap > keep + 0.2:
+            share = keep / gap
             goal = (
                 here[0] + (person[0] - here[0]) * share,
                 here[1] + (person[1] - here[1]) * share,

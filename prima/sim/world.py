@@ -20,6 +20,8 @@ WALL = 0.05
 """Half the thickness (m) of walls."""
 THICK = 0.7
 """The share of the body's radius that must be free of walls on both sides of its way."""
+STANDING = (0.0, 0.0)
+"""The wheels' speeds of a robot that does not move."""
 FAR = 3.0
 """The radius (m) around the robot within which walls are considered."""
 
@@ -65,12 +67,18 @@ class World:
         shape = pymunk.Circle(self._body, profile.radius)
         shape.filter = pymunk.ShapeFilter(categories=0b01)
         self._space.add(self._body, shape)
+        self.travelled = 0.0
+        """How far (m) the robot has moved, on whatever way."""
         self._free: tuple[Point, float] = (at, -1.0)
         """A place, and how far (m) around it there is no wall."""
+        self._free_until = -1.0
+        """How far it will have travelled when it may be out of there."""
         self._visible: bool | None = None
         """What the camera sees from here, as computed; None if anybody has moved since."""
-        self._place(at, radians(heading))
-        self.drive = (0.0, 0.0)
+        self.position = at
+        """Where the robot is (m)."""
+        self.turn_body(radians(heading))
+        self.drive = STANDING
         """The wheels' speeds: metres a second forward, degrees a second to the left."""
         self.pan = 0.0
         """Where the head points, from the front (degrees)."""
@@ -79,14 +87,11 @@ class World:
         self._user: Somebody | None = None
         """The person to whom the robot attends; of several, nobody until it has seen one."""
         self._inside: set[str] = {one.id for one in plan.corners if self._beyond(one) <= 0.0}
-        self._searched: tuple[Point, float] = (at, 0.0)
-        """Where the robot was when nearby corners were last computed, and how far (m) it has to go
-        from there to get near or away from one."""
+        self._corner_at = 0.0
+        """How far the robot will have travelled when it may be near or away from a corner."""
 
-    def _place(self, position: Point, angle: float) -> None:
-        """Note the body's position; physics is updated only when needed."""
-        self.position = position
-        """Where the robot is (m)."""
+    def turn_body(self, angle: float) -> None:
+        """Note the direction (radians) of the body; physics is updated only when needed."""
         self._angle = angle
         self.heading = degrees(angle) % 360.0
         """Where the robot's front points (degrees)."""
@@ -225,29 +230,26 @@ class World:
 
     def moves(self) -> bool:
         """Whether anybody moves, so that a physics step is needed."""
-        if self.drive != (0.0, 0.0):
+        if self.drive != STANDING:
             return True
         return any(one.goal is not None for one in self.people.values())
 
     def advance(self, to: int) -> None:
         """Let time pass until ``to`` (ms)."""
-        while self.time < to and self.moves():
-            step = min(STEP_MS, to - self.time)
-            self._step(step / 1000)
+        while (left := to - self.time) > 0 and self.moves():
+            step = left if left < STEP_MS else STEP_MS
             self.time += step
+            self._visible = None
+            if self.drive != STANDING:
+                self._move(step / 1000)
+            for somebody in self.people.values():
+                if somebody.goal is not None and somebody.at is not None:
+                    self._step_person(somebody, somebody.at, somebody.goal, step / 1000)
         self.time = to
 
-    def _step(self, seconds: float) -> None:
-        self._visible = None
-        forward, turning = self.drive
-        if forward or turning:
-            self._move(forward, radians(turning), seconds)
-        for somebody in self.people.values():
-            if somebody.goal is not None and somebody.at is not None:
-                self._step_person(somebody, somebody.at, somebody.goal, seconds)
-
-    def _move(self, forward: float, turning: float, seconds: float) -> None:
+    def _move(self, seconds: float) -> None:
         """Move the body; physics is used only if it may touch a wall."""
+        forward, turning = self.drive[0], radians(self.drive[1])
         near = self._wall_within(self.profile.radius + abs(forward) * seconds + 0.05)
         if near and forward and self._wall_ahead(forward, seconds):
             forward = 0.0
@@ -258,11 +260,14 @@ class World:
             # Each step sets both anew, whatever a push has left of them.
             body.velocity, body.angular_velocity = (along, across), turning
             self._space.step(seconds)
-            self._place((body.position.x, body.position.y), body.angle)
+            there = body.position.x, body.position.y
+            self.turn_body(body.angle)
         else:
             x, y = self.position
-            there = (x + along * seconds, y + across * seconds)
-            self._place(there, self._angle + turning * seconds)
+            there = x + along * seconds, y + across * seconds
+            self.turn_body(self._angle + turning * seconds)
+        self.travelled += distance(self.position, there)
+        self.position = there
 
     def _wall_ahead(self, forward: float, seconds: float) -> bool:
         """Whether continuing would press the body against a wall."""
@@ -275,12 +280,12 @@ class World:
 
     def _wall_within(self, reach: float) -> bool:
         """Whether a wall may be within a distance (m): measured only if that may have changed."""
-        at, free = self._free
-        if distance(at, self.position) + reach < free:
+        if self.travelled + reach < self._free_until:
             return False
         nearest = self._space.point_query_nearest(self.position, FAR, WALLS)
         free = FAR if nearest is None else nearest.distance
         self._free = (self.position, free - EPSILON)
+        self._free_until = self.travelled + free - EPSILON
         return reach >= free - EPSILON
 
     @staticmethod
@@ -294,8 +299,7 @@ class World:
 
     def corners(self) -> list[Corner]:
         """Corners that the robot has come near since the last call."""
-        at, far = self._searched
-        if distance(at, self.position) < far:
+        if self.travelled < self._corner_at:
             return []
         reached = []
         nearest = inf
@@ -307,7 +311,7 @@ class World:
             elif corner.id not in self._inside:
                 self._inside.add(corner.id)
                 reached.append(corner)
-        self._searched = self.position, nearest - EPSILON
+        self._corner_at = self.travelled + nearest - EPSILON
         return reached
 
     def _beyond(self, corner: Corner) -> float:

@@ -131,7 +131,7 @@ class ScenarioDriver(SimDriver):
         await super().open()
         scenario = self.cast.scenario
         if scenario.robot_heading is not None:
-            self.world._place(self.world.position, scenario.robot_heading * 3.141592653589793 / 180)
+            self.world.turn_body(scenario.robot_heading * 3.141592653589793 / 180)
         self.world.people.clear()
         for one in scenario.persons:
             self.world.put(one.name, one.point or self.site.point(one.at))

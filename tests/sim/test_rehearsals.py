@@ -79,8 +79,9 @@ def test_nothing_is_computed_while_nothing_changes(
         monkeypatch.setattr(owner, name, counted)
 
     for owner, name in (
-        (Rehearsal, "_decide"), (Rehearsal, "due"), (World, "_step"), (World, "_look"),
-        (World, "clear"), (Robot, "collect"), (Session, "step"), (Session, "deadline"),
+        (Rehearsal, "_decide"), (Rehearsal, "due"), (World, "_move"), (World, "_look"),
+        (World, "clear"), (World, "moves"), (Robot, "collect"),
+        (Session, "step"), (Session, "deadline"),
     ):  # fmt: skip
         count(owner, name)
     body = """<form id="a"><watch name="warm" when="sensor.temperature &gt; 30"/>
@@ -91,7 +92,7 @@ def test_nothing_is_computed_while_nothing_changes(
     transcript = rehearse(tmp_path, body, script, until="80000s")
     assert when(transcript, "There it is.") == 36000
     assert transcript.outcome == "over"
-    assert (made["_step"], made["_look"], made["clear"]) == (0, 1, 1)
+    assert (made["_move"], made["_look"], made["clear"]) == (0, 1, 1)
     assert made["step"] == made["_decide"] <= 5, "start, seen, said, the message, said"
     assert max(made.values()) <= 10
 
