@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 AHEAD = 4096
 """Maximum number of results that wait for an earlier one."""
+SMALL = 4096
+"""Maximum size (bytes) of an item that waits in a pipe: it never fills the pipe."""
 DYING_SECONDS = 5.0
 """How long a process may take to end after closing its pipe."""
 PRELOADED = ["prima.api", "prima.sim.rehearsal", "prima.transcript.measures"]
@@ -85,12 +88,18 @@ def staff(
     workers: int,
     begin: Callable[[], object] | None = None,
     leave: Callable[[], object] | None = None,
+    ahead: int = 0,
 ) -> Iterator[Callable[[Iterable[Item]], Iterator[tuple[Item, Made | Died]]]]:
     """Processes for several lots of items; gives what makes the results of one lot, as `spread`.
 
     The results of a lot are taken to their end before those of the next.
+
+    Args:
+        function, workers, begin, leave: as for :func:`spread`.
+        ahead: how many items a process is given beyond its current one, so that it need not wait
+            for the next: for items that take about the same time.
     """
-    crew = _Crew(function, begin, leave, workers)
+    crew = _Crew(function, begin, leave, workers, ahead)
     try:
         yield crew.results
     finally:
@@ -99,13 +108,16 @@ def staff(
 
 @dataclass(slots=True, eq=False)
 class _Worker:
-    """A process, its pipe, and the number of its current item."""
+    """A process, its pipe, and the numbers of its items."""
 
     process: Any
     pipe: Connection
-    number: int = -1
+    numbers: deque[int] = field(default_factory=deque)
+    """The items that it has been given, its current one first."""
     ready: bool = False
     """Whether it has begun; if not, its end is not its item's fault."""
+    full: bool = False
+    """Whether nothing can be added to its items."""
 
 
 class _Crew(Generic[Item, Made]):
@@ -117,85 +129,107 @@ class _Crew(Generic[Item, Made]):
         begin: Callable[[], object] | None,
         leave: Callable[[], object] | None,
         most: int,
+        ahead: int,
     ) -> None:
         self.context = _context()
         self.task = (function, begin, leave)
         self.most = most
-        self.idle: list[_Worker] = []
-        self.busy: dict[Connection, _Worker] = {}
+        self.ahead = ahead
+        self.workers: list[_Worker] = []
+        self.held: dict[int, Item] = {}
+        """The items whose results have not been yielded."""
+        self.back: deque[int] = deque()
+        """Items to be given again, as their process has ended before it began them."""
 
     def results(self, items: Iterable[Item]) -> Iterator[tuple[Item, Made | Died]]:
         """See :func:`spread`."""
         from multiprocessing.connection import wait
 
         source = enumerate(items)
-        held: dict[int, Item] = {}
         done: dict[int, Made | Died] = {}
         due, more = 0, True
-        while more or held:
-            while more and len(held) < AHEAD and self._free():
-                taken = next(source, None)
-                if taken is None:
-                    more = False
+        while more or self.held:
+            while (self.back or (more and len(self.held) < AHEAD)) and (worker := self._free()):
+                if self.back:
+                    number = self.back.popleft()
                 else:
-                    held[taken[0]] = taken[1]
-                    self._give(*taken)
+                    taken = next(source, None)
+                    if taken is None:
+                        more = False
+                        continue
+                    number, self.held[taken[0]] = taken
+                self._give(worker, number)
             while due in done:  # keeps all busy while the caller looks at results
-                yield held.pop(due), done.pop(due)
+                yield self.held.pop(due), done.pop(due)
                 due += 1
-            for pipe in wait(list(self.busy)) if self.busy else ():
-                worker = self.busy[pipe]  # type: ignore[index]
-                for made in self._take(worker):
-                    done[worker.number] = made
+            busy = {one.pipe: one for one in self.workers if one.numbers}
+            for pipe in wait(list(busy)) if busy else ():
+                done.update(self._take(busy[pipe]))  # type: ignore[index]
 
-    def _free(self) -> bool:
-        """Whether a process is idle; starts another if there may be more.
+    def _free(self) -> _Worker | None:
+        """The process that may be given an item and has the fewest; starts one if all are busy.
 
         Raises:
             RunError: there is none, and none can be started.
         """
-        if not self.idle and len(self.busy) < self.most:
+        room = [one for one in self.workers if len(one.numbers) <= self.ahead and not one.full]
+        free = min(room, key=lambda one: len(one.numbers), default=None)
+        if (free is None or free.numbers) and len(self.workers) < self.most:
             try:
-                self.idle.append(self._start())
+                free = self._start()
             except (EOFError, OSError) as error:
-                if not self.busy:
+                if not self.workers:
                     why = getattr(error, "strerror", None) or "there are too many"
                     raise RunError(f"cannot start a process: {why}.") from None
-                self.most = len(self.busy)  # go on with fewer
-        return bool(self.idle)
-
-    def _give(self, number: int, item: Item) -> None:
-        """Give an item to a process."""
-        while self._free():
-            worker = self.idle.pop()
-            worker.number = number
-            try:
-                worker.pipe.send(item)
-            except OSError:  # it died while idle
-                worker.pipe.close()
-                if not worker.ready:
-                    raise _no_start(worker) from None
+                self.most = len(self.workers)  # go on with fewer
             else:
-                self.busy[worker.pipe] = worker
-                return
-        raise RunError("a process has died, and no other can be started.")
+                self.workers.append(free)
+        return free
 
-    def _take(self, worker: _Worker) -> list[Made | Died]:
+    def _give(self, worker: _Worker, number: int) -> None:
+        """Give an item to a process; only a small one may wait in its pipe behind another."""
+        from multiprocessing.reduction import ForkingPickler
+
+        data = ForkingPickler.dumps(self.held[number])
+        if worker.numbers and len(data) > SMALL:
+            worker.full = True
+            self.back.appendleft(number)
+            return
+        try:
+            worker.pipe.send_bytes(data)
+        except OSError:  # it has died
+            self.back.appendleft(number)
+            worker.full = True
+            if not worker.numbers:
+                self._bury(worker)
+        else:
+            worker.numbers.append(number)
+
+    def _take(self, worker: _Worker) -> dict[int, Made | Died]:
         """A process's result, or how it ended; nothing if it reports only that it has begun."""
         try:
             made: Made = worker.pipe.recv()
         except (EOFError, OSError):
-            del self.busy[worker.pipe]
-            worker.pipe.close()
-            if not worker.ready:
-                raise _no_start(worker) from None
-            return [Died(_code(worker))]
+            self._bury(worker)
+            number, *others = worker.numbers
+            self.back.extend(others)
+            return {number: Died(_code(worker))}
         if not worker.ready:
             worker.ready = True
-            return []
-        del self.busy[worker.pipe]
-        self.idle.append(worker)
-        return [made]
+            return {}
+        worker.full = False
+        return {worker.numbers.popleft(): made}
+
+    def _bury(self, worker: _Worker) -> None:
+        """Forget a process that has ended.
+
+        Raises:
+            RunError: it ended before it began to work.
+        """
+        self.workers.remove(worker)
+        worker.pipe.close()
+        if not worker.ready:
+            raise _no_start(worker) from None
 
     def _start(self) -> _Worker:
         here, there = self.context.Pipe()
@@ -212,10 +246,9 @@ class _Crew(Generic[Item, Made]):
 
     def end(self) -> None:
         """Kill all processes."""
-        workers = [*self.idle, *self.busy.values()]
-        for worker in workers:
+        for worker in self.workers:
             worker.process.kill()
-        for worker in workers:
+        for worker in self.workers:
             worker.process.join(DYING_SECONDS)
             worker.pipe.close()
 

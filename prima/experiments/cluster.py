@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
 from itertools import islice
-from time import monotonic, sleep
+from time import monotonic, perf_counter, sleep
 from typing import TYPE_CHECKING, Any
 
 from prima.errors import RunError, UsageError
@@ -25,8 +25,10 @@ if TYPE_CHECKING:
 
 SECONDS = 10
 """How long a scheduler and its first worker may take to answer."""
-AT_ONCE = 8
-"""Runs per task: a task costs the scheduler about a millisecond."""
+TASK_SECONDS = 0.5
+"""How long a task should take, as each costs all sides together some 20 ms."""
+FIRST_RUNS, MOST_RUNS = 4, 64
+"""Runs per task: of the first tasks, and at most."""
 TRIES = 5
 """How often workers are checked again if one of them ends meanwhile."""
 AHEAD = 8
@@ -190,7 +192,8 @@ def _lots(
 ) -> Iterator[tuple[Variant, Any]]:
     from distributed import KilledWorker
 
-    lots = iter(lambda: list(islice(variants, AT_ONCE)), [])
+    size = FIRST_RUNS
+    lots = iter(lambda: list(islice(variants, size)), [])
     most = AHEAD * max(len(client.nthreads()), 1)
     tasks: deque[tuple[list[Variant], Future]] = deque()
     while True:
@@ -200,9 +203,12 @@ def _lots(
             return
         lot, task = tasks.popleft()
         try:
-            yield from zip(lot, _result(client, task), strict=True)
+            seconds, made = _result(client, task)
         except KilledWorker:
             yield from _one_by_one(client, sent, lot)
+        else:
+            size = min(max(round(len(lot) * TASK_SECONDS / seconds), 1), MOST_RUNS)
+            yield from zip(lot, made, strict=True)
 
 
 def _one_by_one(
@@ -212,7 +218,7 @@ def _one_by_one(
 
     for variant in lot:
         try:
-            (made,) = _result(client, client.submit(_work, sent, [variant], pure=False))
+            _, (made,) = _result(client, client.submit(_work, sent, [variant], pure=False))
         except KilledWorker:
             made = Died(DIED)
         yield variant, made
@@ -266,6 +272,11 @@ def _given(stage: Making[Result]) -> Making[Result]:
     return stage
 
 
-def _work(stage: Making[Result], lot: Sequence[Variant]) -> list[Result]:
-    """Make the runs of a task; called on a worker."""
-    return [stage.run(one) for one in lot]
+def _work(stage: Making[Result], lot: Sequence[Variant]) -> tuple[float, list[Result]]:
+    """Make the runs of a task; returns how many seconds that took, and the results.
+
+    Called on a worker.
+    """
+    began = perf_counter()
+    made = [stage.run(one) for one in lot]
+    return perf_counter() - began, made

@@ -36,6 +36,6 @@ def local(workers: int = 0) -> Pool:
     """Processes of this machine; by default as many as it has cores."""
 
     def pool(stage: Making[Result]) -> AbstractContextManager[Runs[Result]]:
-        return staff(stage.run, workers or cores())
+        return staff(stage.run, workers or cores(), ahead=1)
 
     return pool

@@ -14,7 +14,7 @@ import pytest
 
 from prima import pool
 from prima.errors import RunError
-from prima.pool import Died, spread
+from prima.pool import Died, spread, staff
 
 
 def square(number: int) -> int:
@@ -43,6 +43,49 @@ def broken() -> None:
 def test_one_that_dies_takes_only_its_own_along(workers: int) -> None:
     made = list(spread(fate, range(8), workers))
     assert made == [(n, {2: Died(-signal.SIGKILL), 5: Died(3)}.get(n, n * n)) for n in range(8)]
+
+
+@pytest.mark.parametrize("workers", [1, 2, 5])
+def test_items_given_ahead_survive_the_one_before_them(workers: int) -> None:
+    with staff(fate, workers, ahead=2) as results:
+        for _ in range(2):
+            made = list(results(range(8)))
+            lost = {2: Died(-signal.SIGKILL), 5: Died(3)}
+            assert made == [(n, lost.get(n, n * n)) for n in range(8)]
+
+
+def echo(text: str) -> str:
+    return text * 2
+
+
+def test_large_items_and_results_do_not_wait_for_each_other() -> None:
+    """Both sides would write to a full pipe, and nobody read."""
+    items = ["a" * 2_000_000, "b", "c" * 2_000_000, "d" * 2_000_000, "e"]
+    with staff(echo, 1, ahead=1) as results:
+        assert list(results(items)) == [(one, one * 2) for one in items]
+
+
+def order(number: int) -> float:
+    begun = time.monotonic()
+    time.sleep(0.2)
+    return begun
+
+
+@pytest.mark.parametrize(("ahead", "begun"), [(0, 2), (1, 4)])
+def test_a_process_is_given_as_many_items_as_asked_for(ahead: int, begun: int) -> None:
+    taken = 0
+
+    def items() -> Iterator[int]:
+        nonlocal taken
+        for number in range(6):
+            taken += 1
+            yield number
+
+    with staff(order, 2, ahead=ahead) as results:
+        made = results(items())
+        next(made)
+        assert begun < taken <= begun + 2, "those that are done have taken the next"
+        assert len(list(made)) == 5
 
 
 def test_items_are_taken_as_they_are_wanted(monkeypatch: pytest.MonkeyPatch) -> None:
