@@ -14,16 +14,16 @@ from release.locked import locked
 PAGE = Path(__file__).parent.parent / "docs" / "licences.md"
 HEAD = """# Licences
 
-PRIMA is under the Apache License 2.0 ([`LICENSE`](../LICENSE)). What `pip install prima` installs
-with it, by what each package says of itself:
+PRIMA is under the Apache License 2.0 ([`LICENSE`](../LICENSE)). `pip install prima` also
+installs these packages; the licences are those that their own metadata name:
 
 | package | licence |
 | --- | --- |
 """
 TAIL = """
-`python -m release.licences` writes this page from the packages that are installed; `make check`
-holds it. The bill of materials of a release ([development.md](development.md#releases)) has the
-versions as well. What only developers need is not part of a release.
+`python -m release.licences` writes this page from the installed packages; `make check` checks
+it. The bill of materials of a release ([development.md](development.md#releases)) has the versions
+as well. Packages that only developers need are not part of a release.
 """
 CLASSIFIER = "License :: OSI Approved :: "
 IDS = {

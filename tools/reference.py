@@ -518,13 +518,30 @@ def _is_function(name: str) -> bool:
     return inspect.isfunction(getattr(prima, name))
 
 
+class _Bare(str):
+    """An annotation, shown without quotes."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
 def _signature(function: Callable[..., object]) -> str:
-    return str(inspect.signature(function)).replace("'", "")
+    signature = inspect.signature(function)
+    parameters = [
+        one if one.annotation is one.empty else one.replace(annotation=_Bare(one.annotation))
+        for one in signature.parameters.values()
+    ]
+    gives = signature.return_annotation
+    return str(signature.replace(parameters=parameters, return_annotation=_Bare(gives)))
 
 
 def _members(thing: type) -> list[str]:
     """Public fields, properties and methods of a class."""
-    told = _field_docs(thing)
+    told: dict[str, str] = {}
+    for one in reversed(getattr(thing, "__mro__", (thing,))):
+        told |= _field_docs(one) if inspect.get_annotations(one) else {}
     rows = [
         (f"`{name}: {getattr(kind, '__forward_arg__', kind)}`", told.get(name, ""))
         for one in reversed(getattr(thing, "__mro__", (thing,)))
@@ -556,7 +573,7 @@ def _field_docs(thing: type) -> dict[str, str]:
     return told
 
 
-SECTION = re.compile(r"^(Args|Raises):$\n((?:[ ]{4}.*\n?|\n)+)", re.MULTILINE)
+SECTION = re.compile(r"^(Args|Returns|Raises):$\n((?:[ ]{4}.*\n?|\n)+)", re.MULTILINE)
 ROLE = re.compile(r":\w+:`~?([^`]+)`")
 
 
@@ -567,8 +584,10 @@ def _prose(thing: object) -> str:
         text = ""  # what dataclass writes where the author wrote nothing
 
     def listed(match: re.Match[str]) -> str:
+        if match[1] == "Returns":
+            return f"Returns: {' '.join(match[2].split())}\n\n"
         entries: list[str] = []
-        for row in inspect.cleandoc(match[2]).splitlines():
+        for row in textwrap.dedent(match[2]).splitlines():
             if row and not row[0].isspace():
                 entries.append(row)
             elif row.strip():

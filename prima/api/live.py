@@ -101,7 +101,7 @@ def run_live(
         fas: the FAs.
         eas: the EAs.
         world: the site's map, and what its areas offer.
-        maps: pairs ``URI=PATH`` for what VoiceXML documents name.
+        maps: pairs ``URI=PATH`` that map addresses in VoiceXML documents to files.
         services: the document of the services that may be used.
         output: the path of the journal, which must not exist yet.
         resume: the journal of an interrupted run to resume; then without all arguments before it.

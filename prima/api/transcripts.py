@@ -135,7 +135,7 @@ def read(path: str | Path, partial: bool = False) -> Transcript:
     """Read a transcript; with ``partial``, up to its first unreadable line.
 
     Raises:
-        UsageError: it cannot be read, or is none; the line is named.
+        UsageError: it cannot be read, or is not a transcript; the line is named.
     """
     cut: list[str] | None = [] if partial else None
     records = list(records_of(path, cut))
@@ -149,7 +149,7 @@ def skim(path: str | Path) -> Transcript:
     than with :func:`read`.
 
     Raises:
-        UsageError: it cannot be read, or is none; the line is named.
+        UsageError: it cannot be read, or is not a transcript; the line is named.
     """
     from prima.transcript.measures import Measure
     from prima.transcript.record import Entry

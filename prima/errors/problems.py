@@ -75,20 +75,26 @@ class Hint(NamedTuple):
 
 class _Problem(NamedTuple):
     place: Place
+    """The file, line and column."""
     severity: Severity
+    """``error``, ``warning`` or ``note``."""
     code: str
+    """The name by which docs/codes.md explains it."""
     message: str
+    """What is wrong."""
     remedy: str = ""
+    """How to mend it."""
     fixes: tuple[Fix, ...] = ()
+    """Alternative edits of the file that mend it."""
     parameters: tuple[tuple[str, str], ...] = ()
+    """The names and numbers in the message."""
 
 
 class Problem(_Problem):
     """One problem of a document, with a remedy if one is known.
 
-    ``parameters`` are the names and numbers in the message. A message or remedy that quotes very
-    long names is cut in its middle: a name may be as long as a document, and be in thousands of
-    messages. It has no fixes then.
+    A message or remedy that quotes very long names is cut in its middle, as a name may be as long
+    as a document, and occur in thousands of messages. Then there are no fixes.
     """
 
     __slots__ = ()

@@ -46,20 +46,20 @@ def sweep(
         vary: levels by paths: a list, or a text as on the command line, such as
             ``{"when[2].after": "0s..20s/1s", "answer": ["Yes.", "No."]}``.
         policies: policies; by default each scenario's own.
-        seeds: runs of each combination, each with other draws; by default 1.
+        seeds: runs of each combination, each with other random values; by default 1.
         design: ``full`` (the default), ``random`` or ``lhs``.
         runs: their number, for ``random`` and ``lhs``.
         output: a ``.csv`` or ``.parquet`` file for the table; a folder beside it gets a
             transcript for each order.
         workers: the number of processes; by default as many as there are cores.
-        resume: whether to go on behind the rows that ``output`` has already.
+        resume: whether to continue after the rows that ``output`` already has.
         bound: rule E4's bound on loops of a feedback Command.
         patience: rule E6's bound (ms); by default each scenario's own.
         isolate: which scripts run in a process of their own, as for :func:`rehearse`.
         on: the address of a scheduler of Dask, on whose workers the runs are made.
 
     Returns:
-        A row for each run: ``.to_pandas()`` and ``polars.from_arrow()`` take it on.
+        A row for each run; ``.to_pandas()`` and ``polars.from_arrow()`` convert it.
 
     Raises:
         DocumentError: a scenario has errors.
@@ -102,15 +102,15 @@ def explore(
 
     Args:
         scenario: a scenario.
-        moves: paths of the times that are moved; by default that of each ``<when>``.
+        moves: paths of the times to vary; by default that of each ``<when>``.
         within: how far each is moved, to both sides (ms).
-        depth: how many are moved at once.
+        depth: how many of them are varied at once.
         step: a grid (ms) of times that are tried besides; 0 for none.
         runs: runs at most.
         policy: a policy; by default the scenario's own.
         output: a folder for the orders and problems, as scenarios with their transcripts.
         workers: the number of processes; by default as many as there are cores.
-        resume: whether to use the runs that ``output`` has already.
+        resume: whether to reuse the runs in ``output``.
         isolate: which scripts run in a process of their own, as for :func:`rehearse`.
         on: the address of a scheduler of Dask, on whose workers the runs are made.
 
@@ -119,7 +119,7 @@ def explore(
 
     Raises:
         DocumentError: the scenario has errors.
-        UsageError: what is to be moved cannot be, or a file cannot be written.
+        UsageError: a path does not name a time, or a file cannot be written.
         RunError: no process can be started.
     """
     check_numbers(within=within, depth=depth, runs=runs, workers=workers)

@@ -155,21 +155,30 @@ class Document:
 
     id: str
     kind: str
+    """``fa`` or ``ea``."""
     lang: str
+    """The language of its texts (BCP 47)."""
     file: str
     forms: dict[str, Form]
+    """By id, in document order; the first is entered first."""
     handlers: tuple[Handler, ...]
+    """Those of the whole document."""
     links: tuple[Link, ...]
+    """Those of the whole document."""
     watches: tuple[Watch, ...]
+    """Those of the whole document."""
     setup: tuple[Declare | Script, ...]
+    """Its variables and scripts, in document order."""
     properties: dict[str, Json]
+    """The values of its properties."""
     node: Node
+    """Its root element."""
     expressions: list[Expression] = field(default_factory=list)
     """All its code except scripts."""
     scripts: list[str] = field(default_factory=list)
     """The code of its scripts."""
     assigns_parts: bool = False
-    """Whether any part of a variable is assigned to."""
+    """Whether any code assigns to a part of a variable."""
     counting: bool = False
     """Whether any handler depends on how often its event has occurred."""
     python: bool | None = None

@@ -27,19 +27,22 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Loaded:
-    """A scenario with everything it names; ``files`` are paths with digests of their bytes."""
+    """A scenario with everything that it names."""
 
     cast: Cast
+    """The scenario, its documents, world and robot."""
     files: dict[str, str]
+    """The files read: digests of their bytes by path."""
     problems: list[Problem] = field(default_factory=list)
+    """Warnings of all these files."""
 
 
 def load_scenario(path: str | Path, robot: str = "") -> Loaded:
     """Load a scenario with its world, robot and applications.
 
     Args:
-        path: the scenario's.
-        robot: the path of another robot than the scenario's.
+        path: the path of the scenario.
+        robot: the path of a robot to use instead of the scenario's.
 
     Raises:
         DocumentError: with the problems of all files, if any is an error.

@@ -32,11 +32,11 @@ def stage(
     Args:
         fas: paths of the robot's own applications.
         eas: paths of the place's.
-        says: what the user says to the questions, one after the other; a text is the first.
+        says: the user's answers to the questions, in order; a single text is the first.
         world: path of another world; the robot is at its first place.
         robot: path of another robot's profile.
         maps: folders of VoiceXML documents and where they are served, as ``URI=FOLDER``.
-        entrances: whether the robot takes up the applications that areas of the world offer.
+        entrances: whether applications that areas of the world offer are loaded as well.
 
     Raises:
         DocumentError: with the problems of all files, if any is an error.

@@ -47,8 +47,11 @@ class Difference:
     """A whole diff, in the order of the second transcript."""
 
     changes: list[Change] = field(default_factory=list)
+    """All rows of both transcripts, also those that are the same."""
     before: Summary | None = None
+    """The measures of the first transcript."""
     after: Summary | None = None
+    """The measures of the second."""
 
     @property
     def counts(self) -> dict[str, int]:
