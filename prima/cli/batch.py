@@ -20,7 +20,7 @@ from prima.experiments.batch import run_batch
 from prima.experiments.plan import BatchPlan, BatchRow, Options
 from prima.experiments.rows import format_counts, format_head, format_row, row_data
 from prima.loading.files import at_once
-from prima.pool import warm_up
+from prima.pool.processes import warm_up
 
 MOST_LISTED = 50_000_000
 """Maximum size of a list of scenarios (bytes)."""

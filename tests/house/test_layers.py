@@ -42,6 +42,7 @@ LAYERS = [
 INSIDE = {
     "messages": [{"commands", "times"}, {"actions", "inbound", "orders"}, {"__init__"}],
     "api": [{"transcripts"}, {"rehearsing", "views"}, {"live"}, {"__init__"}],
+    "pool": [{"processes"}, {"__init__"}],
     "scheduler": [
         {"robot_state"},
         {"behavior"},

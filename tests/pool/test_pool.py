@@ -113,7 +113,7 @@ def test_processes_that_cannot_begin_are_told() -> None:
 SPAWNS = """
 import os, signal
 from multiprocessing import util
-from prima import pool
+from prima.pool.processes import warm_up
 
 def waits():
     return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ())
@@ -123,7 +123,7 @@ def spawn(path, args, fds, real=util.spawnv_passfds):
     return real(path, args, fds)
 
 util.spawnv_passfds = spawn
-pool.warm_up()
+warm_up()
 print(waits(), os.environ.get("PYTHONSAFEPATH"))
 """
 

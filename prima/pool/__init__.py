@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import os
-import signal
-import sys
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from types import ModuleType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from prima.errors import RunError
+from prima.pool.processes import context, starting, work
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -23,8 +21,6 @@ SMALL = 4096
 """Maximum size (bytes) of an item that waits in a pipe: it never fills the pipe."""
 DYING_SECONDS = 5.0
 """How long a process may take to end after closing its pipe."""
-PRELOADED = ["prima.api", "prima.sim.rehearsal", "prima.transcript.measures"]
-"""Modules imported once, by the process from which the others are forked."""
 
 Item = TypeVar("Item")
 Made = TypeVar("Made")
@@ -43,16 +39,6 @@ def cores() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
-
-
-def warm_up() -> None:
-    """Start importing what all processes need, while the caller does something else."""
-    context = _context()
-    if context.get_start_method() == "forkserver":
-        from multiprocessing.forkserver import ensure_running
-
-        with _starting():
-            ensure_running()
 
 
 def spread(
@@ -131,7 +117,7 @@ class _Crew(Generic[Item, Made]):
         most: int,
         ahead: int,
     ) -> None:
-        self.context = _context()
+        self.context = context()
         self.task = (function, begin, leave)
         self.most = most
         self.ahead = ahead
@@ -139,7 +125,7 @@ class _Crew(Generic[Item, Made]):
         self.held: dict[int, Item] = {}
         """The items whose results have not been yielded."""
         self.back: deque[int] = deque()
-        """Items to be given again, as their process has ended before it began them."""
+        """Items to be given next, such as those whose process has ended before it began them."""
 
     def results(self, items: Iterable[Item]) -> Iterator[tuple[Item, Made | Died]]:
         """See :func:`spread`."""
@@ -149,22 +135,25 @@ class _Crew(Generic[Item, Made]):
         done: dict[int, Made | Died] = {}
         due, more = 0, True
         while more or self.held:
-            while (self.back or (more and len(self.held) < AHEAD)) and (worker := self._free()):
-                if self.back:
-                    number = self.back.popleft()
-                else:
-                    taken = next(source, None)
-                    if taken is None:
-                        more = False
-                        continue
-                    number, self.held[taken[0]] = taken
-                self._give(worker, number)
+            more = self._hand_out(source) if more or self.back else False
             while due in done:  # keeps all busy while the caller looks at results
                 yield self.held.pop(due), done.pop(due)
                 due += 1
             busy = {one.pipe: one for one in self.workers if one.numbers}
             for pipe in wait(list(busy)) if busy else ():
                 done.update(self._take(busy[pipe]))  # type: ignore[index]
+
+    def _hand_out(self, source: Iterator[tuple[int, Item]]) -> bool:
+        """Give items to processes while there is room; whether there may be more of them."""
+        while (self.back or len(self.held) < AHEAD) and (worker := self._free()):
+            if not self.back:
+                taken = next(source, None)
+                if taken is None:
+                    return False
+                self.held[taken[0]] = taken[1]
+                self.back.append(taken[0])
+            self._give(worker, self.back.popleft())
+        return True
 
     def _free(self) -> _Worker | None:
         """The process that may be given an item and has the fewest; starts one if all are busy.
@@ -234,8 +223,8 @@ class _Crew(Generic[Item, Made]):
     def _start(self) -> _Worker:
         here, there = self.context.Pipe()
         try:
-            process = self.context.Process(target=_work, args=(*self.task, there), daemon=True)
-            with _starting():
+            process = self.context.Process(target=work, args=(*self.task, there), daemon=True)
+            with starting():
                 process.start()
         except (EOFError, OSError):
             here.close()
@@ -261,96 +250,3 @@ def _code(worker: _Worker) -> int:
 
 def _no_start(worker: _Worker) -> RunError:
     return RunError(f"a process ended before it began to work, with code {_code(worker)}.")
-
-
-def _context() -> Any:
-    """How processes are made: forked from one with nothing but imports, or spawned.
-
-    This process is never forked: threads and engines may be running in it.
-    """
-    from multiprocessing import get_all_start_methods, get_context
-
-    if "forkserver" not in get_all_start_methods():
-        return get_context("spawn")
-    context = get_context("forkserver")
-    context.set_forkserver_preload(PRELOADED)
-    return context
-
-
-@contextmanager
-def _starting() -> Iterator[None]:
-    """Start processes with this one's module paths that ignore Ctrl-C.
-
-    They import neither from the current folder nor the script that runs here: nothing of it is
-    needed, and one without ``if __name__ == "__main__"`` would start processes from them, too.
-    Only this process handles an interrupt, and ends the others; one that comes meanwhile is
-    delayed.
-    """
-    paths = os.pathsep.join(os.path.abspath(path) for path in sys.path)
-    settings = {"PYTHONSAFEPATH": "1", "PYTHONPATH": paths}
-    before = {name: os.environ.get(name) for name in settings}
-    os.environ.update(settings)
-    script = sys.modules["__main__"]
-    sys.modules["__main__"] = ModuleType("__main__")
-    waiting = _mask(signal.SIG_BLOCK, ())
-    try:
-        _track()
-        _mask(signal.SIG_BLOCK, {signal.SIGINT})
-        yield
-    finally:
-        sys.modules["__main__"] = script
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
-        _mask(signal.SIG_SETMASK, waiting)
-
-
-def _track() -> None:
-    """Start Python's resource tracker first.
-
-    Starting it lets interrupts through again, which must wait for the other processes.
-    """
-    if hasattr(signal, "pthread_sigmask"):
-        from multiprocessing.resource_tracker import ensure_running
-
-        ensure_running()
-
-
-def _mask(how: int, signals: Iterable[int]) -> Iterable[int]:
-    """Change the blocked signals, if the system can; return those blocked before."""
-    return signal.pthread_sigmask(how, signals) if hasattr(signal, "pthread_sigmask") else ()
-
-
-def _work(
-    function: Callable[[Any], Any],
-    begin: Callable[[], object] | None,
-    leave: Callable[[], object] | None,
-    pipe: Connection,
-) -> None:
-    """Work on items as they come; runs in its own process."""
-    import threading
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_follow, args=(leave,), daemon=True).start()
-    if begin is not None:
-        begin()
-    try:
-        pipe.send(None)
-        while True:
-            pipe.send(function(pipe.recv()))
-    except (EOFError, OSError):
-        return  # the parent has gone
-
-
-def _follow(leave: Callable[[], object] | None) -> None:
-    """End when the parent ends, since nobody would read the results."""
-    from multiprocessing import parent_process
-
-    parent = parent_process()
-    if parent is not None:
-        parent.join()
-        if leave is not None:
-            leave()
-        os._exit(1)
