@@ -144,7 +144,9 @@ def replay_instants(session: Session, records: list[Record], name: str = "") -> 
         try:
             session.step(now, batch)
         except WRONG:
-            message = f"the records from {now / 1000:g} s on are no transcript's: {DAMAGED}"
+            message = (
+                f"the records from {now / 1000:g} s on are not those of a transcript: {DAMAGED}"
+            )
             raise UsageError(f"{name}:{lines[now]}: {message}") from None
         session.drain_visits()  # a long replay would keep them all
         yield from session.drain()

@@ -157,7 +157,7 @@ def fetcher(given: str | Iterable[str], applications: int) -> Web | None:
 
 
 def check_numbers(least: int = 1, **given: int | None) -> None:
-    """Refuse what is no whole number, or too small a one.
+    """Refuse values that are not whole numbers, or too small.
 
     Raises:
         UsageError: one is.

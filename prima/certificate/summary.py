@@ -138,7 +138,7 @@ def _others(one: Certificate) -> list[str]:
         return []
     if one.others.unknown:
         return _reasons(
-            one.others.unknown, "not known how long Commands that are no reactions wait"
+            one.others.unknown, "not known how long Commands that are not reactions wait"
         )
     longest = f"{one.others.lasts / 1000:.1f} s"
     nothing = "nothing else" if one.holds else "nothing"

@@ -63,7 +63,7 @@ class Slot:
         if not fits.get(self.kind, number):
             raise Unfit(f'"{self.name}" is not a {self.kind}')
         if self.choices and value not in self.choices:
-            raise Unfit(f'"{self.name}" is none of {", ".join(self.choices)}')
+            raise Unfit(f'"{self.name}" is not one of {", ".join(self.choices)}')
         return value
 
 

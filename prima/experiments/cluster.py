@@ -49,7 +49,7 @@ def pool_of(address: str | None, workers: int | None) -> Pool:
     """The workers of a scheduler at an address, or else processes of this machine.
 
     Raises:
-        UsageError: it is no address, or Dask is not installed.
+        UsageError: it is not an address, or Dask is not installed.
     """
     if address is None:
         return local(workers or 0)
@@ -62,7 +62,7 @@ def cluster(address: str) -> Pool:
     """The workers of a scheduler of Dask.
 
     Raises:
-        UsageError: it is no address, or Dask is not installed.
+        UsageError: it is not an address, or Dask is not installed.
     """
     if ADDRESS.fullmatch(address) is None:
         message = f'--on "{escaped(address)}": write the address of a scheduler of Dask'
@@ -255,7 +255,7 @@ def _patience() -> float:
     """How long (s) there may be no worker.
 
     Raises:
-        UsageError: the setting is no number above 0.
+        UsageError: the setting is not a number above 0.
     """
     text = os.environ.get(PATIENCE_SETTING, "")
     try:

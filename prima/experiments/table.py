@@ -249,7 +249,7 @@ def parquet_columns(path: Path, rows: int, columns: int, size: int) -> dict[str,
         with path.open("rb") as stream, ParquetFile(stream, read_dictionary=texts) as file:
             return _cells(file, schema.names, size)
     except (arrow.ArrowException, KeyError) as error:
-        raise ValueError(f"it is no Parquet file that can be read: {error}") from None
+        raise ValueError(f"it is not a readable Parquet file: {error}") from None
 
 
 def _cells(file: ParquetFile, names: Sequence[str], size: int) -> dict[str, list[Any]]:

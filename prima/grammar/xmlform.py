@@ -115,7 +115,7 @@ class _Reader(GrammarChecker):
                 self.note(child, "misplaced-element", message, "Put it in a <rule>.")
             else:
                 if seen_rule:
-                    message = f"<{child.tag}> stands after a rule."
+                    message = f"<{child.tag}> comes after a rule."
                     self.note(child, "misplaced-element", message, "Put it before all rules.")
                 self._header(child)
 

@@ -60,7 +60,7 @@ EXAMPLES: dict[str, RuleExample] = {
         "I found you",
     ),
     "O4": RuleExample(
-        TREES, "The sentence stands behind the move in the document, and comes after it.", "Here we"
+        TREES, "The sentence follows the move in the document, so it comes after it.", "Here we"
     ),
     "S1": RuleExample(
         TOUR, "hello waits until the sentence that runs frees the speaker.", '"Yes, friend?"'
@@ -134,7 +134,7 @@ EXAMPLES: dict[str, RuleExample] = {
     ),
     "F6": RuleExample(
         "rules/topic.xml",
-        "trains wants to speak at 0.60 s. It is no reaction, so it waits for both halves of the"
+        "trains wants to speak at 0.60 s. It is not a reaction, so it waits for both halves of the"
         " sentence.",
         "forty two",
     ),
@@ -147,7 +147,7 @@ EXAMPLES: dict[str, RuleExample] = {
     ),
     "K3": RuleExample(
         DEMO,
-        "The message is told though the user stands elsewhere; under prima+x4 the robot turns to"
+        "The message is read out though the user is elsewhere; under prima+x4 the robot turns to"
         " them first.",
         "I've just got a message",
     ),
@@ -163,7 +163,9 @@ EXAMPLES: dict[str, RuleExample] = {
     "V4": RuleExample(DEMO, "The search has found the user, and raises human.found once.", "finds"),
     "E1": RuleExample("rules/device.xml", "tour's arm fails; trains goes on.", "fails: the device"),
     "E2": RuleExample("rules/device.xml", "tour ends, and trains gets the speaker.", "ends tour"),
-    "E3": RuleExample("rules/refused.xml", "The Command is refused, and its application is told."),
+    "E3": RuleExample(
+        "rules/refused.xml", "The Command is refused, and its application gets an event."
+    ),
     "E4": RuleExample(
         "scenarios/leaving-the-museum.xml",
         "Tracking Human goes on for ever; whoever waits for it is reported.",

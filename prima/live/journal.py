@@ -177,7 +177,7 @@ def read_broken(path: str) -> CutJournal:
     try:
         text = data[:kept].decode()
     except UnicodeDecodeError:
-        raise UsageError(f"{path}: this is no transcript: it is not UTF-8.") from None
+        raise UsageError(f"{path}: this is not a transcript: it is not UTF-8.") from None
     records = list(read_lines(path, text.splitlines(keepends=True)))
     check_head(records[0], path)
     if records[-1]["phase"] == "over":

@@ -111,9 +111,9 @@ RULES = {
     "C6": "An application may define an event by a condition on sensor values. It is raised when"
     " the condition turns true, and again once it has turned false.",
     "O3": "Leaving a state deletes its Commands that have not started and ends its feedback"
-    " Commands after the loop that runs; an Atomic Behavior that runs finishes.",
-    "O4": "Content runs in document order. Commands that follow one another are one sequence; what"
-    " stands behind them runs at their end.",
+    " Commands after the loop that runs; a running Atomic Behavior finishes.",
+    "O4": "Content runs in document order. Consecutive Commands are one sequence; other"
+    " content after them runs at their end.",
     "U3": "Commands that are sent at once are one tree, each the child of the one before; branches"
     " that need one device run one after the other.",
     "U4": "Commands that are grouped as one unit are one Atomic Behavior, which has all their"

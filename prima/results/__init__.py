@@ -95,7 +95,7 @@ def _chosen(data: Data, by: Sequence[str]) -> tuple[int, ...]:
         if one not in names:
             guess = did_you_mean(one, names)
             known = f"the table has {one_of(names)}" if names else "the table has none"
-            message = f'--by: "{one}" is no factor with several levels; {known}. {guess}'
+            message = f'--by: "{one}" is not a factor with several levels; {known}. {guess}'
             raise UsageError(message.strip())
     return tuple(dict.fromkeys(names.index(one) for one in by))[:2]
 

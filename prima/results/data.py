@@ -207,7 +207,7 @@ def _numbers(column: Column, cells: Sequence[Any]) -> Values:
         except (TypeError, ValueError, OverflowError):
             value = np.inf
         if not abs(value) <= MOST_VALUE:
-            told = f'"{shown(str(cell))}" is no number, or too large a one'
+            told = f'"{shown(str(cell))}" is not a number, or is too large'
             name = visible(column.name[:LONGEST])
             raise ValueError(f'row {index + 1}, column "{name}": {told}; mend the table.')
     return made

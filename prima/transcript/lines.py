@@ -154,7 +154,7 @@ def _closely(text: str) -> Record:
 
 
 def _no_number(word: str) -> None:
-    raise ValueError(f"{word} is no number of JSON's")
+    raise ValueError(f"{word} is not a JSON number")
 
 
 class _Backward(ValueError):

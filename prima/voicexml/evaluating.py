@@ -102,7 +102,7 @@ class VoiceEvaluator:
         """Apply a function of the engine to the value of an attribute's expression."""
         code = self.code(node, attribute)
         try:
-            self.engine.compile(code)  # what does not compile is told by its own place
+            self.engine.compile(code)  # code that does not compile is reported at its own place
             return self.engine.value(f"({how})(({code}\n))", context.scopes(local))
         except ScriptError as error:
             raise self.failure(error, node, attribute) from None
@@ -135,7 +135,7 @@ class VoiceEvaluator:
         """The text of a value (4.1.4)."""
         code, scopes = self.code(node, "expr"), context.scopes(local)
         try:
-            self.engine.compile(code)  # what does not compile is told by its own place
+            self.engine.compile(code)  # code that does not compile is reported at its own place
             return self.engine.text(f"({SHOWN})(({code}\n))", scopes)
         except ScriptError as error:
             raise self.failure(error, node, "expr") from None

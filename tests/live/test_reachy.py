@@ -331,7 +331,7 @@ def test_a_missing_library_is_named_with_its_remedy(monkeypatch: pytest.MonkeyPa
         ),
         (
             '<does gesture="nod" by="goto"><set name="a.tilt" value="up"/></does>',
-            "The tilt of the step \"a\" is no number: 'up'.",
+            "The tilt of the step \"a\" is not a number: 'up'.",
         ),
         (
             '<does gesture="nod" by="goto"><set name="a.time" value="0"/></does>',
@@ -399,7 +399,7 @@ def test_parts_go_no_further_than_they_can(step: dict[str, float], reason: str) 
 def test_a_step_has_numbers_alone() -> None:
     assert read_step("a", {"tilt": 3, "time": 0.5}) == {"tilt": 3.0, "time": 0.5}
     for wrong in (True, None, float("nan"), "3"):
-        with pytest.raises(Refused, match="is no number"):
+        with pytest.raises(Refused, match="is not a number"):
             read_step("a", {"tilt": wrong})
 
 

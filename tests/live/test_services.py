@@ -213,7 +213,7 @@ def test_slots_are_taken_out_of_an_answer(host: Host, tmp_path: Path) -> None:
         ('url="URL/busy"/>', "the service answers 503"),
         ('url="URL/b"><slot name="author"/></service>', 'the answer lacks "author"'),
         ('url="URL/b"><slot name="shelf"/></service>', '"shelf" is not a text'),
-        ('url="URL/b"><slot name="title" choices="A | B"/></service>', "is none of A, B"),
+        ('url="URL/b"><slot name="title" choices="A | B"/></service>', "is not one of A, B"),
         ('url="http://127.0.0.1:1/"/>', "the host does not answer"),
     ],
 )
@@ -335,7 +335,7 @@ def test_a_language_model_fills_slots(host: Host, tmp_path: Path) -> None:
     }
     assert 'needs the value "text"' in why(send(path))
     host.said = '{"mood": "angry"}'
-    assert "none of happy, sad" in why(send(path, text="great"))
+    assert "not one of happy, sad" in why(send(path, text="great"))
     host.said = "I would say happy"
     assert "not JSON" in why(send(path, text="great"))
 

@@ -83,9 +83,9 @@ WRONG = [
     (HEAD.replace(",seed", ",run") + ROW, 'it has two columns "run"'),
     ((HEAD + ROW).replace(",", ";"), "its cells are separated by ';'; save it with ','"),
     (HEAD + "1,2\r\n" + ROW, "line 2 has 2 cells, and its head has 11"),
-    (HEAD + ROW.replace("1.5", "long"), 'row 1, column "seconds": "long" is no number'),
-    (HEAD + ROW.replace("1.5", "1e300"), "or too large a one; mend the table."),
-    (HEAD + ROW.replace("1.5", "inf"), '"inf" is no number'),
+    (HEAD + ROW.replace("1.5", "long"), 'row 1, column "seconds": "long" is not a number'),
+    (HEAD + ROW.replace("1.5", "1e300"), "or is too large; mend the table."),
+    (HEAD + ROW.replace("1.5", "inf"), '"inf" is not a number'),
     (HEAD + ROW.replace("quiet", "q" * 200_000), "line 2: field larger than field limit"),
     (HEAD + ROW.replace("quiet", "\udcff"), "it is not UTF-8."),
     ("x," * 2000 + "\r\n", "it has 2001 columns, and 1000 are read at most"),
@@ -144,7 +144,7 @@ def test_parquet_that_is_none_and_a_file_that_is_not_there(tmp_path: Path) -> No
     pytest.importorskip("pyarrow")
     (tmp_path / "bad.parquet").write_text("PAR1 nothing")
     done = prima("report", "bad.parquet", "-o", "page.html", cwd=tmp_path)
-    assert done.returncode == 2 and "it is no Parquet file that can be read" in done.stderr
+    assert done.returncode == 2 and "it is not a readable Parquet file" in done.stderr
     for gone in ("gone.csv", "gone.parquet"):
         done = prima("report", gone, "-o", "page.html", cwd=tmp_path)
         assert done.returncode == 2 and f"{gone}: cannot be read: No such file" in done.stderr
@@ -177,7 +177,7 @@ def test_a_library_that_is_not_there_is_named(
         ("sweep.csv sweep.csv -o p.html", "name its table alone"),
         ("sweep.csv --by policy --by answer --by seed -o p.html", "at most two factors"),
         ("sweep.csv --by polcy -o p.html", 'Did you mean "policy"?'),
-        ("sweep.csv --by seed -o p.html", '"seed" is no factor with several levels'),
+        ("sweep.csv --by seed -o p.html", '"seed" is not a factor with several levels'),
         ("sweep.csv --figure seconds -o p.html", "--figure needs --to svg"),
         ("sweep.csv --to svg", "Name the folder for the figures"),
         ("sweep.csv --to svg --figure second -o p.svg", 'Did you mean "seconds"?'),

@@ -256,7 +256,7 @@ def test_large_tables_have_pages_of_bounded_size(tmp_path: Path) -> None:
 
 
 def test_an_unknown_factor_is_told(table: Path) -> None:
-    with pytest.raises(UsageError, match=r'"answr" is no factor .*Did you mean "answer"'):
+    with pytest.raises(UsageError, match=r'"answr" is not a factor .*Did you mean "answer"'):
         results.make(results.read(table), table.parent, ["answr"])
 
 

@@ -43,7 +43,7 @@ DEAD_CONTENT = Diagnosis(
 NO_CALLER = Diagnosis(
     "no-caller",
     "Return to nobody",
-    "A <return> stands in a form that no subdialog calls, and to which no called form leads. There"
+    "A <return> is in a form that no subdialog calls, and to which no called form leads. There"
     " is nothing to come back to: the application ends.",
     rule="VoiceXML 2.0, 5.3.10",
     severity="warning",

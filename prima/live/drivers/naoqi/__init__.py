@@ -282,7 +282,7 @@ def _url(address: str) -> str:
     """The URL of a service directory.
 
     Raises:
-        Unusable: it is none.
+        Unusable: it is not a URL.
     """
     url = address or "127.0.0.1"
     url = url if "://" in url else f"tcp://{url}"

@@ -263,7 +263,7 @@ def address_of(settings: DriverSettings) -> str:
     """The daemon's address.
 
     Raises:
-        UsageError: it is none.
+        UsageError: the address is invalid.
     """
     try:
         return read_address(settings.address)

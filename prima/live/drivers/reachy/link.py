@@ -209,7 +209,7 @@ def read_address(written: str) -> str:
     """The URL of a daemon; scheme and port may be omitted.
 
     Raises:
-        ValueError: it is none.
+        ValueError: it is not a URL.
     """
     whole = written or ADDRESS
     try:

@@ -127,7 +127,7 @@ def read_step(name: str, written: object) -> dict[str, float]:
     """A step of a movement in the robot's document: parts with their targets, and its time (s).
 
     Raises:
-        Refused: it is none.
+        Refused: it is not a step.
     """
     if not isinstance(written, Mapping):
         raise Refused(f'The step "{name}" of the robot\'s document moves nothing.')
@@ -140,7 +140,7 @@ def read_step(name: str, written: object) -> dict[str, float]:
             or not isinstance(value, int | float)
             or not math.isfinite(value)
         ):
-            raise Refused(f'The {part} of the step "{name}" is no number: {value!r}.')
+            raise Refused(f'The {part} of the step "{name}" is not a number: {value!r}.')
         step[part] = float(value)
     if not 0.0 < step.get("time", 1.0) <= 60.0:
         raise Refused(f'The time of the step "{name}" is not between 0 and 60 s.')

@@ -16,7 +16,7 @@ Step = dict[str, float]
 
 
 def number(goal: Begin, name: str) -> float:
-    """An argument of a Command; 0 where it is none."""
+    """An argument of a Command; 0 if it is missing."""
     value = goal.command.args.get(name)
     return float(value) if isinstance(value, int | float) else 0.0
 
