@@ -11,7 +11,6 @@ def opened(mediation: Mediation, stream: Stream) -> Stream:
     """Begin a stream, or continue one that was about to end."""
     if stream.name not in mediation.memory.streams:
         mediation.memory.open(stream)
-    mediation.touch(stream)
     return stream
 
 
@@ -41,7 +40,6 @@ def end_continuing(mediation: Mediation) -> None:
 
 def open_window(mediation: Mediation, told: Told) -> None:
     """C3: while an application handles the end of its Command, its stream stays open."""
-    mediation.changed = True
     mediation.memory.apps[told.app].window = told.stream
     if told.stream is not None:
         mediation.recorder.stream("window", told.stream, "C3", outcome="open")
@@ -49,10 +47,8 @@ def open_window(mediation: Mediation, told: Told) -> None:
 
 def close_window(mediation: Mediation, told: Told) -> None:
     """C3: the application now waits for something else."""
-    mediation.changed = True
     mediation.memory.apps[told.app].window = None
     if told.stream is not None:
-        mediation.touch(told.stream)
         mediation.recorder.stream("window", told.stream, "C3", outcome="closed")
 
 
@@ -87,7 +83,7 @@ def suspend_others(mediation: Mediation, stream: Stream) -> None:
     begun = [
         other
         for other in mediation.memory.streams.values()
-        if other.app is not stream.app and other.open and other.turn
+        if other.app is not stream.app and other.turn
     ]
     mediation.suspensions += 1
     for other in begun:
@@ -115,7 +111,7 @@ def note_turns(mediation: Mediation) -> None:
         stream = ab.stream
         if not stream.suspended or stream.waits:
             continue
-        if application(ab.wait.blocked[1]) not in ("", ab.app.name):
+        if application(ab.wait.blocked[1]) != ab.app.name:
             stream.waits = True
             mediation.turns.append(("suspended", stream))
 
@@ -125,9 +121,9 @@ def c1(mediation: Mediation) -> None:
     touched, mediation.touched = mediation.touched, {}
     kept: list[Stream] = []
     for stream in touched.values():
-        if stream.open or stream.name not in mediation.memory.streams:
+        if stream.open:
             continue
-        if stream.hold and not stream.app.gone:
+        if stream.hold:
             kept.append(stream)  # after ending streams have given the floor back
         else:
             _end(mediation, stream)
@@ -177,10 +173,8 @@ def let_go(mediation: Mediation, stream: Stream, outcome: str) -> None:
 
 def drop_hints(mediation: Mediation, app: Application, state: int | None) -> None:
     """X3: release what a state that is left, or an application that ends, has held."""
-    if "x3" not in mediation.policy.extensions:
-        return
     for stream in mediation.memory.streams.values():
-        if stream.app is app and stream.hold and state in (None, stream.hold_state):
+        if stream.app is app and state in (None, stream.hold_state):
             stream.hold = None
             if stream.held_until is not None:
                 continue_with(mediation, app, stream)

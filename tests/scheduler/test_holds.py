@@ -74,6 +74,38 @@ def test_x3_it_ends_when_its_state_is_left() -> None:
     stage.select()
     stage.at(2000).leave("fa")
     assert stage.select() == ["ea#2"]
+    assert [r["outcome"] for r in stage.phases("held")] == ["begun", "left"]
+
+
+def test_x3_it_does_not_end_when_another_state_is_left() -> None:
+    stage = held("prima+x3")
+    stage.select()
+    stage.at(2000).leave("fa", 2)
+    assert stage.select() == []
+
+
+def test_x3_it_does_not_end_with_another_application() -> None:
+    stage = held("prima+x3")
+    stage.select()
+    stage.at(2000).mediator.unload("ea", "exit")
+    stage.select()
+    assert stage.floor == ["fa:1"]
+    assert list(stage.mediator.holds) == ["fa:1"]
+
+
+def test_x3_of_several_streams_that_are_held_the_latest_goes_on() -> None:
+    stage = Stage("prima+x3")
+    stage.request("ea", command("turn", angle=10), cause=EVENT, hold=5000)
+    stage.request("ea", command("move-head", pan=10), cause=LATER, hold=5000)
+    stage.select()
+    stage.at(100).end("ea#1")
+    stage.select()
+    stage.at(200).end("ea#2")
+    stage.select()
+    assert list(stage.mediator.holds) == ["ea:1", "ea:2"]
+    stage.at(300).request("ea", say("Done."), cause=LATER + 1)
+    stage.select()
+    assert stage.phases("start")[-1]["tree"] == "ea:2"
 
 
 def test_x3_what_is_asked_for_on_leaving_joins_it() -> None:

@@ -216,6 +216,19 @@ def test_o3_of_several_streams_that_run_the_one_that_started_last_goes_on() -> N
     assert [r["tree"] for r in stage.phases("request")] == ["ea:1", "ea:2", "ea:2"]
 
 
+def test_o3_of_several_streams_that_have_not_begun_the_latest_goes_on() -> None:
+    stage = Stage()
+    stage.request("fa", say())
+    stage.select()
+    for cause in (EVENT, EVENT + 1):
+        stage.request("ea", say(), cause=cause)
+    assert stage.select() == []
+    stage.at(10).leave("ea")
+    stage.request("ea", say(), state=2, cause=EVENT + 2)
+    stage.select()
+    assert [r["tree"] for r in stage.phases("request")] == ["fa:1", "ea:1", "ea:2", "ea:2"]
+
+
 def test_o3_in_a_window_its_own_stream_goes_on() -> None:
     stage = Stage()
     stage.request("ea", ask())
