@@ -91,7 +91,7 @@ class Items:
         filled = []
         for item in form_items(context):
             value = slot_of(found, _slot(item), ABSENT) if item.tag in INPUTS else ABSENT
-            if value is not ABSENT and item.get("name"):
+            if value is not ABSENT:
                 self._give(context, item, value, heard)
                 filled.append(item)
         return filled

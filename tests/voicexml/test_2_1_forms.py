@@ -188,6 +188,15 @@ case(
     logs=["b"],
 )
 case(
+    "a form's grammar fills a field without a name by its slot",
+    "C",
+    f"""<form>{TRIP}<field slot="start"><prompt>From?</prompt>{CITIES}<filled><log>start</log>
+    </filled></field><field name="end"><prompt>To?</prompt>{CITIES}</field></form>""",
+    "from Kyoto to Osaka",
+    logs=["start"],
+    said=["From?"],
+)
+case(
     "guards are looked at anew in each iteration",
     "2.1.6.2",
     """<form><var name="n" expr="1"/><block cond="n == 2"><log>first</log></block>
