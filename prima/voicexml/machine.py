@@ -196,6 +196,7 @@ class Machine:
             yield from self._initialise(context, form)
         except (Thrown, ScriptError) as error:
             wanted = yield from self._handled(context, error)
+            context.quiet = False  # a handler silences the item after an iteration of the loop (C)
         if heard is not None:
             self.app.count_step(form)
             context.item = form if form.tag == "menu" else None

@@ -188,6 +188,15 @@ case(
     logs=["b"],
 )
 case(
+    "after a handler at initialisation the first item is asked: no iteration was before it",
+    "C",
+    f"""<form><catch event="error"><log>odd</log></catch><var name="x" expr="zz"/>
+    <field name="f"><prompt>Well?</prompt>{CITIES}</field></form>""",
+    "kyoto",
+    logs=["odd"],
+    said=["Well?"],
+)
+case(
     "a form's grammar fills a field without a name by its slot",
     "C",
     f"""<form>{TRIP}<field slot="start"><prompt>From?</prompt>{CITIES}<filled><log>start</log>
