@@ -692,7 +692,13 @@ def _guest(element: Element) -> Element:
 
 
 VOICEXML_SECTION = re.compile(r"^([0-9].*)")
-VOICEXML_KINDS = {"time": "duration", "integer": "integer", "rate": "text", "": "text"}
+VOICEXML_KINDS = {
+    "time": "duration",
+    "integer": "integer",
+    "rate": "text",
+    "weight": "text",
+    "": "text",
+}
 
 
 def _voicexml_attribute(element: Element, item: Attribute) -> Attribute:

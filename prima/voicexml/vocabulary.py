@@ -155,6 +155,7 @@ VALUES = {
     "accept": "exact approximate",
     "filled mode": "any all",
     "grammar mode": "voice dtmf",
+    "weight": "weight",
     "method": "get post",
     "valuetype": "data ref",
     "transfer type": "bridge blind consultation",
@@ -173,8 +174,8 @@ VALUES = {
     "finalsilence": _TIME,
     "connecttimeout": _TIME,
 }
-"""What attributes may hold: keywords, a time, a rate of speech, or a whole number from 1; an
-element's own come first."""
+"""What attributes may hold: keywords, a time, a rate of speech, a weight, or a whole number
+from 1; an element's own come first."""
 EXPRESSIONS = frozenset(
     [
         "expr",

@@ -14,6 +14,7 @@ from tests.helpers.dialogs import (
     Cases,
     ask,
     asked,
+    codes,
     file,
     grammar,
     holds,
@@ -119,6 +120,15 @@ def test_a_grammar_file_may_refer_to_another_beside_it() -> None:  # 3.1.1.3; SI
 
 def test_a_grammars_weight_is_accepted() -> None:  # 3.1.1.4
     assert asked(rule("tea", 'weight="0.3"'), "tea") == ["tea"]
+
+
+@pytest.mark.parametrize(
+    ("weight", "wrong"),
+    [("2", []), ("2.", []), (".5", []), ("-1", ["bad-value"]), ("1e3", ["bad-value"])],
+)
+def test_a_grammars_weight_has_neither_sign_nor_exponent(weight: str, wrong: list[str]) -> None:
+    """3.1.1.3."""
+    assert codes(ask(f'<grammar src="a.grxml" weight="{weight}"/>')) == wrong
 
 
 def test_a_grammar_in_another_language_is_taken() -> None:  # 3.1.1.4

@@ -107,6 +107,8 @@ VOLUME = (
     r"silent|x-soft|soft|medium|loud|x-loud|default|[+-](\d+\.?\d*|\.\d+)(dB|%)?"
     r"|100(\.0*)?|\d{1,2}(\.\d*)?"
 )
+WEIGHT = r"\d+\.?\d*|\.\d+"
+"""The weight of a grammar, without a sign or an exponent (3.1.1.3)."""
 REMEDIES = {
     "rate": 'Write slow, fast or another name of a rate, a number, or a change such as "+10%".',
     "time": 'Write a number with its unit: "500ms" or "2.5s".',
@@ -122,6 +124,7 @@ REMEDIES = {
     "modes": "Write dtmf, voice, or both with a space between.",
     "pitch": 'Write x-low, low, medium, high, x-high or default, "120Hz", or a change such as "+10%".',
     "volume": 'Write silent, x-soft, soft, medium, loud, x-loud or default, 0 to 100, or a change such as "+6dB".',
+    "weight": 'Write a number such as "0.5".',
 }
 
 
@@ -166,6 +169,7 @@ FITS: Mapping[str, Callable[[str], bool]] = {
     "modes": lambda text: {*text.split()} in ({"dtmf"}, {"voice"}, {"dtmf", "voice"}),
     "pitch": lambda text: re.fullmatch(PITCH, text) is not None,
     "volume": lambda text: re.fullmatch(VOLUME, text) is not None,
+    "weight": lambda text: re.fullmatch(WEIGHT, text) is not None,
 }
 
 
