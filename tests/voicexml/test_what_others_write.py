@@ -9,7 +9,7 @@ import pytest
 from prima import api
 from prima.errors import Problem
 from prima.voicexml.reading import read_page
-from tests.helpers.dialogs import block, codes, run
+from tests.helpers.dialogs import block, codes, leaf, run
 from tests.helpers.here import prima
 from tests.helpers.voice import vxml
 
@@ -53,6 +53,16 @@ def test_spaces_around_words_mean_nothing() -> None:
     assert codes(text) == []
     call = run(vxml(text), "go")
     assert call.logs() == ["there"]
+
+
+def test_spaces_around_names_and_uris_mean_nothing() -> None:
+    text = leaf(
+        """<form><var name=" x " expr="n + 1"/><block><goto next="#b"/></block></form>
+        <form id=" b "><transfer name=" t " dest=" tel:+1-555 " type="bridge"/>
+        <block><log expr="t + n"/></block></form>""",
+        root=" root.vxml ",
+    )
+    assert run(text, root=vxml('<var name="n" expr="1"/>')).logs() == ["noanswer1"]
 
 
 def test_a_call_with_music_can_be_ended_by_the_caller(tmp_path: Path) -> None:

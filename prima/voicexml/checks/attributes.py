@@ -17,7 +17,7 @@ from prima.markup.vocabulary import Element
 from prima.voicexml.cues import is_rate
 from prima.voicexml.vocabulary import ALTERNATIVES, VALUES, VOICEXML
 
-WORDS = frozenset(["next", "nextitem", "src", "event"])
+WORDS = frozenset(["application", "dest", "event", "id", "name", "next", "nextitem", "slot", "src"])
 """Free-text attributes in which leading and trailing white space is insignificant."""
 KEYS = re.compile(r"\s*[0-9*#A-D](?:\s*[0-9*#A-D])*\s*")
 
