@@ -213,6 +213,8 @@ class _Completion:
             yield from self._plain(attr, DEVICES)
 
     def _known(self, path: Path, kinds: tuple[str, ...], tag: ScannedTag) -> list[FoundName]:
+        if kinds == ("form",) and tag.key in ("expect", "never"):
+            return self.workspace.forms(path, tag.get("by"))
         found = self.workspace.known(path, kinds)
         if kinds == ("rule",) and path == self.path:
             grammar = tag.inside("grammar")

@@ -21,6 +21,20 @@ class ReferenceUse:
 
 _FORM, _POINT = ReferenceUse(("form",), "#"), ReferenceUse(("place", "thing"))
 _VARIABLES = ReferenceUse(("variable",), "list")
+_EXPECTED = {
+    "state": ReferenceUse(("form",)),
+    "sends": ReferenceUse(("service",)),
+    **dict.fromkeys(("does", "finishes", "doing", "done"), ReferenceUse(("command",))),
+    **dict.fromkeys(("event", "on"), ReferenceUse(("event",))),
+}
+_DONE_BY_USERS = {
+    ("walk", "to"): _POINT,
+    ("look", "at"): _POINT,
+    ("touch", "sensor"): ReferenceUse(("sensor",)),
+    ("when", "doing"): ReferenceUse(("command",)),
+    ("when", "done"): ReferenceUse(("command",)),
+    ("when", "on"): ReferenceUse(("event",)),
+}
 
 DEFINES: dict[tuple[str, str, str], str] = {
     ("dialogue", "prima", "id"): "application",
@@ -84,16 +98,17 @@ REFERS: dict[tuple[str, str, str], ReferenceUse] = {
     ("robot", "allows", "command"): ReferenceUse(("command",)),
     ("robot", "substitute", "command"): ReferenceUse(("command",)),
     ("robot", "substitute", "by"): ReferenceUse(("command",)),
+    ("robot", "place", "name"): ReferenceUse(("place",)),
+    ("robot", "does", "gesture"): ReferenceUse(("gesture",)),
+    ("robot", "driver", "devices"): ReferenceUse(("device",), "list"),
     ("scenario", "robot", "at"): ReferenceUse(("place",)),
     ("scenario", "person", "at"): _POINT,
-    ("scenario", "walk", "to"): _POINT,
-    ("scenario", "look", "at"): _POINT,
-    ("scenario", "touch", "sensor"): ReferenceUse(("sensor",)),
+    **{(where, *one): use for where in ("scenario", "user") for one, use in _DONE_BY_USERS.items()},
+    **{
+        ("scenario", tag, one): use for tag in ("expect", "never") for one, use in _EXPECTED.items()
+    },
     ("scenario", "fail", "device"): ReferenceUse(("device",)),
     ("scenario", "repair", "device"): ReferenceUse(("device",)),
-    ("scenario", "when", "doing"): ReferenceUse(("command",)),
-    ("scenario", "when", "done"): ReferenceUse(("command",)),
-    ("scenario", "when", "on"): ReferenceUse(("event",)),
     **{("scenario", *one): ReferenceUse(("application",)) for one in NAMING_APPLICATIONS},
     ("scenario", "when", "person"): ReferenceUse(("person",)),
     ("scenario", "answer", "person"): ReferenceUse(("person",)),

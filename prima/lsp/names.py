@@ -19,6 +19,10 @@ WORD = re.compile(r"\S+")
 OF_DOCUMENT = ("document", "application")
 """Objects whose members are variables of the document."""
 KNOWN = RESERVED | GLOBALS
+SCRIPTED = "semantics/1.0"
+"""The format of tags that are scripts."""
+RESULTS = ("rules", "meta")
+"""Objects whose members are the results of rules."""
 LONGEST_CODE = 100_000
 """Maximum length of code that is searched for names."""
 
@@ -48,6 +52,11 @@ class Mark:
         )
 
     @property
+    def is_state(self) -> bool:
+        """Whether it is a form of an application that a scenario's expectation names."""
+        return self.kind == ("form",) and self.tag.key in ("expect", "never")
+
+    @property
     def shared(self) -> bool:
         """Whether other documents may use the name too."""
         return not SHARED.isdisjoint(self.kind)
@@ -68,8 +77,12 @@ def _of_tag(page: ScannedText, tag: ScannedTag) -> Iterator[Mark]:
     for attr in tag.attributes:
         if attr.first >= 0:
             yield from _of_attribute(page, tag, attr)
-    if tag.key == "script" and not tag.empty and not tag.children:
+    if tag.empty or tag.children:
+        return
+    if tag.key == "script":
         yield from _script(page.text[tag.end : tag.content], tag)
+    elif tag.key == "tag":
+        yield from _rules_in_tag(page, tag)
 
 
 def _of_attribute(page: ScannedText, tag: ScannedTag, attr: Attr) -> Iterator[Mark]:
@@ -85,6 +98,17 @@ def _of_attribute(page: ScannedText, tag: ScannedTag, attr: Attr) -> Iterator[Ma
         yield from _code(plain(attr.value), attr.first, tag)
     elif attr.name == "name" and tag.key == "param":
         yield from _given(page, tag, attr)
+    elif attr.name == "value" and tag.key == "data":
+        yield from _argument(page, tag, attr)
+
+
+def _argument(page: ScannedText, tag: ScannedTag, attr: Attr) -> Iterator[Mark]:
+    """The name that an expectation expects as an argument of a Command."""
+    around = tag.parent
+    command = "" if around is None else around.get("does") or around.get("finishes")
+    use = REFERS.get(("dialogue", command, tag.get("name")))
+    if use is not None:
+        yield from _references(page, tag, attr, use)
 
 
 def _words(attr: Attr, most: int = 1000) -> list[tuple[int, int]]:
@@ -134,10 +158,33 @@ def _code(code: str, first: int, tag: ScannedTag) -> Iterator[Mark]:
             yield Mark(("variable",), use.name, at, at + len(use.name), False, tag, scope)
 
 
+def _content(code: str) -> str:
+    """The code in an element's content, padded to its written length."""
+    inner = code.replace("<![CDATA[", " " * 9).replace("]]>", "   ")
+    return inner if "<![CDATA[" in code else plain(inner)
+
+
+def _rules_in_tag(page: ScannedText, tag: ScannedTag) -> Iterator[Mark]:
+    """The rules whose results a grammar's tag reads: ``rules.size`` (SISR 1.0, 3.3)."""
+    grammar = tag.inside("grammar")
+    code = _content(page.text[tag.end : tag.content])
+    if grammar is None or grammar.get("tag-format").strip() != SCRIPTED or len(code) > LONGEST_CODE:
+        return
+    files = {}
+    for one in page.tags:
+        if one.key == "ruleref" and one.inside("grammar") is grammar:
+            file, _, name = one.get("uri").strip().partition("#")
+            files[name] = file
+    for use in script_names(code).uses:
+        if use.name in RESULTS and use.part is not None and use.part[1] in files:
+            first, name = tag.end + use.part[0], use.part[1]
+            file = files[name]
+            yield Mark(("rule",), name, first, first + len(name), False, tag, grammar.start, file)
+
+
 def _script(code: str, tag: ScannedTag) -> Iterator[Mark]:
     """Names that a script declares, and those that it uses."""
-    inner = code.replace("<![CDATA[", " " * 9).replace("]]>", "   ")
-    inner = inner if "<![CDATA[" in code else plain(inner)
+    inner = _content(code)
     if len(inner) > LONGEST_CODE:
         return
     home, names = _home("variable", tag), script_names(inner)

@@ -235,12 +235,17 @@ class Workspace:
         """All uses of a name, including its definition."""
         if mark.file:
             return self._elsewhere(path, mark)
+        if mark.is_state:
+            form = self._form_of(path, mark)
+            return self.uses(form.path, form.mark) if form is not None else []
         text = self.text(path)
         own = [FoundName(path, one) for one in (text.marks if text else ()) if one.names(mark)]
         if mark.shared:
             return own + self._shared(path, mark)
         if "form" in mark.kind or "rule" in mark.kind:
             own += self._from_others(path, mark)
+        if "form" in mark.kind:
+            own += self._expected(path, mark)
         return own
 
     def _shared(self, path: Path, mark: Mark) -> list[FoundName]:
@@ -274,6 +279,35 @@ class Workspace:
                 if one.file and same and self.target(other, one.file) == path:
                     found.append(FoundName(other, one))
         return found
+
+    def _expected(self, path: Path, mark: Mark) -> Iterator[FoundName]:
+        """Where scenarios expect an application to be in a form of this document."""
+        for scene, belongs in self._scenes():
+            text = self.text(scene) if path in belongs else None
+            for one in text.marks if text else ():
+                form = self._form_of(scene, one) if one.name == mark.name else None
+                if form is not None and form.path == path:
+                    yield FoundName(scene, one)
+
+    def _form_of(self, path: Path, state: Mark) -> FoundName | None:
+        """The form that an expectation names: of its application, or of the first that has it."""
+        forms = self.forms(path, state.tag.get("by")) if state.is_state else []
+        return next((one for one in forms if one.mark.name == state.name), None)
+
+    def forms(self, path: Path, by: str = "") -> list[FoundName]:
+        """The forms of an application of a scenario, or of all its applications."""
+        scene = self.text(path)
+        tags = [one for one in (scene.page.tags if scene else ()) if one.key == "application"]
+        called = {self.target(path, one.get("src")): one.get("id") for one in tags}
+        found: list[FoundName] = []
+        for target in (*called, *sorted(self.reading(path) - called.keys())):
+            text = self.text(target) if target is not None else None
+            root = text.top.root if text is not None else None
+            if target is None or text is None or root is None:
+                continue
+            if by in ("", called.get(target) or root.get("id") or target.stem):
+                found += [FoundName(target, one) for one in text.marks if one.defines]
+        return [one for one in found if one.mark.kind == ("form",)]
 
     def given(self, path: Path, mark: Mark) -> list[FoundName]:
         """The definitions of a name: in its scenarios, or else anywhere in the workspace."""

@@ -97,7 +97,7 @@ def test_a_place_is_renamed_everywhere(editor: Editor) -> None:
     editor.close("worlds/office.xml")
     assert change is not None and change.changes is not None
     files = {Path(uri).name for uri in change.changes}
-    assert files == {"office.xml", "guide.xml"}
+    assert files == {"office.xml", "guide.xml", "touched-on-the-way.xml"}
     for uri, edits in change.changes.items():
         text = Path(uri.removeprefix("file://")).read_text(encoding="utf-8")
         assert "kidode-room" in text

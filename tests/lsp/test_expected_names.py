@@ -1,0 +1,102 @@
+"""Names in a scenario's expectations, in users and robots, and in the tags of grammars."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from prima.lsp import naming
+from prima.lsp.complete import complete
+from prima.lsp.workspace import Workspace
+from tests.helpers.editor import BEGIN, VOICE, plain
+
+WORLD = (
+    '<world xmlns="urn:prima:world:1" version="1.0" id="w"><place id="door" x="0" y="0"/></world>'
+)
+ROBOT = (
+    '<robot xmlns="urn:prima:robot:1" version="1.0" id="r"><gesture name="bow"/>'
+    '<driver kind="sim"><does gesture="bow" by="b"/><place name="door" x="1" y="1"/></driver></robot>'
+)
+USER = '<user xmlns="urn:prima:user:1" version="1.0" id="u"><when at="1s"><walk to="door"/></when></user>'
+SCENE = """<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="w.xml" robot="r.xml">
+<person x="0" y="0" user="u.xml"/><application src="one.xml"/><application src="two.xml" id="b"/>
+<expect state="start" by="one"/><expect state="start" by="b"/><never state="start" at="3s"/>
+<expect does="topological-move"><data name="to" value="door"/></expect>
+<expect does="gesture"><data name="name" value="bow"/></expect>
+</scenario>
+"""
+GRAMMAR = """<grammar xmlns="http://www.w3.org/2001/06/grammar" version="1.0" root="a" tag-format="%s">
+<rule id="a"><ruleref uri="#size"/><ruleref uri="more.grxml#kind"/>
+<tag>out.size = rules.size; out.kind = meta.kind.text;</tag></rule><rule id="size"><item>big</item></rule>
+</grammar>"""
+MORE = (
+    '<grammar xmlns="http://www.w3.org/2001/06/grammar" version="1.0"><rule id="kind"/></grammar>'
+)
+
+
+@pytest.fixture(name="space")
+def fixture_space(tmp_path: Path) -> Workspace:
+    form = '<form id="start"><block><exit/></block></form></prima>'
+    files = {
+        "w.xml": WORLD,
+        "r.xml": ROBOT,
+        "u.xml": USER,
+        "s.xml": SCENE,
+        "more.grxml": MORE,
+        "one.xml": BEGIN.replace('id="x"', 'id="one"') + form,
+        "two.xml": BEGIN.replace('id="x"', 'id="two"') + form,
+        "size.grxml": GRAMMAR % "semantics/1.0",
+        "literal.grxml": GRAMMAR % "semantics/1.0-literals",
+    }
+    made = Workspace()
+    made.folders = [tmp_path.resolve()]
+    for name, text in files.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    return made
+
+
+def renamed(space: Workspace, file: str, words: str) -> dict[str, int]:
+    """How often a name, which begins at the end of some words, is renamed in each file."""
+    path = space.folders[0] / file
+    offset = path.read_text(encoding="utf-8").index(words) + len(words)
+    edits, _ = naming.rename(space, path, offset, "other")
+    names = [edit.path.name for edit in edits]
+    return {name: names.count(name) for name in sorted(set(names))}
+
+
+@pytest.mark.parametrize(
+    ("file", "words", "made"),
+    [
+        ("one.xml", 'form id="', {"one.xml": 1, "s.xml": 2}),
+        ("two.xml", 'form id="', {"s.xml": 1, "two.xml": 1}),
+        ("s.xml", 'b"/><never state="', {"one.xml": 1, "s.xml": 2}),
+        ("s.xml", 'by="one"/><expect state="', {"s.xml": 1, "two.xml": 1}),
+        ("w.xml", 'place id="', {"r.xml": 1, "s.xml": 1, "u.xml": 1, "w.xml": 1}),
+        ("r.xml", 'gesture name="', {"r.xml": 2, "s.xml": 1}),
+        ("size.grxml", '</rule><rule id="', {"size.grxml": 3}),
+        ("size.grxml", "rules.", {"size.grxml": 3}),
+        ("more.grxml", 'rule id="', {"literal.grxml": 1, "more.grxml": 1, "size.grxml": 2}),
+        ("literal.grxml", '</rule><rule id="', {"literal.grxml": 2}),
+    ],
+)
+def test_a_name_is_renamed_wherever_it_is_used(
+    space: Workspace, file: str, words: str, made: dict[str, int]
+) -> None:
+    assert renamed(space, file, words) == made
+
+
+def test_states_are_proposed_of_the_application_that_is_named(space: Workspace) -> None:
+    path = space.folders[0] / "s.xml"
+    for by, names in (("one", {"start"}), ("b", {"start"}), ("two", set()), ("", {"start"})):
+        text, offset = plain(SCENE.replace('state="start" by="one"', f'state="|" by="{by}"'))
+        space.put(path.as_uri(), text)
+        assert {one.label for one in complete(space, path, offset)} == names, by
+
+
+def test_a_tag_of_a_voicexml_document_s_own_grammar_reads_its_rules(space: Workspace) -> None:
+    path = space.folders[0] / "v.vxml"
+    path.write_text(
+        f'{VOICE}<form id="a"><field name="f">{GRAMMAR % "semantics/1.0"}</field></form></vxml>'
+    )
+    assert renamed(space, "v.vxml", '</rule><rule id="') == {"v.vxml": 3}
