@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from prima.errors import Place, Problem, Span, guessable, meant
@@ -19,7 +19,7 @@ from prima.interpreter.acts import (
 )
 from prima.interpreter.elements import Acts, Document, Field, Item, all_items
 from prima.interpreter.selection import takes
-from prima.language.commands import DEVICES
+from prima.language.commands import DEVICES, WRITTEN
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
@@ -220,11 +220,12 @@ class KnownEvents:
         return (f'Nothing raises an event "{name}".', nearest) if nearest else None
 
     @staticmethod
-    def _missing(name: str, end: str, known: Iterable[str], wrong: str) -> tuple[str, str] | None:
+    def _missing(name: str, end: str, known: Collection[str], wrong: str) -> tuple[str, str] | None:
         """The problem of a name that ends with an unknown Command or service."""
         if any(takes(end, one) for one in known):
             return None
-        nearest = near(end, known)
+        nearest = WRITTEN.get(end, "")
+        nearest = nearest if nearest in known else near(end, known)
         right = name.removesuffix(end) + nearest if nearest else ""
         return f'"{name}" is never raised: {wrong}.', right
 

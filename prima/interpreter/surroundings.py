@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from prima.errors import Hint, Problem, Span, one_of, suggestion
+from prima.errors import Hint, Problem, Span, meant, one_of, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_NAME
 from prima.grammar.text import fold
 from prima.interpreter.acts import CommandRun, CommandTemplate, Pause, Text, all_acts, run_commands
 from prima.interpreter.elements import Document, Field, all_items
 from prima.interpreter.events import event_place, handlers_of
+from prima.language.commands import WRITTEN
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
@@ -91,6 +92,8 @@ def check_name(node: Node, name: str, value: str, names: Surroundings) -> list[P
 
 def nearest(word: str, known: Collection[str], *spans: Span) -> Hint:
     """The name probably meant, or all names; a fix writes it into some spans."""
+    if (command := WRITTEN.get(word, "")) in known:
+        return meant(command, *spans)
     if hint := suggestion(word, known, *spans):
         return hint
     few = 0 < len(known) <= FEW

@@ -14,6 +14,8 @@ from typing import Literal
 
 from prima.language.values import Value
 
+WRITTEN = {"field": "q-and-a"}
+"""The types of Commands that applications write as an element of another name."""
 DEVICES = (
     "human-detection",
     "locomotion",

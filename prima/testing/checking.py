@@ -57,10 +57,10 @@ class ExpectationChecker:
             if inside:
                 self._fail(one, window, f"It does {self._at(inside)}.", inside[0])
         elif one.times is not None and len(inside) != one.times:
-            at = f", {self._at(inside)}" if inside else ""
-            self._fail(
-                one, window, f"It does {times(len(inside))}{at}.", next(reversed(inside), None)
+            does = (
+                f"It does {times(len(inside))}, {self._at(inside)}." if inside else "It never does."
             )
+            self._fail(one, window, does, next(reversed(inside), None))
         elif not inside:
             self._miss(one, window, fitting)
         else:

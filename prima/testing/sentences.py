@@ -61,7 +61,7 @@ def expected(one: Expectation, window: Window) -> str:
 
 def times(count: int) -> str:
     """How often: ``once``, ``3 times``."""
-    return {0: "never", 1: "once", 2: "twice"}.get(count, f"{count} times")
+    return {1: "once", 2: "twice"}.get(count, f"{count} times")
 
 
 def seconds(time: int) -> str:

@@ -81,3 +81,12 @@ def test_a_prompt_that_asks_nothing_is_told(prompts: str, told: int, tmp_path: P
     )
     found = problems(tmp_path, text, "nothing-to-say")
     assert [one["severity"] for one in found] == ["warning"] * told
+
+
+def test_the_end_of_a_question_has_the_name_of_its_command(tmp_path: Path) -> None:
+    text = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><form id="m">
+    <field name="f" type="boolean"><prompt>Yes?</prompt>
+      <on event="end.%s"><exit/></on><noinput><exit/></noinput></field></form></prima>"""
+    (found,) = problems(tmp_path, text % "field", "unknown-event")
+    assert 'Did you mean "end.q-and-a"?' in found["message"] + found["remedy"]
+    assert not problems(tmp_path, text % "q-and-a", "unknown-event")
