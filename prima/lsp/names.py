@@ -70,7 +70,7 @@ def plain(code: str) -> str:
 def marks(page: ScannedText) -> list[Mark]:
     """All names of a page, in the order of the text."""
     found = [mark for tag in page.tags if tag.element for mark in _of_tag(page, tag)]
-    return sorted(_scoped(found), key=lambda mark: mark.start)
+    return sorted(_linked(_scoped(found)), key=lambda mark: mark.start)
 
 
 def _of_tag(page: ScannedText, tag: ScannedTag) -> Iterator[Mark]:
@@ -165,21 +165,25 @@ def _content(code: str) -> str:
 
 
 def _rules_in_tag(page: ScannedText, tag: ScannedTag) -> Iterator[Mark]:
-    """The rules whose results a grammar's tag reads: ``rules.size`` (SISR 1.0, 3.3)."""
+    """Members of the results of rules that a grammar's tag reads: ``rules.size`` (SISR 1.0, 3.3)."""
     grammar = tag.inside("grammar")
     code = _content(page.text[tag.end : tag.content])
     if grammar is None or grammar.get("tag-format").strip() != SCRIPTED or len(code) > LONGEST_CODE:
         return
-    files = {}
-    for one in page.tags:
-        if one.key == "ruleref" and one.inside("grammar") is grammar:
-            file, _, name = one.get("uri").strip().partition("#")
-            files[name] = file
     for use in script_names(code).uses:
-        if use.name in RESULTS and use.part is not None and use.part[1] in files:
+        if use.name in RESULTS and use.part is not None:
             first, name = tag.end + use.part[0], use.part[1]
-            file = files[name]
-            yield Mark(("rule",), name, first, first + len(name), False, tag, grammar.start, file)
+            yield Mark(("rule",), name, first, first + len(name), False, tag, grammar.start)
+
+
+def _linked(found: list[Mark]) -> Iterator[Mark]:
+    """The names, but of the members that tags read only those of rules that are referred to."""
+    files = {(one.scope, one.name): one.file for one in found if one.tag.key == "ruleref"}
+    for one in found:
+        if one.tag.key != "tag":
+            yield one
+        elif (one.scope, one.name) in files:
+            yield replace(one, file=files[one.scope, one.name])
 
 
 def _script(code: str, tag: ScannedTag) -> Iterator[Mark]:

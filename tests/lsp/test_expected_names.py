@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import pytest
@@ -100,3 +101,17 @@ def test_a_tag_of_a_voicexml_document_s_own_grammar_reads_its_rules(space: Works
         f'{VOICE}<form id="a"><field name="f">{GRAMMAR % "semantics/1.0"}</field></form></vxml>'
     )
     assert renamed(space, "v.vxml", '</rule><rule id="') == {"v.vxml": 3}
+
+
+def test_many_tags_take_no_long_time(tmp_path: Path) -> None:
+    rules = "".join(
+        f'<rule id="r{n}"><ruleref uri="#r{n + 1}"/><tag>out = rules.r{n + 1};</tag></rule>'
+        for n in range(4000)
+    )
+    text = (GRAMMAR % "semantics/1.0").replace("</grammar>", rules + "</grammar>")
+    space = Workspace()
+    path = space.put((tmp_path / "x.grxml").as_uri(), text)
+    assert path is not None
+    began = time.process_time()
+    assert len(naming.references(space, path, text.index('"r5"') + 1)) == 3
+    assert time.process_time() - began < 5
