@@ -282,9 +282,11 @@ class People:
         return Occurred("connection.disconnect.hangup", "user", data)
 
     def _go(self, doing: Doing, script: TriggeredScript, now: int) -> list[Inbound]:
-        """Walk somewhere, follow the robot, stop, or go away."""
+        """Walk somewhere, follow the robot, stop, or go away; nothing if they have gone."""
         who = script.who
         self._following.pop(who, None)
+        if self.world.people[who].at is None:
+            return []
         match doing.name:
             case "walk":
                 return self._walk(doing, script, now)

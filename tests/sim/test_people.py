@@ -69,6 +69,13 @@ def test_when_its_own_leaves_it_attends_to_the_next_whom_it_sees() -> None:
     assert not made.sees_person() and made.person is None
 
 
+def test_who_has_gone_away_neither_goes_along_nor_goes_away_again(tmp_path: Path) -> None:
+    script = f"""{TWO}<when at="1s" person="ann"><leave/><follow/><leave/></when>
+      <when at="2s" person="ben"><follow/><leave/></when>"""
+    rows = [one for one in told(rehearse(tmp_path, ASKS, script)) if " goes " in one]
+    assert rows == ["ann goes away", "ben goes along with the robot", "ben goes away"]
+
+
 def test_the_transcript_tells_who_spoke_and_touched(tmp_path: Path) -> None:
     script = f"""{TWO}<when asked="Who" person="ben"><say>Ben</say></when>
       <when at="1s" person="ann"><touch sensor="head"/><walk x="2" y="0"/><leave/></when>"""
