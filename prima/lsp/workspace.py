@@ -299,15 +299,15 @@ class Workspace:
         scene = self.text(path)
         tags = [one for one in (scene.page.tags if scene else ()) if one.key == "application"]
         called = {self.target(path, one.get("src")): one.get("id") for one in tags}
-        found: list[FoundName] = []
-        for target in (*called, *sorted(self.reading(path) - called.keys())):
-            text = self.text(target) if target is not None else None
-            root = text.top.root if text is not None else None
-            if target is None or text is None or root is None:
-                continue
-            if by in ("", called.get(target) or root.get("id") or target.stem):
-                found += [FoundName(target, one) for one in text.marks if one.defines]
-        return [one for one in found if one.mark.kind == ("form",)]
+        written = [one for one in called if one is not None]
+        paths = [*written, *sorted(self.reading(path).difference(written))]
+        named = (one for one in paths if by in ("", called.get(one) or self._id_of(one)))
+        return self._defined(named, frozenset({"form"}))
+
+    def _id_of(self, path: Path) -> str:
+        """A document's id, or else the name of its file."""
+        root = text.top.root if (text := self.text(path)) else None
+        return (root.get("id") if root else "") or path.stem
 
     def given(self, path: Path, mark: Mark) -> list[FoundName]:
         """The definitions of a name: in its scenarios, or else anywhere in the workspace."""
