@@ -1,6 +1,6 @@
 """Sweeps and explorations: what their processes, a cluster and their search are worth.
 
-``python -m bench.run --only "weep xplor"`` measures them. All ways make the same runs, and what
+``python -m bench.run --only Experiments`` measures them. All ways make the same runs, and what
 came of them is compared.
 """
 

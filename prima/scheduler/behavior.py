@@ -138,14 +138,14 @@ class Wait:
     """The rule that keeps it from starting, and the AB or stream that the rule protects."""
     loops: int = 0
     """How many loops of another application's feedback Command it has waited (E4)."""
-    since: int = -1
-    """Since when (ms) another application keeps it waiting; -1 if none does."""
+    since: int | None = None
+    """Since when (ms) another application keeps it waiting; None if none does."""
     starves: bool = False
     """Whether that has been reported."""
     kept: int = 0
     """How long (ms) others have kept it from the speaker, with no rule to do so (E6)."""
-    kept_since: int = -1
-    """Since when (ms) they have done so; -1 if they do not."""
+    kept_since: int | None = None
+    """Since when (ms) they have done so; None if they do not."""
     overdue: bool = False
     """Whether they have done so for the maximum time."""
 

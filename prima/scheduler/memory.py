@@ -149,7 +149,7 @@ class WorkingMemory:
         """
         del self.waiting[ab.name]
         ab.state = LINKED
-        ab.wait.since = ab.wait.kept_since = -1
+        ab.wait.since = ab.wait.kept_since = None
 
     def conflict(self, ab: Behavior) -> Behavior | None:
         """A running AB that occupies one of the devices (S1); a unit's own count within it."""

@@ -23,7 +23,7 @@ def e4(mediation: Mediation, ab: Behavior) -> bool:
     Returns:
         Whether an AB has waited so long that it counts as a reaction from now on.
     """
-    if not ab.feedback or ab.loop <= 1:
+    if ab.loop <= 1:
         return False
     bound, bounded = mediation.bound, []
     for other in mediation.memory.waiting.values():
@@ -51,15 +51,15 @@ def _report(mediation: Mediation, ab: Behavior, rule: str, by: str, **fields: ob
 def count_waits(mediation: Mediation) -> None:
     """E6: add the time since the previous selection, and report starving ABs."""
     most, now = mediation.patience, mediation.now
-    if not (most and mediation.policy.floor):
-        return
     for ab in mediation.memory.waiting.values():
         wait = ab.wait
-        if wait.kept_since >= 0:
+        if wait.kept_since is not None:
             wait.kept += now - wait.kept_since
             wait.overdue = wait.kept >= most
-        waited = max(now - wait.since, wait.kept) if wait.since >= 0 else 0
-        if waited >= most and not wait.starves:
+        if wait.since is None or wait.starves:
+            continue
+        waited = max(now - wait.since, wait.kept)
+        if waited >= most:
             wait.starves = True
             rule, by = wait.blocked
             rule = "E6" if wait.overdue else rule
@@ -77,13 +77,13 @@ def note_waits(mediation: Mediation) -> None:
 def _due(mediation: Mediation, ab: Behavior) -> int | None:
     """When a waiting AB will starve (ms), if another application keeps it waiting."""
     wait, now = ab.wait, mediation.now
-    wait.kept_since = -1
-    if application(wait.blocked[1]) in ("", ab.app.name):
-        wait.since = -1
+    wait.kept_since = None
+    if application(wait.blocked[1]) == ab.app.name:
+        wait.since = None
         return None
     if rules.keeps_speaker(ab, mediation.memory):
         wait.kept_since = now
-    if wait.since < 0:
+    if wait.since is None:
         wait.since = now
     return None if wait.starves else wait.since + mediation.patience
 
@@ -92,4 +92,4 @@ def forget_waits(mediation: Mediation) -> None:
     """E5: in an emergency no application keeps another waiting."""
     count_waits(mediation)
     for ab in mediation.memory.waiting.values():
-        ab.wait.since = ab.wait.kept_since = -1
+        ab.wait.since = ab.wait.kept_since = None

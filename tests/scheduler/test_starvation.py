@@ -8,6 +8,7 @@ from prima.language.commands import PATIENCE_MS
 from prima.messages import Step
 from tests.helpers.stage import TRACK, Stage, command, say
 
+EVENT = 7
 TURN = command("turn", angle=3)
 
 
@@ -84,6 +85,28 @@ def test_e4_what_is_bounded_first_goes_first() -> None:
     stage.request("ea", TURN)
     begun = loops(stage, 12)
     assert [*begun] == ["eb#1", "ea#1"]
+
+
+def test_e4_a_reaction_that_waits_is_not_counted() -> None:
+    """It may not break in, as it reacts to the same event (F2): no number of loops changes that."""
+    stage = Stage(bound=2)
+    stage.request("fa", TRACK, cause=EVENT)
+    stage.select()
+    stage.at(1).request("ea", TURN, cause=EVENT)
+    assert loops(stage, 10) == {}
+
+
+def test_e4_what_is_bounded_together_reacts_to_different_events() -> None:
+    stage = tracked(1, {"fa": "fa", "ea": "ea", "eb": "ea"})
+    stage.at(1).request("ea", TURN, TURN)
+    stage.request("eb", TURN)
+    stage.select()
+    stage.at(500).end("fa#1.1", goal=False)
+    stage.select()
+    stage.at(1000).end("fa#1.2", goal=False)
+    assert stage.select() == ["ea#1"]
+    stage.at(1100).end("ea#1")
+    assert stage.select() == ["eb#1"]
 
 
 def waiting(policy: str = "prima", patience: int = 5000, since: int = 0) -> Stage:
@@ -183,6 +206,19 @@ def test_e6_time_stands_still_while_its_own_application_speaks() -> None:
     stage.at(9100).end("fa#1")
     assert stage.select() == ["ea#2"], "it is not overdue"
     assert stage.phases("starve") == []
+
+
+def test_e6_time_stands_still_while_another_has_the_floor() -> None:
+    stage = Stage(apps={"fa": "fa", "ea": "ea", "eb": "ea"}, patience=5000)
+    stage.request("ea", say("First."))
+    stage.select()
+    stage.at(1000).request("fa", say("One."))
+    stage.select()
+    stage.at(3000).request("eb", say("Ouch!"), cause=EVENT)
+    stage.end("ea#1", then=lambda: stage.request("ea", say("On.")))
+    assert stage.select() == ["eb#1"]
+    stage.at(9000).end("eb#1")
+    assert stage.select() == ["ea#2"], "the other has been kept from the speaker for 2 s"
 
 
 def test_e6_in_an_emergency_time_stands_still() -> None:
