@@ -88,9 +88,11 @@ class Pages:
     def _target(self, page: Page, node: Node) -> tuple[Page | None, str]:
         """The target of an element: its document, if known, and its dialog."""
         uri = node.get(LEADING.get(node.key, "")).strip()
-        base, name = parted(page.resolve(uri, node)) if uri else ("", "")
-        if uri[:1] == "#":
-            return page, name
+        if not uri:
+            return None, ""
+        if uri[0] == "#":
+            return page, parted(uri)[1]
+        base, name = parted(page.resolve(uri, node))
         return self._pages.get(urlsplit(base).path), name
 
 
