@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from prima.messages import Command, Data, Group, Notice
-from prima.scheduler.behavior import RUNNING, Behavior
+from prima.scheduler.behavior import GONE, RUNNING, Behavior
 from prima.scheduler.mediation import HaltedUnit, Mediation
 
 Held = dict[str, Behavior]
@@ -124,7 +124,7 @@ def interrupted(mediation: Mediation, behavior: str, data: Data) -> None:
 
 
 def _tell(mediation: Mediation, ab: Behavior, data: Data) -> None:
-    if ab.run is None or ab.silent or ab.app.gone:
+    if ab.run is None or ab.state is GONE:  # its state has been left meanwhile (O3)
         return
     command = ab.command or Command("iu", hook=[])
     event = f"interrupted.{command.type}"

@@ -193,6 +193,40 @@ def test_x2_a_unit_in_a_unit_is_interrupted_with_it() -> None:
     assert check(stage.records, "prima+x2") == []
 
 
+def test_x2_of_a_unit_in_a_unit_the_device_reports_on_its_command() -> None:
+    stage = Stage("prima+x2")
+    turn = command("turn", angle=90)
+    stage.request("ea", Group([Step(Group(chain(turn, turn)))], restartable=True))
+    stage.select()
+    stage.at(100).request("fa", turn, cause=1)
+    assert stage.select() == ["fa#1"]
+    stage.mediator.interrupted("ea#3", {"done": 0.5})
+    stage.settle()
+    ((_, notice),) = stage.notices
+    assert (notice.event, notice.data) == ("interrupted.iu", {"done": 0.25})
+
+
+@pytest.mark.parametrize(
+    ("unit", "leave"),
+    [(True, "state"), (True, "application"), (False, "state"), (False, "application")],
+)
+def test_x2_nobody_hears_of_what_has_been_left_meanwhile(unit: bool, leave: str) -> None:
+    """O3, E2: the device reports after the state, or the application, has been left."""
+    stage = Stage("prima+x2")
+    turn = command("turn", angle=90)
+    stage.request("ea", Group(chain(turn), restartable=True) if unit else restartable(turn))
+    stage.select()
+    stage.at(100).request("fa", turn, cause=1)
+    assert stage.select() == ["fa#1"]
+    if leave == "state":
+        stage.leave("ea")
+    else:
+        stage.mediator.unload("ea", "exit")
+    stage.mediator.interrupted("ea#2" if unit else "ea#1", {"done": 0.5})
+    stage.settle()
+    assert stage.told("ea") == []
+
+
 def test_x2_a_motion_that_can_be_composed_is_in_nobodys_way() -> None:
     # Of the move and the nod only the nod is in the dance's way (X5), and it is restartable.
     stage = Stage("prima+x2+x5", table=TABLE)
