@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from contextlib import suppress
 from importlib import import_module
 
 import click
@@ -99,7 +100,11 @@ def interrupt_again(lost: sys.UnraisableHookArgs) -> None:
         return
     from threading import Timer
 
-    Timer(0.01, os.kill, (os.getpid(), signal.SIGINT)).start()
+    started = False
+    while not started:
+        with suppress(KeyboardInterrupt):  # the timer was quicker than its start: lost here, too
+            Timer(0.01, os.kill, (os.getpid(), signal.SIGINT)).start()
+            started = True
 
 
 def main() -> None:
