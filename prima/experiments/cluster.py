@@ -207,7 +207,7 @@ def _lots(
         except KilledWorker:
             yield from _one_by_one(client, sent, lot)
         else:
-            size = min(max(round(len(lot) * TASK_SECONDS / seconds), 1), MOST_RUNS)
+            size = min(max(round(len(lot) * TASK_SECONDS / max(seconds, 1e-6)), 1), MOST_RUNS)
             yield from zip(lot, made, strict=True)
 
 

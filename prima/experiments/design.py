@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import product
+from functools import cached_property
 
 from prima.errors import UsageError, one_of
 from prima.experiments.levels import Factor
@@ -63,27 +63,31 @@ class Design:
 
     def __iter__(self) -> Iterator[tuple[int, tuple[str, ...]]]:
         """Seeds, from 1, and values in the order of the factors."""
-        return self._full() if self.kind == "full" else self._drawn()
+        return map(self.at, range(self.count))
 
-    def _full(self) -> Iterator[tuple[int, tuple[str, ...]]]:
-        for levels in product(*(factor.levels or ("",) for factor in self.factors)):
-            for seed in range(1, self.seeds + 1):
-                pairs = zip(self.factors, levels, strict=True)
-                yield (
-                    seed,
-                    tuple(
-                        one.drawn(share(seed, one.path)) if one.quantile else level
-                        for one, level in pairs
-                    ),
-                )
+    def at(self, number: int) -> tuple[int, tuple[str, ...]]:
+        """The seed and the values of one run, counted from 0."""
+        if self.kind == "full":
+            return self._combined(number)
+        seed = number + self.seeds
+        lhs = self.kind == "lhs"
+        shares = self._points[number] if lhs else [share(seed, one.path) for one in self.factors]
+        pairs = zip(self.factors, shares, strict=True)
+        return number + 1, tuple(one.drawn(share) for one, share in pairs)
 
-    def _drawn(self) -> Iterator[tuple[int, tuple[str, ...]]]:
-        rows = _hypercube(len(self.factors), self.count, self.seeds) if self.kind == "lhs" else None
-        for number in range(1, self.count + 1):
-            seed = number + self.seeds - 1
-            shares = rows[number - 1] if rows else [share(seed, one.path) for one in self.factors]
-            pairs = zip(self.factors, shares, strict=True)
-            yield number, tuple(one.drawn(share) for one, share in pairs)
+    def _combined(self, number: int) -> tuple[int, tuple[str, ...]]:
+        """One run of all combinations: seeds change first, then the levels of the last factor."""
+        number, seed = divmod(number, self.seeds)
+        values: list[str] = []
+        for one in reversed(self.factors):
+            number, level = divmod(number, len(one.levels) or 1)
+            drawn = one.drawn(share(seed + 1, one.path)) if one.quantile else one.levels[level]
+            values.append(drawn)
+        return seed + 1, tuple(reversed(values))
+
+    @cached_property
+    def _points(self) -> Sequence[Sequence[float]]:
+        return _hypercube(len(self.factors), self.count, self.seeds)
 
 
 def _check_count(runs: int) -> None:

@@ -10,7 +10,7 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from errno import ENOSPC
-from itertools import islice, product
+from itertools import product
 from pathlib import Path
 
 from prima.errors import UsageError, counted
@@ -101,12 +101,13 @@ class Sweep:
         return len(self.design) * len(self.policies) * len(self.question.scenarios)
 
     def __iter__(self) -> Iterator[Variant]:
-        number = 0
-        for scenario in range(len(self.question.scenarios)):
-            for policy in self.policies:
-                for seed, values in self.design:
-                    yield Variant(number, scenario, policy, seed, values)
-                    number += 1
+        return map(self.at, range(len(self)))
+
+    def at(self, number: int) -> Variant:
+        """One run, counted from 0."""
+        place, index = divmod(number, len(self.design))
+        scenario, policy = divmod(place, len(self.policies))
+        return Variant(number, scenario, self.policies[policy], *self.design.at(index))
 
     def _factors(self) -> list[Factor]:
         """The factors; every scenario has to contain the varied values."""
@@ -198,7 +199,7 @@ class Sweep:
     def results(self, pool: Pool, begin: int = 0, folder: str = "") -> Iterator[list[Json]]:
         """Make the runs from a number on; yield their rows in order."""
         with pool(self.stage) as runs:
-            for variant, made in runs(islice(self, begin, None)):
+            for variant, made in runs(map(self.at, range(begin, len(self)))):
                 yield self.row(variant, made, folder)
 
 
@@ -333,8 +334,8 @@ def estimate(sweep: Sweep, workers: int, runs: int = 10) -> str:
     """Estimates a sweep's duration and the size of its table, from a few runs across the plan."""
     from time import perf_counter
 
-    every = max(len(sweep) // runs, 1)
-    chosen = list(islice(sweep, 0, every * runs if len(sweep) < 1_000_000 else runs, every))
+    chosen = [sweep.at(number) for number in range(0, len(sweep), -(-len(sweep) // runs))]
+    sweep.stage.run(chosen[0])  # the first one of a process is much slower
     begin = perf_counter()
     size = sum(len(line(sweep.row(one, sweep.stage.run(one), "x"))) for one in chosen)
     each = (perf_counter() - begin) / len(chosen)

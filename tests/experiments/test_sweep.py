@@ -15,7 +15,7 @@ from prima.errors import DocumentError, Problem, UsageError
 from prima.experiments.pools import local
 from prima.experiments.scenariotext import Variant
 from prima.experiments.sweep import Output, Sweep, SweepQuestion, estimate
-from prima.experiments.variants import Stage, signature
+from prima.experiments.variants import Made, Stage, signature
 from tests.helpers.batches import files
 from tests.helpers.here import prima
 from tests.helpers.sweeps import VISIT, write_visit
@@ -185,6 +185,25 @@ def test_what_a_sweep_will_cost() -> None:
     assert done.returncode == 0
     assert done.stdout.startswith("3001 runs: about ") and "a table of about 0." in done.stdout
     assert "with 1 process (" in estimate(Sweep(SweepQuestion(("visit.xml",), TOUCH)), 1)
+
+
+def test_the_cost_of_millions_is_estimated_from_runs_across_the_plan(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    question = SweepQuestion(("visit.xml",), TOUCH, ("prima", "fifo"), seeds=1_000_000)
+    sweep, ran, run = Sweep(question), [], Stage.run
+
+    def noted(stage: Stage, variant: Variant) -> Made:
+        ran.append(variant)
+        return run(stage, variant)
+
+    monkeypatch.setattr(Stage, "run", noted)
+    assert estimate(sweep, 1).startswith(f"{len(sweep)} runs: about ")
+    first, *counted = ran
+    assert first == counted[0], "it is made twice: the first run of a process is slow"
+    assert len(counted) == 10
+    assert {one.policy for one in counted} == {"prima", "fifo"}
+    assert len({one.values for one in counted}) > 1
 
 
 @pytest.mark.parametrize(
