@@ -30,6 +30,7 @@ class FakeReachy:
         self.doa: Any = None
         self.ends = "move_completed"
         """How moves end; nothing if they go on until they are stopped."""
+        self.details = "the motor is hot"
         self.moves = True
         """Whether parts go where they are sent."""
         self.running: list[str] = []
@@ -102,7 +103,7 @@ class FakeReachy:
 
     def tell(self, event: str, uuid: str) -> None:
         """Tell all listeners how a move has ended."""
-        self.send(json.dumps({"type": event, "uuid": uuid, "details": "the motor is hot"}))
+        self.send(json.dumps({"type": event, "uuid": uuid, "details": self.details}))
 
     def send(self, text: str) -> None:
         """Send all listeners a text."""

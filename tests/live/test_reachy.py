@@ -16,7 +16,7 @@ from prima.errors import UsageError
 from prima.live.driver import Refused, Unreachable, Unusable
 from prima.live.drivers import driver_class
 from prima.live.drivers.reachy import DRIVER, driver
-from prima.live.drivers.reachy.link import read_address
+from prima.live.drivers.reachy.link import PAST, read_address
 from prima.live.drivers.reachy.pose import HeadPose, read_pose, read_step
 from prima.live.told import Teller
 from prima.messages import Command, Occurred, Sensed
@@ -223,6 +223,22 @@ def test_moves_that_fail_break_their_goals(ends: str, answer: Any, reason: str) 
             await run.driver.open()
             key = run.begin("move-head", pan=10.0, tilt=0.0)
             assert await run.end(key) == Broke(key, "neck", reason)
+            await run.driver.close()
+
+    play(test())
+
+
+@pytest.mark.parametrize("details", sorted(PAST))
+def test_a_move_that_the_daemon_fails_at_its_very_end_is_made(details: str) -> None:
+    async def test() -> None:
+        async with fake_reachy() as fake:
+            fake.ends, fake.details = "move_failed", details
+            run = Run(fake)
+            await run.driver.open()
+            key = run.begin("move-head", pan=10.0, tilt=0.0)
+            assert await run.end(key) == Done(key, {})
+            fake.moves = False  # where the parts are is looked at all the same
+            assert isinstance(await run.do("turn", angle=40.0), Broke)
             await run.driver.close()
 
     play(test())
