@@ -11,6 +11,9 @@ WORKERS ?= $(shell expr 2 \* $$(getconf _NPROCESSORS_ONLN))
 # Without those for robots (naoqi, rosbridge), which tests/parties installs.
 EXTRAS := dev experiments cluster export editor bench reachy
 
+# Tests start hundreds of processes; each would compile PRIMA anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: demo test test-live check explore mutants bench attack schemas build lock clean
 
 demo: $(VENV)/.runtime

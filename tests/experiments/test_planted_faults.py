@@ -92,6 +92,7 @@ FAULTS = {
         <send event="calm" delay="300ms"/><speak>That tickles!</speak></on>
         <on event="calm"><assign name="busy" expr="false"/></on></form>""",
         events=TOUCH.format(at="10s") + TOUCH.format(at="14s").replace('"touch"', '"second"'),
+        within=6_000,
     ),
     "a message that comes before what it is about": Fault(
         "error",
@@ -100,6 +101,7 @@ FAULTS = {
         <on event="touch"><assign name="who" expr="'Bob'"/><speak>Hello.</speak></on>
         <on event="message"><speak><value expr="who.toUpperCase()"/></speak></on></form>""",
         events=TOUCH.format(at="10s") + MESSAGE.format(at="14s"),
+        within=6_000,
     ),
     "one instant in which the answer is nobody's": Fault(
         "expect",
@@ -118,6 +120,7 @@ FAULTS = {
         <on event="touch" cond="told"><gesture name="nod"/></on>
         <on event="touch" cond="!told"><speak>That tickles!</speak></on></form>""",
         events=MESSAGE.format(at="8s") + TOUCH.format(at="11s"),
+        within=6_000,
         more='<expect finishes="gesture"/>',
     ),
 }

@@ -305,27 +305,28 @@ CORE = (
 )
 
 
-def modules() -> dict[str, ast.Module]:
-    found = {}
-    for path in sorted(PACKAGE.rglob("*.py")):
-        name = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
-        found[name] = ast.parse(path.read_text(encoding="utf-8"))
-    return found
-
-
-MODULES = modules()
+MODULES = {
+    ".".join(path.relative_to(PACKAGE).with_suffix("").parts): path
+    for path in sorted(PACKAGE.rglob("*.py"))
+}
 
 
 @cache
-def imported(tree: ast.Module, types_too: bool = False) -> set[str]:
+def tree(name: str) -> ast.Module:
+    """A module's code, read when a test asks for it."""
+    return ast.parse(MODULES[name].read_text(encoding="utf-8"))
+
+
+@cache
+def imported(module: str, types_too: bool = False) -> set[str]:
     """Names of modules imported anywhere in a module, inside functions as well."""
     names: set[str] = set()
     skipped: set[ast.AST] = set()
-    for node in ast.walk(tree):
+    for node in ast.walk(tree(module)):
         typing = isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
         if typing and not types_too:
             skipped.update(ast.walk(node))
-    for node in ast.walk(tree):
+    for node in ast.walk(tree(module)):
         if node in skipped:
             continue
         if isinstance(node, ast.Import):
@@ -345,7 +346,7 @@ def rank(layers: list[set[str]], part: str) -> int:
 @pytest.mark.parametrize("name", sorted(MODULES))
 def test_a_module_imports_only_what_stands_below(name: str) -> None:
     package = name.split(".")[0]
-    for target in imported(MODULES[name], types_too=True):
+    for target in imported(name, types_too=True):
         parts = target.split(".")
         if parts[0] != "prima" or len(parts) < 2:
             continue
@@ -359,10 +360,10 @@ def test_a_module_imports_only_what_stands_below(name: str) -> None:
             assert rank(LAYERS, parts[1]) < rank(LAYERS, package), f"{name} imports {target}"
 
 
-def origins(tree: ast.Module) -> set[str]:
+def origins(module: str) -> set[str]:
     """The modules of the package that names are imported from, without ``prima.``."""
     found = set()
-    for node in ast.walk(tree):
+    for node in ast.walk(tree(module)):
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("prima."):
             home = (node.module or "").removeprefix("prima.")
             for name in (f"{home}.{one.name}" for one in node.names):
@@ -374,8 +375,8 @@ def origins(tree: ast.Module) -> set[str]:
 def test_no_modules_import_each_other() -> None:
     """Neither when they are loaded, nor inside functions, nor for types."""
     graph: networkx.DiGraph[str] = networkx.DiGraph()
-    for name, tree in MODULES.items():
-        graph.add_edges_from((name, one) for one in origins(tree) if one != name)
+    for name in MODULES:
+        graph.add_edges_from((name, one) for one in origins(name) if one != name)
     knots = [one for one in networkx.strongly_connected_components(graph) if len(one) > 1]
     assert not knots
 
@@ -384,16 +385,16 @@ def test_no_modules_import_each_other() -> None:
 def test_a_library_is_known_in_its_own_place_alone(library: str, homes: set[str]) -> None:
     users = {
         name
-        for name, tree in MODULES.items()
-        if any(target.split(".")[0] == library for target in imported(tree))
+        for name in MODULES
+        if any(target.split(".")[0] == library for target in imported(name))
     }
     assert all(user in homes or user.split(".")[0] in homes for user in users)
 
 
 def test_the_core_has_no_clock_thread_chance_or_socket() -> None:
-    for name, tree in MODULES.items():
+    for name in MODULES:
         if name.split(".")[0] in CORE:
-            used = {target.split(".")[0] for target in imported(tree)}
+            used = {target.split(".")[0] for target in imported(name)}
             assert not used & OUTSIDE, name
 
 
