@@ -13,15 +13,16 @@ from bench.fresh import ROOT, check
 
 SMALL = "documents/fa/follow.xml"
 DEMO = "documents/scenarios/follow-during-navigation.xml"
+SYNTAX = ("tree_sitter", "tree_sitter_javascript")
 
 FLOORS = {
     "bare": (),
     "click": ("click",),
-    "validate": ("click", "xml.parsers.expat"),
-    "run": ("click", "xml.parsers.expat", "pymunk"),
+    "validate": ("click", "xml.parsers.expat", *SYNTAX),
+    "run": ("click", "xml.parsers.expat", *SYNTAX, "pymunk", "networkx"),
 }
-"""What a command cannot do without, of what is not PRIMA's own; the code of these documents is
-simple and needs no engine."""
+"""The libraries that a command imports. The process of the engine, in which a script of the demo is
+checked and run, is not part of a floor."""
 
 TINY = {
     "sismic": (

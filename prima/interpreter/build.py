@@ -124,8 +124,10 @@ class Builder(ContentBuilder):
 
     def hold(self, node: Node) -> int | None:
         """How long a stream is held, by the hints of an element (X3)."""
+        if node.get("stream") != "hold":
+            return None
         longest: int = self.value(node, "hold-for", "duration", HOLD_MS)
-        return longest if node.get("stream") == "hold" else None
+        return longest
 
     def setup(self, parts: Parts) -> tuple[Declare | Script, ...]:
         """Variables and scripts, in document order."""

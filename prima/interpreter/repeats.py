@@ -58,7 +58,7 @@ class _Back:
     """Whether the goto's target is known without a run, and the target."""
 
 
-def source_of(document: Document) -> EnteredDocument:
+def source_of(document: Document, acts: Acts) -> EnteredDocument:
     """The source for a document in PRIMA's own language."""
 
     def leads(act: Goto | Subdialog) -> list[FormTarget]:
@@ -67,7 +67,7 @@ def source_of(document: Document) -> EnteredDocument:
             return [FormTarget(f"{document.file}#{text}", whole) for text, whole in named]
         return [FormTarget(f"{document.file}#{act.form}")]
 
-    return EnteredDocument(document, _foreign(document), leads)
+    return EnteredDocument(document, _foreign(document, acts), leads)
 
 
 def told_twice(sources: Sequence[EnteredDocument], remedy: str = REMEDY) -> Iterator[Problem]:
@@ -273,16 +273,16 @@ def _why(back: _Back) -> str:
     return "which item is next depends on an expression, and may be this one."
 
 
-def _foreign(document: Document) -> Callable[[str], bool]:
+def _foreign(document: Document, acts: Acts) -> Callable[[str], bool]:
     """Decides which events may come from outside other than as an answer."""
-    chosen = _chosen(document)
+    chosen = _chosen(document, acts)
     return lambda event: chosen.isdisjoint(beginnings(event))
 
 
-def _chosen(document: Document) -> set[str]:
+def _chosen(document: Document, acts: Acts) -> set[str]:
     """Events that the application causes itself, or the user by a link."""
     found = set(OWN)
-    for act in Acts(document).among(SendOut, Throw):
+    for act in acts.among(SendOut, Throw):
         if isinstance(act, SendOut | Throw) and isinstance(act.event, str) and act.event:
             found.add(act.event)
     links = [*document.links, *(one for form in document.forms.values() for one in form.links)]

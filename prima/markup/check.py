@@ -177,7 +177,7 @@ class _Rules:
                 except ValueError:
                     return False
                 right.add(text)
-        return not self.lacking(attributes)
+        return not self.required or not self.lacking(attributes)
 
     def lacking(self, attributes: dict[str, str]) -> list[Attribute]:
         """The missing attributes of an element with these."""

@@ -32,7 +32,10 @@ class Known:
         self.scopes = scopes
 
     def __contains__(self, name: object) -> bool:
-        return any(name in scope for scope in self.scopes)
+        found = False
+        for scope in self.scopes:
+            found = found or name in scope
+        return found
 
     def written(self) -> Iterator[str]:
         """Variables that an author may have meant."""

@@ -48,4 +48,4 @@ def check_document(document: Document) -> list[Problem]:
     problems = [problem for check in CHECKS for problem in check(facts)]
     problems += endless_reactions(document)
     problems += KnownEvents(document, facts.acts).problems()
-    return [*problems, *told_twice([source_of(document)])]
+    return [*problems, *told_twice([source_of(document, facts.acts)])]

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 
 from prima.interpreter.acts import CommandTemplate as Command
-from prima.interpreter.acts import Declare, Exit, Foreach, Goto, Script, run_commands
+from prima.interpreter.acts import Declare, Exit, Foreach, Goto, Handler, Script, run_commands
 from prima.interpreter.elements import (
     Acts,
     Document,
@@ -18,6 +18,7 @@ from prima.interpreter.elements import (
     all_items,
     runs_of,
 )
+from prima.interpreter.events import handlers_of
 from prima.script.known import Known, NameScope
 from prima.script.names import script_names
 
@@ -56,6 +57,7 @@ class Facts:
         """Names by the form whose content declares them; None for the document."""
         self._given: dict[str, NameScope] = {}
         """Names that subdialogs give as params, by the form they call."""
+        self._visible: dict[str, Known] = {}
         self._gather()
         self._common = NameScope(self.shared | self._declared.get(None, NONE))
 
@@ -63,6 +65,11 @@ class Facts:
     def forms(self) -> list[tuple[Form, Sequence[Item]]]:
         """Forms with all their items."""
         return [(form, all_items(form.items)) for form in self.document.forms.values()]
+
+    @cached_property
+    def handlers(self) -> list[Handler]:
+        """All handlers of the document."""
+        return list(handlers_of(self.document, self.acts))
 
     # Names
 
@@ -99,8 +106,11 @@ class Facts:
         """All variables visible to a form's content, or to the document's own content (None)."""
         if form is None:
             return self._every
-        own, given = self._declared.get(form.id), self._given.get(form.id)
-        return Known(self._common, *filter(None, (own, given)))
+        known = self._visible.get(form.id)
+        if known is None:
+            own, given = self._declared.get(form.id), self._given.get(form.id)
+            known = self._visible[form.id] = Known(self._common, *filter(None, (own, given)))
+        return known
 
     # Ways
 

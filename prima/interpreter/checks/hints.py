@@ -54,9 +54,9 @@ HOLD_PRICE = Diagnosis(
 def check_hints(facts: Facts) -> Iterator[Problem]:
     """Check hints of forms, items and handlers (X3, X4, X8)."""
     speaking = _speaking(facts)
-    for node in facts.document.node.walk():
-        if node.tag == "on" and "fresh-for" in node.attributes and _is_no_reaction(node):
-            yield NO_REACTION.at(node.place_of("fresh-for"))
+    for handler in facts.handlers:
+        if "fresh-for" in handler.node.attributes and _is_no_reaction(handler.node):
+            yield NO_REACTION.at(handler.node.place_of("fresh-for"))
     for form, items in facts.forms:
         yield from _stream(facts, form, form)
         for item in items:

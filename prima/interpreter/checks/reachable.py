@@ -9,7 +9,7 @@ from prima.errors.diagnoses.behaviour import UNREACHABLE
 from prima.interpreter.acts import Act, Exit, Foreach, Goto, Handler, If, Return, Throw, all_acts
 from prima.interpreter.checks.facts import Facts, name_of
 from prima.interpreter.elements import Field, Form, all_items
-from prima.interpreter.events import DEFAULTS, handlers_of
+from prima.interpreter.events import DEFAULTS
 
 LEAVING = (Goto, Return, Exit)
 """Acts after which content is unreachable."""
@@ -102,11 +102,14 @@ def _left(facts: Facts) -> set[str]:
     exiting, ways = _exiting(facts), _ways(facts)
 
     def may_leave(form: Form) -> bool:
-        asks = any(isinstance(item, Field) for item in all_items(form.items))
-        way = form.id in ways or None in ways or (asks and "" in ways)
+        way = form.id in ways or None in ways or ("" in ways and _asks(form))
         return way or not exiting.isdisjoint(facts.leads.calls.get(form.id, ()))
 
     return {name for name, form in facts.document.forms.items() if may_leave(form)}
+
+
+def _asks(form: Form) -> bool:
+    return any(isinstance(item, Field) for item in all_items(form.items))
 
 
 def _ways(facts: Facts) -> set[str | None]:
@@ -114,7 +117,7 @@ def _ways(facts: Facts) -> set[str | None]:
 
     A handler of errors does not count: no state is meant to be left only when it fails.
     """
-    failing = _acts_in(one for one in handlers_of(facts.document, facts.acts) if _fails(one))
+    failing = _acts_in(one for one in facts.handlers if _fails(one))
     asking = _acts_in(one for one in facts.document.handlers if DEFAULTS.issuperset(one.events))
     found = _linking(facts)
     for kind in (Goto, Exit, Return, Throw):

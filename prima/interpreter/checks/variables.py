@@ -11,7 +11,6 @@ from prima.errors.diagnoses.names import UNDECLARED_VARIABLE
 from prima.interpreter.acts import Assign, Clear, Expression, Return
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Form
-from prima.interpreter.events import handlers_of
 from prima.markup.spans import Declarations, value_span
 from prima.markup.tree import Node
 from prima.script.globals import HANDLED
@@ -93,7 +92,7 @@ class Variables:
         for name, start in names.handled.items():
             if not (name in known or id(expr.node) in self._handling):
                 yield NO_EVENT_HERE.at(place_in(expr, start), name=name)
-        if "event" in names.handled and id(expr.node) in self._handling:
+        if "event" in names.read and id(expr.node) in self._handling:
             yield from _parts_of_event(expr, names, known)
         if "sensor" in names.read and not (self._senses or "sensor" in known):
             yield NO_SENSOR.at(place_in(expr, names.read["sensor"]))
@@ -107,8 +106,7 @@ class Variables:
     @cached_property
     def _handling(self) -> set[int]:
         """The elements of all handlers, in which the event's variables are visible."""
-        handlers = handlers_of(self.facts.document, self.facts.acts)
-        return {id(node) for handler in handlers for node in handler.node.walk()}
+        return {id(node) for handler in self.facts.handlers for node in handler.node.walk()}
 
     def of_script(self, expr: Expression, known: Known) -> Iterator[Problem]:
         """The undeclared names in a script."""
