@@ -17,6 +17,7 @@ from prima.grammar.ranking import RuleFrame, Value
 from prima.grammar.text import join
 from prima.script.budget import Budget
 from prima.script.evaluation import EngineLost, ScriptError
+from prima.script.hoisting import in_turn
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -165,7 +166,7 @@ class TagInterpreter:
         pieces: list[str] = []
         tags = [event for event in frame.events if isinstance(event, Tag)]
         codes = [translate(tag.code) if legacy else tag.code for tag in tags]
-        numbered = enumerate(codes)
+        numbered = enumerate(in_turn(codes))
         told = list(zip(tags, codes, strict=True))
         _check(told, result.document, engine)
         environment: Any = None

@@ -8,6 +8,7 @@ top-level ``var`` is run as an assignment to an existing variable of the scope, 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -152,3 +153,38 @@ class _Hoister:
     def _place(self, offset: int) -> tuple[int, int]:
         before = self.code.text[:offset]
         return before.count("\n") + 1, offset - before.rfind("\n") - 1
+
+
+def in_turn(codes: list[str]) -> list[str]:
+    """Scripts for one function that keep their functions apart where these have the same name.
+
+    As ECMAScript hoists declarations, the last one would count for all of the scripts.
+    """
+    if sum("function" in code for code in {*codes}) < 2:
+        return codes
+    declared = {code: _functions(code) for code in codes}
+    counts = Counter(name for places in declared.values() for name in places)
+    return [_assigned(code, declared.get(code, {}), counts) for code in codes]
+
+
+def _functions(code: str) -> dict[str, tuple[int, int]]:
+    """Where a script declares functions at its top level, by their names."""
+    parsed = parse_script(code)
+    if parsed is None or not parsed.sound:
+        return {}
+    return {
+        parsed.name(name): (parsed.start(node), parsed.end(node))
+        for node in parsed.root.children
+        if node.type in DECLARED_FUNCTIONS and (name := node.child_by_field_name("name"))
+    }
+
+
+def _assigned(code: str, places: dict[str, tuple[int, int]], counts: Counter[str]) -> str:
+    """A script that first assigns those functions whose names other scripts declare as well."""
+    first, rest, at = [], [], 0
+    for name, (start, end) in sorted(places.items(), key=lambda one: one[1]):
+        if counts[name] > 1:
+            first.append(f"var {name} = {code[start:end]};")
+            rest.append(code[at:start])
+            at = end
+    return "".join([*first, *rest, code[at:]])
