@@ -69,7 +69,7 @@ class _Reader(GrammarChecker):
         document = self.document
         document.tag_format = node.get("tag-format").strip()
         document.formatted = partial(node.place_of, "tag-format")
-        document.base = node.get("xml:base")
+        document.base = node.get("xml:base").strip()
         document.root = node.get("root").strip()
         self._children(node)
         if "root" in node.attributes and document.root not in document.rules:

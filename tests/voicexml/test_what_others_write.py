@@ -11,7 +11,7 @@ from prima.errors import Problem
 from prima.voicexml.reading import read_page
 from tests.helpers.dialogs import block, codes, leaf, run
 from tests.helpers.here import prima
-from tests.helpers.voice import vxml
+from tests.helpers.voice import HEAD, vxml
 
 
 def warnings(text: str) -> list[Problem]:
@@ -63,6 +63,14 @@ def test_spaces_around_names_and_uris_mean_nothing() -> None:
         root=" root.vxml ",
     )
     assert run(text, root=vxml('<var name="n" expr="1"/>')).logs() == ["noanswer1"]
+
+
+def test_spaces_around_a_base_and_music_mean_nothing() -> None:
+    head = HEAD.replace(">", ' xml:base=" sub/ ">')
+    play = '<transfer dest="tel:+1-555" type="bridge" transferaudio=" s/ring.wav "/>'
+    music = vxml(f"<form>{play}</form>")
+    call = run(vxml(block('<goto next="b.vxml"/>'), head), **{"sub/b.vxml": music})
+    assert call.said() == ["[ring.wav]"]
 
 
 def test_a_call_with_music_can_be_ended_by_the_caller(tmp_path: Path) -> None:

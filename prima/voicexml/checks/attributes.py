@@ -17,7 +17,12 @@ from prima.markup.vocabulary import Element
 from prima.voicexml.cues import is_rate
 from prima.voicexml.vocabulary import ALTERNATIVES, VALUES, VOICEXML
 
-WORDS = frozenset(["application", "dest", "event", "id", "name", "next", "nextitem", "slot", "src"])
+WORDS = frozenset(
+    [
+        *("application", "dest", "event", "fetchaudio", "id", "name", "next", "nextitem"),
+        *("slot", "src", "transferaudio", "xml:base"),
+    ]
+)
 """Free-text attributes in which leading and trailing white space is insignificant."""
 KEYS = re.compile(r"\s*[0-9*#A-D](?:\s*[0-9*#A-D])*\s*")
 
