@@ -25,6 +25,8 @@ class Thrown(Exception):
     which has no such events, only handlers that name it take it (5.2)."""
     outside = False
     """Whether it arrived from outside while the application waited for something else."""
+    worded = False
+    """Whether it was thrown with a message, perhaps an empty one."""
 
     def __init__(
         self, name: str, message: str = "", source: str = "", data: Mapping[str, Json] = NO_DATA
@@ -71,11 +73,15 @@ class GoItem(Transfer):
 class GoBack(Transfer):
     """A return from a subdialog, with its values or an event (5.3.10)."""
 
-    def __init__(self, values: Json, event: str = "", message: str = "") -> None:
+    def __init__(
+        self, values: Json, event: str = "", message: str = "", worded: bool = False
+    ) -> None:
         super().__init__(event)
         self.values = values
         self.event = event
         self.message = message
+        self.worded = worded
+        """Whether the event has a message, perhaps an empty one."""
 
 
 class GoOut(Transfer):

@@ -14,6 +14,7 @@ from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
 from prima.voicexml.access import host_of_page, may_read
 from prima.voicexml.dom import DOM, plain_tree
 from prima.voicexml.elements import INPUTS
+from prima.voicexml.evaluating import is_worded
 from prima.voicexml.fetching import decoded, fetch
 from prima.voicexml.owner import MachineOwner
 from prima.voicexml.prompts import Speaker
@@ -92,9 +93,7 @@ class Content(Speaker):
         """Run an element from which control does not return."""
         match node.tag:
             case "throw":
-                name = self.event(node, context, local)
-                message = self.word(node, "message", context, local)
-                raise Thrown(name, message, source(node))
+                raise self.raised(node, context, local)
             case "goto":
                 yield from self.go(node, context, local)
             case "submit":
@@ -245,7 +244,8 @@ class Content(Speaker):
             except ScriptError as error:
                 raise self.failure(error, node, "namelist") from None
         event = self.event(node, context, local)
-        raise GoBack(values, event, self.word(node, "message", context, local))
+        message = self.word(node, "message", context, local)
+        raise GoBack(values, event, message, is_worded(node))
 
     # Scripts, data and the transcript -----------------------------------------------------
 

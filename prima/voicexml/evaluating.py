@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from prima.interpreter.content import MAX_REPEATS
-from prima.interpreter.places import short
+from prima.interpreter.places import short, source
 from prima.interpreter.transfers import Thrown, failure
 from prima.markup.tree import Node
 from prima.messages import Json
@@ -24,6 +24,11 @@ NAME = "function (v) { return v === void 0 || v === null ? null : `${v}`; }"
 """Like the former, for names and URIs: null is refused."""
 TOLD = frozenset(["message", "aai"])
 """Attributes that name nothing: their text is only reported."""
+
+
+def is_worded(node: Node) -> bool:
+    """Whether an element gives its event a message, perhaps an empty one (5.2.2)."""
+    return not node.attributes.keys().isdisjoint(("message", "messageexpr"))
 
 
 class VoiceEvaluator:
@@ -97,6 +102,13 @@ class VoiceEvaluator:
         if not name and not node.attributes.keys().isdisjoint(("event", "eventexpr")):
             raise Thrown.at(node, "error.semantic", "the event has no name")
         return name
+
+    def raised(self, node: Node, context: Context, local: Scope) -> Thrown:
+        """The event that an element throws, with its message (5.2.1)."""
+        name = self.event(node, context, local)
+        thrown = Thrown(name, self.word(node, "message", context, local), source(node))
+        thrown.worded = is_worded(node)
+        return thrown
 
     def said(self, node: Node, attribute: str, how: str, context: Context, local: Scope) -> Json:
         """Apply a function of the engine to the value of an attribute's expression."""

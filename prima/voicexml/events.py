@@ -100,7 +100,7 @@ class Events:
     def _scope(self, thrown: Thrown) -> Scope:
         """The anonymous scope of a handler, with ``_event`` and ``_message`` (5.2.2)."""
         local = self.engine.scope(_event=thrown.name)
-        if thrown.message:
+        if thrown.message or thrown.worded:
             self.engine.set(local, "_message", thrown.message)
         else:
             self.engine.unset(local, "_message")

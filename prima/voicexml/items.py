@@ -59,9 +59,8 @@ class Items:
         A link's attributes are evaluated where it was heard, not where it is written.
         """
         content, local = self.owner.content, self.owner.local()
-        event = content.event(node, context, local)
-        if event:
-            raise Thrown(event, content.word(node, "message", context, local), source(node))
+        if not node.attributes.keys().isdisjoint(("event", "eventexpr")):
+            raise content.raised(node, context, local)
         uri = content.word(node, "next", context, local)
         yield from self.owner.documents.go(context, uri, node)
 
@@ -169,7 +168,9 @@ class Items:
         finally:
             self.owner.context = context
         if result.event:
-            raise Thrown(result.event, result.message, source(item))
+            thrown = Thrown(result.event, result.message, source(item))
+            thrown.worded = result.worded
+            raise thrown
         self.fill(context, item, result.values)
         yield from self.run_filled(context, [item])
 

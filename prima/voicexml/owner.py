@@ -88,8 +88,8 @@ class VoiceContentRunner(Protocol):
     def word(self, node: Node, name: str, context: Context, local: Scope) -> str:
         """An attribute, or its ``expr`` form, as a word."""
 
-    def event(self, node: Node, context: Context, local: Scope) -> str:
-        """The event that an element throws, if it throws one."""
+    def raised(self, node: Node, context: Context, local: Scope) -> Thrown:
+        """The event that an element throws, with its message."""
 
     def values(
         self, node: Node, names: list[str], context: Context, local: Scope

@@ -159,6 +159,20 @@ case(
     thrown("<catch event='a'><log expr='typeof _message'/></catch>"),
     logs=["undefined"],
 )
+for how in ('<throw event="a" message=""/>', """<throw event="a" messageexpr="''"/>"""):
+    case(
+        f"an empty message is no missing one: {how}",
+        "5.2.2",
+        f"""<form><catch event="a"><log expr="_message === ''"/></catch><block>{how}</block></form>""",
+        logs=["true"],
+    )
+case(
+    "a subdialog returns an event with an empty message",
+    "5.2.2",
+    """<form><subdialog name="s" src="#t"><catch event="a"><log expr="_message === ''"/><exit/></catch>
+    </subdialog></form><form id="t"><block><return event="a" message=""/></block></form>""",
+    logs=["true"],
+)
 case(
     "an error of the platform has a message",
     "5.2.2",
