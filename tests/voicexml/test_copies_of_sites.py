@@ -121,6 +121,21 @@ def test_no_name_leads_out_of_a_copy_and_none_to_the_network(
     assert why.endswith(f"{LEADING_OUT[leads]}{told}")
 
 
+@pytest.mark.parametrize(
+    ("leads", "event"),
+    [
+        ("nowhere.vxml", "error.badfetch.http.404"),
+        ("../../outside.vxml", "error.badfetch"),
+        ("https://example.com/app/nowhere.vxml", "error.badfetch"),
+    ],
+)
+def test_what_a_copy_lacks_is_not_found_there(tmp_path: Path, leads: str, event: str) -> None:
+    site = copied(tmp_path, leads)
+    told = SHOP.replace("_message", "_event")
+    (site / "root.vxml").write_text(vxml(told), encoding="utf-8")
+    assert logged(api.rehearse(served(tmp_path, URI))) == ["the shop", event]
+
+
 def test_a_service_answers_what_a_copy_lacks(tmp_path: Path) -> None:
     copied(tmp_path, "order.cgi")
     (tmp_path / "answer.vxml").write_text(
