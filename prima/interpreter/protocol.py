@@ -9,12 +9,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from itertools import count
+from math import isfinite
 from typing import TypeAlias
 
 from prima.grammar.answers import Answers
 from prima.interpreter.bounds import Bounds, Evaluator
 from prima.interpreter.elements import Link
 from prima.interpreter.transfers import Thrown
+from prima.language.values import shown
 from prima.messages import (
     Command,
     Data,
@@ -133,7 +135,7 @@ class App(Bounds[Evaluator], ABC):
     def send(self, service: str, data: Data, place: str) -> int:
         """Send something to a service, or to a URI; gives its serial."""
         serial = next(self._sends)
-        self.actions.append(Send(service, data, serial, place))
+        self.actions.append(Send(service, sendable(data), serial, place))
         return serial
 
     @abstractmethod
@@ -152,3 +154,16 @@ class App(Bounds[Evaluator], ABC):
         """End the application by an unhandled event (5.2.5)."""
         self.actions.append(Say("error", thrown.reason, thrown.source))
         self.quit(thrown.reason, True, thrown.source)
+
+
+def sendable(data: Data) -> Data:
+    """What is sent, in which numbers that JSON lacks are texts as in ECMAScript, such as NaN."""
+    params = data.get("params")
+    if not isinstance(params, dict):
+        return data
+    lacking = {
+        name: shown(value)
+        for name, value in params.items()
+        if isinstance(value, float) and not isfinite(value)
+    }
+    return {**data, "params": {**params, **lacking}} if lacking else data

@@ -172,6 +172,14 @@ def test_send_asks_a_service_and_its_answer_is_a_reaction() -> None:
     assert bench.phases("request")[0]["reactive"] is True
 
 
+def test_numbers_that_json_lacks_are_sent_as_texts() -> None:
+    params = "".join(f'<param name="{n}" expr="{n}"/>' for n in ("NaN", "Infinity", "-Infinity"))
+    params = params.replace('name="-Infinity"', 'name="less"')
+    bench = Bench(f'<form id="a"><block><send to="x">{params}</send></block></form>')
+    sent = {"NaN": "NaN", "Infinity": "Infinity", "less": "-Infinity"}
+    assert [order.data["params"] for order in bench.orders] == [sent]
+
+
 def test_an_unhandled_service_failure_ends_the_application() -> None:
     bench = Bench('<form id="a"><block><send to="x"/></block></form>')
     bench.event("error.service.x", message="down")

@@ -36,6 +36,12 @@ def test_a_submit_goes_on_in_the_document_that_a_host_answers_with() -> None:
     assert call.ended == "exit"
 
 
+def test_a_number_that_json_lacks_is_submitted_as_its_text() -> None:  # 5.3.8
+    names = '<var name="x" expr="NaN"/><var name="y" expr="1/0"/>'
+    call = Online({}, REFUSED + names + block(f'<submit next="{SHOP}" namelist="x y"/>'))
+    assert call.phases("send")[0]["data"]["params"] == {"x": "NaN", "y": "Infinity"}
+
+
 def test_each_submit_is_sent_and_answered_anew() -> None:
     again = '<submit next="service:count"/>'
     call = Online({"service:count": vxml(block("More."))}, block(again))
