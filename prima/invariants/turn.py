@@ -14,7 +14,7 @@ class Turn(Channel):
         ab = self.abs.get(base(record["behavior"]))
         asks = ab is not None and "speech-recognition" in ab.devices and ab.command != "iu"
         answered = not record.get("inbound") and record.get("outcome") == "filled"
-        if ab is not None and asks and answered and ab.unit is None:
+        if ab is not None and asks and answered:
             self.answered_tree = ab.tree
 
     def look_for_turn(self) -> None:

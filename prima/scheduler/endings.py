@@ -58,7 +58,7 @@ def _note_answer(mediation: Mediation, ab: Behavior, outcome: str) -> None:
     """E6, X7: note that a question has ended by what the user said."""
     if ab.type is not None and "speech-recognition" in ab.type.devices:
         ab.stream.answered = mediation.now
-        if outcome == "filled" and ab.unit is None:
+        if outcome == "filled":
             mediation.memory.answered = ab.stream
 
 
@@ -102,8 +102,7 @@ def answered(mediation: Mediation, ab: Behavior, data: Data, rule: str, serial: 
     """
     mediation.recorder.behavior("cancel", ab, rule=rule, outcome="answered", data=dict(data))
     ab.stream.answered = mediation.now
-    if ab.unit is None:
-        mediation.memory.answered = ab.stream
+    mediation.memory.answered = ab.stream
     for child in ab.children:
         for name in ab.waits_for:  # what was to come before the question comes before the rest
             link(mediation.memory.behaviors[name], child)

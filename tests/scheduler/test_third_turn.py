@@ -152,6 +152,24 @@ def test_x7_inside_a_unit_the_unit_keeps_the_speaker() -> None:
     assert stage.holds("fa#1") == ["S1"]
 
 
+def test_x7_an_answer_with_which_a_unit_ends_is_answered_behind_it() -> None:
+    stage = Stage("prima+x7")
+    stage.open("ea", 5, "speaker", "speech-recognition")
+    stage.request("ea", ask(), unit=5)
+    stage.select()
+    stage.at(1000).request("fa", say("That feels good."), cause=TOUCH)
+    stage.select()
+
+    def thank() -> None:
+        stage.close("ea", 5)
+        stage.request("ea", say("Thank you."))
+
+    answer(stage.at(2000), "ea#2", thank)
+    assert stage.select() == ["ea#3"]
+    assert (stage.rule("ea#3"), stage.losers("ea#3")) == ("X7", ["fa#1"])
+    assert check(stage.records, "prima+x7") == []
+
+
 def test_x7_who_says_nothing_to_an_answer_keeps_nobody() -> None:
     stage = touched_while_asked()
     answer(stage.at(2000), "ea#1")
