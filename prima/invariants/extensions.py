@@ -228,10 +228,8 @@ class Extensions(FloorRules):
             self.report(10, "X3", f"{tree.name} is held, but nobody asks for it")
         elif until - self.now != tree.hold:
             self.report(10, "X3", f"{tree.name} is held until {until} ms, not for {tree.hold} ms")
-        tree.until = until
+        tree.until, tree.held = until, self.place
         self.close_trees()
-        if not self.floor:
-            self.give_floor(tree, "X3")
 
     def holds_rightly(self) -> None:
         """X3, at the end of an instant: no stream is held too long, or while it goes on."""
@@ -283,6 +281,9 @@ class Extensions(FloorRules):
             if tree in self.floor:
                 self.floor.remove(tree)
                 self.turned.append((tree.name, "returned", "F3"))
+        held = [tree for tree in self.trees.values() if tree.until is not None]
+        if held and not self.floor:
+            self.give_floor(max(held, key=lambda tree: tree.held), "X3")
 
 
 def _reacts_to(by: AB | None, ab: AB) -> TypeGuard[AB]:

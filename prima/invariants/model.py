@@ -133,6 +133,8 @@ class Tree:
     """The state that requested this."""
     until: int | None = None
     """Until when (ms) it is held."""
+    held: int = -1
+    """The index of the record by which it began to be held."""
     joined: int = -1
     """The index of the record by which a request joined it while held."""
     requested: int = -1

@@ -129,6 +129,8 @@ def c1(mediation: Mediation) -> None:
             _end(mediation, stream)
     for stream in kept:
         keep_open(mediation, stream)
+    if mediation.holds and not mediation.memory.floor:  # who had it while a hold began has ended
+        take_floor(mediation, mediation.memory.streams[next(reversed(mediation.holds))], "X3")
 
 
 def _end(mediation: Mediation, stream: Stream) -> None:

@@ -180,3 +180,42 @@ def test_x3_the_floor_that_an_ending_stream_gives_back_is_taken() -> None:
     stage.at(200).request("fa", command("turn", angle=90))
     assert stage.select() == []
     assert check(stage.records, "prima+x3") == []
+
+
+def test_x3_who_is_held_has_the_floor_once_those_who_had_it_have_ended() -> None:
+    stage = Stage("prima+x3")
+    stage.request("ea", command("turn", angle=90), hold=5000)
+    stage.select()
+    stage.request("fa", say(), cause=1)
+    stage.select()
+    stage.at(100).end("ea#1")
+    stage.select()
+    assert stage.floor == ["fa:1"]
+    stage.at(200).end("fa#1")
+    stage.select()
+    assert stage.floor == ["ea:1"]
+    stage.at(300).request("fa", command("turn", angle=90))
+    assert stage.select() == []
+    stage.at(5100).mediator.expire()
+    assert stage.select() == ["fa#2"]
+    assert check(stage.records, "prima+x3") == []
+
+
+def test_x3_of_several_held_streams_the_latest_has_the_floor_that_another_gives_back() -> None:
+    stage = Stage("prima+x3", {"fa": "fa", "ea": "ea", "eb": "ea"})
+    stage.request("ea", command("turn", angle=10), hold=9000)
+    stage.request("eb", command("move-head", pan=10), hold=5000)
+    stage.select()
+    stage.request("fa", say(), cause=EVENT)
+    stage.select()
+    stage.at(100).end("eb#1")
+    stage.select()
+    stage.at(200).end("ea#1")
+    stage.select()
+    stage.at(300).end("fa#1")
+    stage.select()
+    assert stage.floor == ["ea:1"]
+    stage.at(400).leave("ea")
+    stage.select()
+    assert stage.floor == ["eb:1"]
+    assert check(stage.records, "prima+x3") == []
