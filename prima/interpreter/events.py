@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -20,6 +21,7 @@ from prima.interpreter.acts import (
 from prima.interpreter.elements import Acts, Document, Field, Item, all_items
 from prima.interpreter.selection import takes
 from prima.language.commands import DEVICES, WRITTEN
+from prima.language.values import EVENT
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
@@ -231,8 +233,8 @@ class KnownEvents:
 
     def _unheard(self, one: RaisedEvent, wanted: set[str]) -> Problem | None:
         heard = any(name in self.heard or name in DEFAULTS for name in beginnings(one.name))
-        if one.name in wanted or heard:
-            return None
+        if one.name in wanted or heard or not re.fullmatch(EVENT, one.name):
+            return None  # or it is no name, which is reported already
         self._guesses += 1
         nearest = ""
         if self._guesses <= MOST_GUESSES:
