@@ -16,6 +16,7 @@ from prima.cli.common import (
     tell_cut,
     write_for_programs,
 )
+from prima.cli.failures import whoever_reads
 from prima.cli.runs import run_of
 from prima.errors import UsageError
 from prima.scheduler.policy import POLICIES, USAGE
@@ -70,16 +71,17 @@ def diff(
     before_run, after_run = run_of(one, first, whole), run_of(other, second, whole)
     old, new = before_run.transcript, after_run.transcript
     difference = api.diff(old, new)
-    if form == "html":
-        from prima.cli.report import write_page
-        from prima.report import make
+    with whoever_reads():
+        if form == "html":
+            from prima.cli.report import write_page
+            from prima.report import make
 
-        write_page(make([old, new], [before_run.scenario, after_run.scenario]), output)
-    elif form == "json":
-        write_for_programs()
-        sys.stdout.writelines(difference_json(difference))
-    else:
-        click.echo(format_difference(difference, coloured()), nl=False, color=coloured())
+            write_page(make([old, new], [before_run.scenario, after_run.scenario]), output)
+        elif form == "json":
+            write_for_programs()
+            sys.stdout.writelines(difference_json(difference))
+        else:
+            click.echo(format_difference(difference, coloured()), nl=False, color=coloured())
     tell_cut(old, new)
     if difference.differs:
         raise Exit(1)

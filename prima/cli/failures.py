@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import click
@@ -67,6 +68,16 @@ def _usage(error: click.ClickException) -> int:
     usage = f"{context.get_usage()}\n" if context is not None else ""
     tell(f"{usage}prima: {error.format_message()}")
     return USAGE
+
+
+@contextmanager
+def whoever_reads() -> Iterator[None]:
+    """Print results, and go on where nobody reads them any more: the exit code still tells them."""
+    try:
+        yield
+        sys.stdout.flush()
+    except BrokenPipeError as error:
+        _closed_pipe(error)
 
 
 def _closed_pipe(_error: BrokenPipeError) -> int:

@@ -22,6 +22,7 @@ from prima.cli.common import (
     suggesting,
     tell,
 )
+from prima.cli.failures import whoever_reads
 from prima.errors import UsageError
 from prima.scheduler.policy import POLICIES, USAGE
 
@@ -115,11 +116,12 @@ def test(
         merge(coverage, result.coverage)
         result.coverage = {}
         _progress(len(results), len(chosen))
-    if form == "text":
-        _report(results)
-    if update:
-        _update(results, set(paths), yes)
-    _finish(results, coverage if cover else None, fail_under, form)
+    with whoever_reads():
+        if form == "text":
+            _report(results)
+        if update:
+            _update(results, set(paths), yes)
+        _finish(results, coverage if cover else None, fail_under, form)
     _write(results, coverage, junit_file, coverage_xml)
     _set_exit_code(results, fail_under is not None and _under(coverage, fail_under))
 

@@ -22,6 +22,7 @@ from prima.cli.common import (
     raise_limits,
     tell,
 )
+from prima.cli.failures import whoever_reads
 from prima.errors import Problem, UsageError, listed, one_of
 from prima.markup.limits import LIMITS
 
@@ -125,7 +126,8 @@ def _check(
         if len(names) >= MANY and sys.stderr.isatty():
             click.echo(f"\r{index} of {len(names)} files", err=True, nl=index == len(names))
     problems = loading.once([*problems, *validation.ignored()])
-    _show([one for one in problems if notes or one.severity != "note"], form)
+    with whoever_reads():
+        _show([one for one in problems if notes or one.severity != "note"], form)
     for message in unread:
         tell(f"prima: {message}")
     counts = Counter(problem.severity for problem in problems)

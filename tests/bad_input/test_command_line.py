@@ -128,6 +128,20 @@ def test_a_closed_pipe_is_no_problem(tmp_path: Path) -> None:
     closed_pipe(tmp_path).check(0)
 
 
+@pytest.mark.parametrize(
+    "given", ["validate wrong.xml", "test wrong.xml --junit r.xml", "diff good.jsonl other.jsonl"]
+)
+def test_what_nobody_reads_still_has_its_exit_code(
+    tmp_path: Path, transcript: str, given: str
+) -> None:
+    write(tmp_path, "wrong.xml", scenario('<expect says="Never."/>' + "<wrong/>" * 900))
+    write(tmp_path, "other.jsonl", record("over"))
+    command = f"{sys.executable} -m prima {given} | true; exit ${{PIPESTATUS[0]}}"
+    made = subprocess.run(["bash", "-c", command], cwd=tmp_path, check=False, capture_output=True)
+    assert made.returncode == 1
+    assert "--junit" not in given or (tmp_path / "r.xml").is_file()
+
+
 @pytest.mark.parametrize("given", [["show", "good.jsonl"], ["--help"], ["explain", "bad-value"]])
 def test_a_full_disk_behind_the_standard_output(
     tmp_path: Path, prima: Prima, transcript: str, given: list[str]
