@@ -114,7 +114,7 @@ def main() -> None:
     if sys.stderr is None:
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
     escape_for_people()
-    sys.unraisablehook = interrupt_again
+    hook, sys.unraisablehook = sys.unraisablehook, interrupt_again
     try:
         code = cli.main(standalone_mode=False)
         sys.stdout.flush()
@@ -123,4 +123,6 @@ def main() -> None:
         code = INTERRUPTED
     except (Exception, SystemExit) as error:
         code = exit_code(error)
+    finally:
+        sys.unraisablehook = hook
     sys.exit(code if isinstance(code, int) else 0)

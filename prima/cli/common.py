@@ -36,12 +36,20 @@ class SuggestingChoice(click.Choice[str]):
 class Number(click.FloatRange):
     """A number in a range. NaN is refused; click takes it to be in every range."""
 
+    name = "number"
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The number, or an error."""
         number = super().convert(value, param, ctx)
         if number != number:
             self.fail(f"{value!r} is not a number.", param, ctx)
         return number
+
+
+class Whole(click.IntRange):
+    """A whole number in a range. Its name is that in messages; click's is "integer range"."""
+
+    name = "integer"
 
 
 def suggesting(*words: str) -> Callable[[click.Context, click.Parameter, str], list[str]]:
@@ -84,7 +92,7 @@ MOST_WORKERS = 256
 workers_option = click.option(
     "-j",
     "--workers",
-    type=click.IntRange(1, MOST_WORKERS),
+    type=Whole(1, MOST_WORKERS),
     help="Number of runs at once. By default the number of cores.",
 )
 on_option = click.option(
@@ -109,7 +117,7 @@ ea_option = click.option(
 )
 bound_option = click.option(
     "--bound",
-    type=click.IntRange(1),
+    type=Whole(1),
     help="Let no application wait longer than this many loops (rule E4).",
 )
 hosts_option = click.option(
@@ -323,6 +331,8 @@ def copy_folder(source: Path, folder: str) -> None:
     """
     import shutil
 
+    if not folder:
+        raise UsageError("The folder has no name; name a new one.")
     try:
         shutil.copytree(source, folder)
     except FileExistsError:

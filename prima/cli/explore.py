@@ -9,6 +9,7 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import (
+    Whole,
     duration_option,
     format_option,
     isolate_option,
@@ -39,11 +40,9 @@ if TYPE_CHECKING:
     help="A time of the scenario; may be repeated. By default that of each <when>.",
 )
 @duration_option("--within", "How far each is moved, to both sides; default 5s.")
-@click.option(
-    "--depth", type=click.IntRange(1, 4), default=2, help="How many are moved at once; default 2."
-)
+@click.option("--depth", type=Whole(1, 4), default=2, help="How many are moved at once; default 2.")
 @duration_option("--step", "Try besides all times in steps of this.")
-@click.option("--runs", type=click.IntRange(1), default=20_000, help="Runs at most; default 20000.")
+@click.option("--runs", type=Whole(1), default=20_000, help="Runs at most; default 20000.")
 @click.option(
     "--policy", default="", shell_complete=suggesting(*POLICIES), help="Run under this policy."
 )

@@ -13,6 +13,7 @@ from click.exceptions import Exit
 from prima.cli.common import (
     MAPS,
     PATIENCE,
+    Whole,
     bound_option,
     check_output,
     columns,
@@ -69,7 +70,7 @@ FOLDER_ENDINGS = ("/", os.sep)
 @duration_option("--patience", PATIENCE)
 @click.option(
     "--seed",
-    type=click.IntRange(0, MOST_SEED),
+    type=Whole(0, MOST_SEED),
     help="Draw what the scenario leaves to chance by this number, instead of its own.",
 )
 @why_option

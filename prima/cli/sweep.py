@@ -10,6 +10,7 @@ from click.exceptions import Exit
 from prima.cli.common import (
     PATIENCE,
     SuggestingChoice,
+    Whole,
     bound_option,
     check_output,
     duration_option,
@@ -51,13 +52,13 @@ MANY = 100_000
     shell_complete=suggesting(*POLICIES),
     help=f"Run under this policy; may be repeated: {USAGE}.",
 )
-@click.option("--seeds", type=click.IntRange(1), help="Runs of each combination. By default 1.")
+@click.option("--seeds", type=Whole(1), help="Runs of each combination. By default 1.")
 @click.option(
     "--design",
     type=SuggestingChoice(["full", "random", "lhs"]),
     help="All combinations (full), random ones, or a Latin hypercube (lhs).",
 )
-@click.option("--runs", type=click.IntRange(1), help="Number of runs, for random and lhs.")
+@click.option("--runs", type=Whole(1), help="Number of runs, for random and lhs.")
 @click.option(
     "-o", "--output", type=click.Path(), help="Write the table here: a .csv or .parquet file."
 )

@@ -11,6 +11,7 @@ from click.exceptions import Exit
 from prima.cli.common import (
     Number,
     SuggestingChoice,
+    Whole,
     check_output,
     coloured,
     format_option,
@@ -42,9 +43,7 @@ MOST_JOBS = 64
 @click.option(
     "--policy", shell_complete=suggesting(*POLICIES), help=f"Run under this policy: {USAGE}."
 )
-@click.option(
-    "-j", "--jobs", type=click.IntRange(1, MOST_JOBS), default=1, help="Number of runs at once."
-)
+@click.option("-j", "--jobs", type=Whole(1, MOST_JOBS), default=1, help="Number of runs at once.")
 @click.option(
     "--compare",
     "compare",
@@ -159,13 +158,9 @@ def _check_options(update: bool, yes: bool, policy: str | None, form: str) -> No
     if update and form == "json":
         raise UsageError("--update prints differences as text: leave out --format json.")
     if policy is not None:
-        from prima.loading import FAVOURITE
         from prima.scheduler.policy import policy_named
 
-        try:
-            policy_named(policy)
-        except UsageError as error:
-            raise UsageError(f"{error} {FAVOURITE}") from None
+        policy_named(policy)
 
 
 def _check_outputs(scenarios: list[str], *outputs: str | None) -> None:

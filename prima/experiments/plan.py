@@ -139,10 +139,7 @@ def _check_policies(policies: Sequence[str | None]) -> None:
 
     for policy in policies:
         if policy is not None:
-            try:
-                policy_named(policy)
-            except UsageError as error:
-                raise UsageError(f"{error} fixed:APP prefers the application APP.") from None
+            policy_named(policy)
 
 
 def _gathered(paths: Iterable[str]) -> list[str]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from prima.errors import UsageError
 from prima.language.commands import ABSENCE_MS, PATIENCE_MS
-from prima.loading import FAVOURITE, Loaded, favourite_problem
+from prima.loading import Loaded, favourite_problem
 from prima.messages import Json, Record
 from prima.scheduler.policy import Policy, policy_named
 
@@ -19,10 +19,7 @@ def chosen_policy(name: str, loaded: Loaded) -> Policy:
     Raises:
         UsageError: there is none, or it names a missing application.
     """
-    try:
-        chosen = policy_named(name)
-    except UsageError as error:
-        raise UsageError(f"{error} {FAVOURITE}") from None
+    chosen = policy_named(name)
     if problem := favourite_problem(name, loaded.cast.documents):
         raise UsageError(f"{problem[0]} {problem[1].text}")
     return chosen

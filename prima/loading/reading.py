@@ -232,7 +232,7 @@ class Reading:
             policy_named(scenario.policy)
         except UnknownPolicy as error:
             spans = value_span(scenario.node, "policy", error.word) if error.meant else ()
-            hint = replaced(f"{error.remedy} {FAVOURITE}", error.meant, *spans)
+            hint = replaced(error.remedy, error.meant, *spans)
             self.problems.append(BAD_POLICY.at(place, hint, wrong=error.wrong))
         if problem := favourite_problem(scenario.policy, self.documents, scenario.node):
             wrong, hint = problem
@@ -260,10 +260,6 @@ def _named_wrongly(name: str, place: Place, problem: Problem, content: bytes) ->
     if problem.code != "wrong-namespace" or not kind_of(parse(name, content)):
         return problem
     return problem._replace(place=place, message=f'"{name}": {problem.message}', fixes=())
-
-
-FAVOURITE = "fixed:APP prefers the application APP."
-"""The remedy for a policy that prefers one application."""
 
 
 def favourite_problem(

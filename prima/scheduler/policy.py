@@ -163,9 +163,9 @@ EXTENSIONS = ("x1", "x2", "x3", "x4", "x5", "x6", "x7", "x8", "x9", "x10")
 class UnknownPolicy(UsageError):
     """An unknown policy or extension; ``meant`` is the name most likely meant by ``word``."""
 
-    def __init__(self, wrong: str, meant: str, otherwise: str, word: str = "") -> None:
+    def __init__(self, wrong: str, meant: str, remedy: str, word: str = "") -> None:
         self.wrong = wrong
-        self.remedy = f'Did you mean "{meant}"?' if meant else otherwise
+        self.remedy = remedy
         self.meant = meant
         self.word = word
         super().__init__(f"{wrong} {self.remedy}")
@@ -186,8 +186,9 @@ def policy_named(text: str) -> Policy:
     if name == "fixed" and first:
         return Fixed(first=first)
     if name not in POLICIES or colon:
-        wrong = f'There is no policy "{text}".'
-        raise UnknownPolicy(wrong, nearest_word(name, POLICIES), f"Write {one_of(POLICIES)}.")
+        wrong, meant = f'There is no policy "{text}".', nearest_word(name, POLICIES)
+        remedy = f'Did you mean "{meant}"?' if meant else f"Write {one_of(POLICIES)}."
+        raise UnknownPolicy(wrong, meant, f"{remedy} fixed:APP prefers the application APP.")
     return POLICIES[name]()
 
 
@@ -195,6 +196,7 @@ def _extensions(names: list[str]) -> frozenset[str]:
     for name in names:
         if name != "all" and name not in EXTENSIONS:
             wrong = f'There is no extension "{name}".'
-            other = nearest_word(name, EXTENSIONS)
-            raise UnknownPolicy(wrong, other, f"Write {one_of(EXTENSIONS)}, or all.", name)
+            meant = nearest_word(name, EXTENSIONS)
+            remedy = f'Did you mean "{meant}"?' if meant else "Write all, or one of x1 to x10."
+            raise UnknownPolicy(wrong, meant, remedy, name)
     return frozenset(EXTENSIONS if "all" in names else names)

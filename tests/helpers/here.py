@@ -56,7 +56,6 @@ def prima(
 def _own_process(input: str | bytes) -> Iterator[None]:
     """Give back afterwards what a command changes for the rest of its process."""
     limits = asdict(LIMITS)  # --limit
-    hook = sys.unraisablehook
     kept = os.dup(0), os.dup(1)
     given = input.encode("utf-8", "surrogateescape") if isinstance(input, str) else input
     try:
@@ -70,7 +69,6 @@ def _own_process(input: str | bytes) -> Iterator[None]:
         for number, one in enumerate(kept):  # stdout is closed where nobody reads it any more
             os.dup2(one, number)
             os.close(one)
-        sys.unraisablehook = hook
         for name, number in limits.items():
             setattr(LIMITS, name, number)
 
