@@ -142,7 +142,7 @@ class Executor(Evaluator):
 
     def reprompt(self, _act: Reprompt, fiber: Fiber) -> None:
         """Let the form ask again."""
-        fiber.frame.reprompt = True
+        fiber.frame.silent = ""
 
     def assign(self, act: Assign, fiber: Fiber) -> None:
         """Give a declared variable a value; innermost scope first (VoiceXML 5.3.2)."""

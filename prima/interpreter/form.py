@@ -130,7 +130,7 @@ class Algorithm:
             yield from content
             return
         except (Thrown, ScriptError) as error:
-            frame.reprompt = False
+            frame.silent = item.name if isinstance(item, Field) else ""
             thrown = thrown_of(error)
         yield from self.owner.handling.handle_thrown(frame, fiber, item, thrown, 0)
 
@@ -165,9 +165,9 @@ class Algorithm:
         return Command("q-and-a", args, text or None, lang=field.lang, source=place, cues=cues)
 
     def _prompts(self, frame: Frame, fiber: Fiber, field: Field) -> list[Prompt]:
-        """The prompts of a field, unless it must stay silent after an event (4.1.6)."""
-        speaks, frame.reprompt = frame.reprompt, True
-        if not speaks:
+        """The prompts of a field, unless it must stay silent after its own event (4.1.6)."""
+        silent, frame.silent = frame.silent, ""
+        if silent == field.name:
             return []
         frame.counters = frame.counters.asked(field.name)
         return select_prompts(
@@ -283,7 +283,7 @@ class Algorithm:
             except GoItem as go:
                 if go.item not in {item.name for item in unit.items}:
                     raise
-                frame.next_item, frame.reprompt = go.item, True
+                frame.next_item, frame.silent = go.item, ""
 
     def after_timeout(self, frame: Frame, fiber: Fiber, unit: Unit, thrown: Thrown) -> Content:
         """U5: throw error.unit.timeout in the unit; then the form continues after it."""

@@ -26,7 +26,8 @@ class Frame:
     item: Item | None = None
     """The item being visited."""
     next_item = ""
-    reprompt = True
+    silent = ""
+    """The field that listens without a prompt at its next visit: an event of its own was handled."""
     stalled = False
     """The form's content has been cancelled (O2): it waits for an event to move it."""
     connected = False

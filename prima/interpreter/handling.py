@@ -60,7 +60,7 @@ class Handling:
         handler = self.find_handler(frame, fiber, item, event)
         if handler is None:
             if event.name in REPROMPTED:
-                frame.reprompt = True
+                frame.silent = ""
                 return
             if event.name.startswith(("cancel.", "end.", "expired.")):
                 return

@@ -166,7 +166,7 @@ class States(App["AnyEngine | PythonEngine"]):
             self.leave(frame)
             frame.state, frame.asked = next(self.states), False
         frame.next_item = transfer.item
-        frame.reprompt = True
+        frame.silent = ""
         return self.begin(frame, setup=False)
 
     def _go_back(self, frame: Frame, transfer: GoBack) -> tuple[Frame, Transfer] | None:

@@ -124,6 +124,22 @@ def test_a_handler_without_reprompt_listens_without_asking_again() -> None:
     assert bench.logs() == ["r/red"]
 
 
+@pytest.mark.parametrize(
+    "before",
+    [
+        '<block><throw event="oops"/></block><on event="oops"><speak>Oh.</speak></on>',
+        """<field name="p" type="boolean"><prompt>Sure?</prompt>
+          <noinput><speak>Oh.</speak><assign name="p" expr="true"/></noinput></field>""",
+    ],
+)
+def test_an_event_before_a_question_does_not_keep_it_silent(before: str) -> None:
+    bench = Bench(ASK.format("").replace('id="a">', f'id="a">{before}'))
+    if "Sure?" in before:
+        bench.silence()
+    bench.finish("Oh.")
+    assert bench.said()[-1] == "Which colour?"
+
+
 def test_handlers_are_chosen_by_count_over_the_whole_list() -> None:
     handlers = """<noinput><log>first</log><reprompt/></noinput>
       <noinput count="3"><log>third</log></noinput>"""
