@@ -42,7 +42,12 @@ if TYPE_CHECKING:
 @duration_option("--within", "How far each is moved, to both sides; default 5s.")
 @click.option("--depth", type=Whole(1, 4), default=2, help="How many are moved at once; default 2.")
 @duration_option("--step", "Try besides all times in steps of this.")
-@click.option("--runs", type=Whole(1), default=20_000, help="Runs at most; default 20000.")
+@click.option(
+    "--runs",
+    type=Whole(1),
+    default=20_000,
+    help="Runs at most, before shifts are minimised; default 20000.",
+)
 @click.option(
     "--policy", default="", shell_complete=suggesting(*POLICIES), help="Run under this policy."
 )
