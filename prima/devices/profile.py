@@ -18,6 +18,8 @@ POINTING_MS = 1000
 """How long the robot holds its arm out."""
 BRAKING_MS = 200
 """How long the robot takes to stop."""
+NAMED = [("device", "name"), ("touch", "sensor"), ("gesture", "name"), ("voice", "lang")]
+"""Parts of a profile that are there once each, with the attribute that names them."""
 
 
 @dataclass(slots=True)
@@ -81,6 +83,26 @@ def _read_parts(reader: Reader, profile: Profile) -> None:
         profile.gestures[node.get("name")] = _lasts(reader, node)
 
 
+def _check_twice(reader: Reader) -> None:
+    """What is there twice, of which only one would count."""
+    for extra in reader.root.all("camera")[1:]:
+        reader.problem(extra, "duplicate-element", "There is a second <camera>.", "", "Keep one.")
+    for tag, key in NAMED:
+        _check_names(reader, reader.root.all(tag), key)
+    for adds in reader.root.all("adds"):
+        _check_names(reader, adds.all("argument"), "name")
+
+
+def _check_names(reader: Reader, nodes: list[Node], key: str) -> None:
+    seen: set[str] = set()
+    for node in nodes:
+        name = node.get(key).lower() if key == "lang" else node.get(key)
+        if name in seen:
+            message = f'"{name}" is there twice.'
+            reader.problem(node, "duplicate-name", message, key, "Keep one.")
+        seen.add(name)
+
+
 def _lasts(reader: Reader, node: Node) -> int:
     """How long a gesture or an added Command takes (ms)."""
     lasts: int | None = reader.get(node, "duration")
@@ -108,6 +130,7 @@ def read_robot(file: str, data: bytes) -> Profile:
         place=root.place,
     )
     _check_devices(reader, profile)
+    _check_twice(reader)
     _read_parts(reader, profile)
     rows = dict(TABLE_4_2)
     for node in root.all("adds"):

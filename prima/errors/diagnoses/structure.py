@@ -77,7 +77,8 @@ DUPLICATE_NAME = Diagnosis(
     "Name used twice",
     (
         "Two items of a form have the same name: they would share their variable. Or two "
-        "services of a scenario: a request by that name is ambiguous."
+        "services of a scenario: a request by that name is ambiguous. Or two devices, touch "
+        "sensors, gestures, voices or arguments of a robot: only one would count."
     ),
     rule="VoiceXML 2.0, 2.3",
 )
