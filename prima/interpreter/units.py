@@ -240,12 +240,10 @@ class Finder:
     def __init__(
         self, document: Document, thrown: Callable[[Item], Iterable[str | None]] | None = None
     ) -> None:
-        """Prepare to find.
+        """Prepare to find in a document.
 
-        Args:
-            document: the document.
-            thrown: gives the events that visiting an item may throw by itself, None for one
-                whose name only a run tells; by default those of PRIMA's language.
+        ``thrown`` gives the events that visiting an item may throw by itself, None for one
+        whose name only a run tells; by default those of PRIMA's language.
         """
         self._document = document
         self._thrown = thrown or thrown_by
@@ -264,6 +262,9 @@ class Finder:
         """What may run while an item of a unit is visited."""
         inner = (*item.handlers, *unit.handlers)
         waiting = [_Raised(event) for event in self._thrown(item)]
+        if isinstance(item, Field):  # what the user says to a link ends its question (V1)
+            links = (*form.links, *self._document.links)
+            waiting += [_Raised(link.event) for link in links if link.event]
         for content in _own(item):
             waiting += self._take_in(self._made(content), True, _Raised(""), found)
         for handler in inner:
@@ -291,11 +292,8 @@ class Finder:
         """Add a piece of content, and the events that it throws in turn."""
         for command in piece.commands:
             found.setdefault(id(command), Reached(command, inside, by.first, by.code))
-        named = [_Raised(name, by.first, by.code) for name in sorted(piece.throws)]
-        return [
-            *(_Raised(None, by.first, by.code or code) for code in sorted(piece.computed)),
-            *named,
-        ]
+        computed = [_Raised(None, by.first, by.code or code) for code in sorted(piece.computed)]
+        return computed + [_Raised(name, by.first, by.code) for name in sorted(piece.throws)]
 
     def _made(self, content: Sequence[Act]) -> UnitPiece:
         return UnitPiece(content, self._document)

@@ -60,6 +60,7 @@ REACHING = """<form id="a">{form}
   <block><exit/></block>
 </form><form id="b"><block><topological-move to="hall"/><exit/></block></form>{document}"""
 TURNS = '<on event="{}"><turn angle="90"/></on>'
+LINK = "<link {}><grammar>help me</grammar></link>"
 GOES = '<on event="{}"><topological-move to="hall"/></on>'
 
 
@@ -75,6 +76,8 @@ def reaching(**parts: str) -> str:
         {"block": '<throw event="x"/>', "form": TURNS.format("x")},
         {"block": "<throw event-expr='x'/>", "document": TURNS.format("z")},
         {"form": TURNS.format("noinput")},
+        {"form": LINK.format("event='help'") + TURNS.format("help")},
+        {"document": LINK.format("event='help'") + TURNS.format("help")},
         {"field": TURNS.format("touch")},
         {"unit": TURNS.format("touch")},
         {"form": '<filled><turn angle="90"/></filled>'},
@@ -108,6 +111,7 @@ def test_u5_a_unit_owns_what_the_handlers_need_that_it_can_reach(parts: dict[str
     "parts",
     [
         {"form": TURNS.format("touch")},
+        {"form": LINK.format("next='#b'") + TURNS.format("help")},
         {"document": TURNS.format("x")},
         {"document": TURNS.format("error.unit.timeout")},
         {"document": TURNS.format("error.unsupported.speak")},
