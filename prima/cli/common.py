@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from prima.errors import UsageError, did_you_mean, one_of
+from prima.errors import UsageError, did_you_mean, listed, one_of
 from prima.errors.visible import escaped, visible
 
 if TYPE_CHECKING:
@@ -206,7 +206,6 @@ def tell(text: str) -> None:
 
 def tell_problems(problems: list[Problem]) -> None:
     """Print the errors and warnings of a run's documents."""
-    from prima.errors import listed
     from prima.markup.limits import LIMITS
 
     for problem in listed([one for one in problems if one.severity != "note"], LIMITS.problems):
@@ -289,6 +288,8 @@ def check_output(output: str | Path, made: str, *inputs: str | Path) -> None:
     from prima.testing.finding import is_scenario
     from prima.testing.golden import golden_of
 
+    if not str(output):
+        raise UsageError('"" cannot be written: it is not a file name.')
     if any(same_file(output, path) for path in inputs):
         raise UsageError(f"{output}: the {made} is made from this file; write elsewhere.")
     path, real = Path(output), Path(os.path.realpath(output))

@@ -37,8 +37,8 @@ def whole(path: str | Path) -> Iterator[IO[bytes]]:
     Raises:
         UsageError: it cannot be written.
     """
-    if "\0" in str(path):
-        raise UsageError(f"{path}: cannot be written: it is not a file name.")
+    if not str(path) or "\0" in str(path):
+        raise UsageError(f'"{path}" cannot be written: it is not a file name.')
     try:
         with _opened(os.path.realpath(path)) as stream:
             yield stream

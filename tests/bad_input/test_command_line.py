@@ -59,7 +59,7 @@ USAGES: list[Any] = [
     (["run", "app.xml"], 1, "a scenario is needed here. prima run and prima talk take it by --fa app.xml."),
     (["run", "good.jsonl"], 1, "prima show prints it"),
     (["run", "s.xml", "-o", "."], 2, "Is a directory"),
-    (["run", "s.xml", "-o", ""], 2, "cannot be written"),
+    (["run", "s.xml", "-o", ""], 2, '"" cannot be written: it is not a file name.'),
     (["run", "s.xml", "-o", "no/t"], 2, "no/t: cannot be written: No such file"),
     (["run", "s.xml", "-o", "/proc/t"], 2, "/proc/t: cannot be written"),
     (["documents", ""], 2, "The folder has no name"),
