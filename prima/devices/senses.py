@@ -72,9 +72,14 @@ class Sensors:
 
     def take(self, values: Data) -> list[Inbound]:
         """Take in current sensor values; returns those that have changed."""
-        changed = {key: one for key, one in values.items() if self.values.get(key, ...) != one}
+        changed = {key: one for key, one in values.items() if self._differs(key, one)}
         self.values.update(changed)
         return [Sensed(changed)] if changed else []
+
+    def _differs(self, key: str, one: Json) -> bool:
+        """Whether a value is another one: 1 and true are equal in Python, and not in conditions."""
+        before = self.values.get(key, ...)
+        return before != one or isinstance(before, bool) != isinstance(one, bool)
 
 
 def sensor_value(text: str) -> Json:

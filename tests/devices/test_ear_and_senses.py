@@ -18,6 +18,7 @@ from prima.messages import (
     Cue,
     Ended,
     Inbound,
+    Json,
     Occurred,
     Order,
     Record,
@@ -126,6 +127,12 @@ def test_sensors_tell_changes_alone() -> None:
     assert sensors.take({"battery": 80, "door": None}) == [Sensed({"battery": 80, "door": None})]
     assert sensors.take({"battery": 80}) == []
     assert sensors.take({"battery": 79, "door": None}) == [Sensed({"battery": 79})]
+
+
+@pytest.mark.parametrize("values", [[1, True], [True, 1], [0.0, False]])
+def test_a_sensor_that_turns_true_has_changed_from_one(values: list[Json]) -> None:
+    sensors = Sensors()
+    assert [len(sensors.take({"door": value})) for value in values] == [1, 1]
 
 
 def start(*cues: Cue, **more: Any) -> Order:
