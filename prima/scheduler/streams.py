@@ -117,19 +117,15 @@ def note_turns(mediation: Mediation) -> None:
 
 
 def c1(mediation: Mediation) -> None:
-    """C1, F3: end the streams that nothing keeps open; they give up the floor."""
+    """C1, F3: end the streams that nothing keeps open; they give up the floor.
+
+    The latest of the held streams takes it if nobody else has it (X3).
+    """
     touched, mediation.touched = mediation.touched, {}
-    kept: list[Stream] = []
     for stream in touched.values():
-        if stream.open:
-            continue
-        if stream.hold:
-            kept.append(stream)  # after ending streams have given the floor back
-        else:
-            _end(mediation, stream)
-    for stream in kept:
-        keep_open(mediation, stream)
-    if mediation.holds and not mediation.memory.floor:  # who had it while a hold began has ended
+        if not stream.open:
+            (keep_open if stream.hold else _end)(mediation, stream)
+    if mediation.holds and not mediation.memory.floor:
         take_floor(mediation, mediation.memory.streams[next(reversed(mediation.holds))], "X3")
 
 
@@ -155,14 +151,12 @@ def x3(mediation: Mediation, stream: Stream, asked: Request) -> None:
 
 
 def keep_open(mediation: Mediation, stream: Stream) -> None:
-    """X3: the stream stays open, with the floor unless another has it, and waits."""
+    """X3: the stream stays open, and waits."""
     assert stream.hold is not None
     until = mediation.now + stream.hold
     mediation.holds[stream.name] = stream.held_until = until
     data = {"until": until / 1000}
     mediation.recorder.stream("held", stream, "X3", outcome="begun", data=data)
-    if not mediation.memory.floor:
-        take_floor(mediation, stream, "X3")
 
 
 def let_go(mediation: Mediation, stream: Stream, outcome: str) -> None:
