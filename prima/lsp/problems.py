@@ -62,6 +62,17 @@ def check(workspace: Workspace, path: Path) -> dict[Path, list[Problem]]:
     return found
 
 
+def files_read(workspace: Workspace, path: Path) -> set[Path]:
+    """The files that are read to check a document: those that it names, and what these name."""
+    found: set[Path] = set()
+    waiting = [path]
+    while waiting:
+        named = {target for target, *_ in workspace.named(waiting.pop())} - found
+        found |= named
+        waiting += named
+    return found
+
+
 def _resolved(path: Path, file: str) -> Path:
     try:
         return (path.parent / file).resolve()

@@ -24,8 +24,7 @@ from pygls.protocol import LanguageServerProtocol, default_converter
 from prima.errors import Problem
 from prima.errors.visible import visible
 from prima.lsp import naming
-from prima.lsp.names import dialect
-from prima.lsp.problems import Spot, check, spots
+from prima.lsp.problems import Spot, check, files_read, is_ours, spots
 from prima.lsp.text import Lines
 from prima.lsp.workspace import Text, Workspace
 from prima.version import __version__
@@ -241,9 +240,7 @@ class Server(LanguageServer):
         return [
             other
             for other, text in self.documents.open.items()
-            if other != path
-            and dialect(text.top) in ("scenario", "world")
-            and path in self.documents.reading(other)
+            if other != path and is_ours(text.top) and path in files_read(self.documents, other)
         ]
 
     # Edits --------------------------------------------------------------------

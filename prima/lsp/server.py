@@ -91,7 +91,14 @@ def _opened(server: Server, params: lsp.DidOpenTextDocumentParams) -> None:
     document = params.text_document
     path = server.documents.put(document.uri, document.text, document.version)
     if path is not None:
-        server.check_soon(path, SOON)
+        _check(server, path)
+
+
+def _check(server: Server, path: Path) -> None:
+    """Check a document soon, and those that depend on it."""
+    server.check_soon(path, SOON)
+    for other in server.concerned(path):
+        server.check_soon(other, LATER)
 
 
 def _changed(server: Server, params: lsp.DidChangeTextDocumentParams) -> None:
@@ -101,9 +108,7 @@ def _changed(server: Server, params: lsp.DidChangeTextDocumentParams) -> None:
     text = server.workspace.get_text_document(params.text_document.uri).source
     path = server.documents.put(params.text_document.uri, text, params.text_document.version)
     if path is not None:
-        server.check_soon(path, SOON)
-        for other in server.concerned(path):
-            server.check_soon(other, LATER)
+        _check(server, path)
 
 
 def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:

@@ -10,7 +10,7 @@ from lsprotocol import types as lsp
 
 from prima import api
 from prima.errors.visible import HARMFUL
-from tests.helpers.editor import BEGIN, SCENE, WRONG, Editor, cut
+from tests.helpers.editor import BEGIN, SCENE, VOICE, WRONG, Editor, cut
 
 
 def shown(problem: Any) -> tuple[int, int, str, str, str]:
@@ -136,6 +136,35 @@ def test_unsaved_text_counts_for_files_that_a_scenario_names(editor: Editor) -> 
     editor.close("worlds/office.xml")
     editor.until(scene, "no-such-name", there=False)
     editor.close(scene)
+
+
+def test_unsaved_text_counts_for_dialogs_and_grammars_that_an_application_names(
+    editor: Editor,
+) -> None:
+    whole = VOICE + '<form id="a"><block><exit/></block></form></vxml>'
+    rules = (
+        '<grammar xmlns="http://www.w3.org/2001/06/grammar" version="1.0" root="r" xml:lang="en">\n'
+        '<rule id="r" scope="public">yes</rule></grammar>'
+    )
+    (editor.folder / "ea" / "leaf.vxml").write_text(whole, encoding="utf-8")
+    (editor.folder / "ea" / "rules.grxml").write_text(rules, encoding="utf-8")
+    (editor.folder / "ea" / "more.grxml").write_text(rules, encoding="utf-8")
+    editor.open(
+        "ea/first.vxml",
+        VOICE
+        + """<form id="m">
+      <field name="x"><grammar src="rules.grxml" type="application/srgs+xml"/></field>
+      <block><goto next="leaf.vxml#a"/></block></form></vxml>""",
+    )
+    editor.open("ea/leaf.vxml", whole.replace('"a"', '"b"'))
+    editor.until("ea/first.vxml", "no-such-form")
+    editor.close("ea/leaf.vxml")
+    editor.until("ea/first.vxml", "no-such-form", there=False)
+    editor.open("ea/rules.grxml", rules.replace("yes", '<ruleref uri="more.grxml#r"/>'))
+    editor.open("ea/more.grxml", rules)
+    editor.change("ea/more.grxml", rules.replace('"r"', '"q"'))
+    editor.until("ea/rules.grxml", "no-such-rule")
+    editor.close("ea/rules.grxml", "ea/more.grxml", "ea/first.vxml")
 
 
 def test_problems_of_a_file_that_is_not_open_stand_with_it(editor: Editor) -> None:
