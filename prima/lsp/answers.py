@@ -18,6 +18,7 @@ from prima.lsp.paths import path_of
 from prima.lsp.problems import spot
 from prima.lsp.protocol import Server
 from prima.lsp.scan import ScannedText
+from prima.markup.limits import LIMITS
 
 REQUEST_FAILED = -32803
 
@@ -165,14 +166,19 @@ def symbols(server: Server, params: lsp.DocumentSymbolParams) -> list[lsp.Docume
     return [_symbol(server, page, part) for part in outlines.outline(page)]
 
 
-def _symbol(server: Server, page: ScannedText, part: outlines.OutlineElement) -> lsp.DocumentSymbol:
+def _symbol(
+    server: Server, page: ScannedText, part: outlines.OutlineElement, depth: int = 1
+) -> lsp.DocumentSymbol:
+    """A part and those in it, as deep as a document may be."""
     return lsp.DocumentSymbol(
         visible(part.name),
         SYMBOLS[part.sort],
         server.range(page.lines, part.start, part.end),
         server.range(page.lines, part.name_start, part.name_end),
         visible(part.detail) or None,
-        children=[_symbol(server, page, one) for one in part.parts],
+        children=[_symbol(server, page, one, depth + 1) for one in part.parts]
+        if depth < LIMITS.depth
+        else [],
     )
 
 

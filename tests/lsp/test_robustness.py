@@ -175,6 +175,14 @@ def test_a_long_text_without_end_takes_no_long_time() -> None:
         everything(workspace, path, len(BEGIN) + 10)
 
 
+def test_a_text_that_is_nested_too_deep_has_an_outline(editor: Editor) -> None:
+    problems = editor.open("fa/deep.xml", BEGIN + '<form id="a">' * 3_000)
+    assert [one.code for one in problems] == ["too-deep"]
+    asked = lsp.DocumentSymbolParams(lsp.TextDocumentIdentifier(editor.uri("fa/deep.xml")))
+    assert editor.do(editor.client.text_document_document_symbol_async(asked))
+    editor.close("fa/deep.xml")
+
+
 def test_it_ends_when_the_editor_is_gone() -> None:
     done = subprocess.run(
         [sys.executable, "-m", "prima", "lsp"],
