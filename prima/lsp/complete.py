@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from prima.lsp.descriptions import EVENTS, SESSION, VOICEXML_EVENTS
 from prima.lsp.hover import attribute_text, element_text
 from prima.lsp.meanings import DEFINES, FILES, REFERS, ReferenceUse
 from prima.lsp.names import dialect
+from prima.lsp.paths import name_for
 from prima.lsp.scan import Attr, ScannedTag, ScannedText
 from prima.lsp.snippets import opening, snippet
 from prima.lsp.tables import BY_NAMESPACE, attributes, children, is_code, roots, values
@@ -279,6 +279,7 @@ class _Completion:
     def _files(self, attr: Attr, wanted: tuple[str, ...]) -> Iterator[Proposal]:
         """Documents of the workspace, as paths relative to this one."""
         span, folder = self._span(attr), self.path.parent
+        uris = self.workspace.has_uris(self.path)
         for path in self.workspace.files():
             text = self.workspace.text(path)
             if path == self.path or text is None:
@@ -286,10 +287,10 @@ class _Completion:
             if wanted and dialect(text.top) not in wanted:
                 continue
             try:
-                name = os.path.relpath(path, folder).replace(os.sep, "/")
+                name = name_for(path, folder, uris)
             except ValueError:  # another drive
                 continue
-            yield Proposal(name, "file", *span, escape(name))
+            yield Proposal(name, "file", *span)
 
     # Variables ------------------------------------------------------------------
 

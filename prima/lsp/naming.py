@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
 from prima.errors import with_article
 from prima.language.values import read_value
 from prima.lsp.names import Mark, mark_at
+from prima.lsp.paths import name_for
 from prima.lsp.workspace import FoundName, Workspace
 from prima.script.globals import RESERVED
 
@@ -187,17 +187,17 @@ def moved(workspace: Workspace, old: Path, new: Path) -> list[NameEdit]:
     edits = []
     for path, start, end in workspace.naming(old):
         if path != old:
-            edits.append(NameEdit(path, start, end, _relative(new, path.parent)))
+            edits.append(NameEdit(path, start, end, _written(workspace, path, new, path.parent)))
     if new.parent != old.parent:
         for target, start, end in workspace.named(old):
             there = old if target == old else target
-            edits.append(NameEdit(old, start, end, _relative(there, new.parent)))
+            edits.append(NameEdit(old, start, end, _written(workspace, old, there, new.parent)))
     return edits
 
 
-def _relative(path: Path, folder: Path) -> str:
+def _written(workspace: Workspace, document: Path, path: Path, folder: Path) -> str:
+    """A file's name as a document has it that is, or will be, in a folder."""
     try:
-        name = os.path.relpath(path, folder).replace(os.sep, "/")
+        return name_for(path, folder, workspace.has_uris(document))
     except ValueError:  # another drive
-        name = path.as_posix()
-    return name.replace("&", "&amp;").replace('"', "&quot;").replace("<", "&lt;")
+        return path.as_posix()

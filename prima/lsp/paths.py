@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Iterable, Iterator
+from html import escape, unescape
 from pathlib import Path
 from urllib.parse import quote, unquote, urlsplit
 
@@ -36,6 +37,30 @@ def path_of(uri: str) -> Path | None:
 def uri_of(path: Path) -> str:
     """The URI of a file."""
     return path.as_uri() if path.is_absolute() else quote(str(path))
+
+
+def file_named(folder: Path, value: str, is_uri: bool) -> Path | None:
+    """The file that an attribute of a document in a folder names, by a URI or plainly."""
+    name = unescape(value).strip()
+    if is_uri:
+        name = unquote(name.partition("#")[0].partition("?")[0])
+    try:
+        scheme = urlsplit(name).scheme if is_uri else ""
+        return (folder / name).resolve() if name and not scheme and "\0" not in name else None
+    except (OSError, ValueError, RuntimeError):
+        return None
+
+
+def name_for(path: Path, folder: Path, is_uri: bool) -> str:
+    """A file's name, relative to a folder, as an attribute has it.
+
+    Raises:
+        ValueError: it is on another drive.
+    """
+    name = os.path.relpath(path, folder).replace(os.sep, "/")
+    if is_uri:
+        name = "".join(quote(one) if one in "%?#" else one for one in name)
+    return escape(name).replace("&#x27;", "&apos;")
 
 
 def walk(roots: Iterable[Path], most: int) -> Iterator[Path]:

@@ -6,12 +6,11 @@ import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from urllib.parse import unquote, urlsplit
 
 from prima.errors import DocumentError
 from prima.lsp.meanings import FILES, SHARED
 from prima.lsp.names import Mark, dialect, marks
-from prima.lsp.paths import MOST_FILES, path_of, uri_of, walk
+from prima.lsp.paths import MOST_FILES, file_named, path_of, uri_of, walk
 from prima.lsp.scan import ScannedText
 from prima.lsp.tables import resolve
 from prima.lsp.text import Lines
@@ -166,29 +165,29 @@ class Workspace:
     def _has_folder(self, path: Path) -> bool:
         return any(folder in path.parents for folder in self.folders)
 
+    def has_uris(self, path: Path) -> bool:
+        """Whether a document names files by URIs; scenarios and worlds name them plainly."""
+        text = self.text(path)
+        return text is None or dialect(text.top) not in ("scenario", "world")
+
     def target(self, path: Path, name: str) -> Path | None:
         """The file that a relative name in a document means."""
-        name = unquote(name.strip().partition("#")[0].partition("?")[0])
-        if not name or urlsplit(name).scheme or "\0" in name:
-            return None
-        try:
-            return (path.parent / name).resolve()
-        except (OSError, ValueError, RuntimeError):
-            return None
+        return file_named(path.parent, name, self.has_uris(path))
 
     def named(self, path: Path) -> list[tuple[Path, int, int]]:
         """The files that a document names, with the positions of their names."""
-        text = self.text(path)
+        text, uris = self.text(path), self.has_uris(path)
         found: list[tuple[Path, int, int]] = []
         for tag in text.page.tags if text else ():
             for attr in tag.attributes:
                 key = (tag.vocabulary.name if tag.vocabulary else "", tag.key, attr.name)
                 if key not in FILES or attr.first < 0:
                     continue
-                target = self.target(path, attr.value)
+                target = file_named(path.parent, attr.value, uris)
                 if target is not None:
                     space = len(attr.value) - len(attr.value.lstrip())
-                    length = len(attr.value.strip().partition("#")[0])
+                    name = attr.value.strip()
+                    length = len(name.partition("#")[0].partition("?")[0] if uris else name)
                     first = attr.first + space
                     found.append((target, first, first + length))
         return found

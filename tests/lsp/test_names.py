@@ -9,6 +9,8 @@ import pytest
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcException
 
+from prima.lsp import naming
+from prima.lsp.workspace import Workspace
 from tests.helpers.editor import BEGIN, SCENE, VOICE, Editor, cut, edited, plain
 
 FORMS = (
@@ -158,6 +160,41 @@ def test_files_are_found_and_renamed(editor: Editor) -> None:
     with pytest.raises(JsonRpcException, match="already"):
         rename(editor, where, "../fa/dance.xml")
     editor.close("scenarios/x.xml")
+
+
+@pytest.mark.parametrize(
+    ("names", "moved"),
+    [
+        (("it&apos;s.xml", "it%27s.vxml"), ("it&apos;s.xml", "it&apos;s.vxml")),
+        (("a &amp; b.xml", "a &amp; b.vxml"), ("a &amp; b.xml", "a &amp; b.vxml")),
+        (("50% #1?.xml", "50%25%20%231%3f.vxml"), ("50% #1?.xml", "50%25 %231%3F.vxml")),
+        (("a%20b.xml", "a%2520b.vxml"), ("a%20b.xml", "a%2520b.vxml")),
+    ],
+)
+def test_names_of_files_with_signs_are_found_and_written(
+    tmp_path: Path, names: tuple[str, str], moved: tuple[str, str]
+) -> None:
+    workspace = Workspace()
+    workspace.folders = [tmp_path]
+    scene = SCENE.replace('"', "'") + f"<application src='{names[0]}'/></scenario>"
+    (tmp_path / "s.xml").write_text(scene, encoding="utf-8")
+    voice = VOICE.replace('"', "'") + f"<form><block><goto next='{names[1]}?x=1#a'/></block></form>"
+    (tmp_path / "v.vxml").write_text(voice, encoding="utf-8")
+    for name, there, text, says in (
+        (names[0], "s.xml", scene, moved[0]),
+        (names[1], "v.vxml", voice, moved[1]),
+    ):
+        offset = text.index(name)
+        file = naming.definitions(workspace, tmp_path / there, offset)
+        assert file == [], "there is no such file yet"
+        target = workspace.target(tmp_path / there, name)
+        assert target is not None and target.parent == tmp_path
+        target.write_text(voice, encoding="utf-8")
+        assert naming.definitions(workspace, tmp_path / there, offset)[0].path == target
+        edits = naming.moved(workspace, target, tmp_path / "sub" / target.name)
+        made = [(text[one.start : one.end], one.text) for one in edits
+                if one.path == tmp_path / there]  # fmt: skip
+        assert made == [(name, f"sub/{says}")]
 
 
 def test_files_that_the_editor_moves_are_followed(editor: Editor) -> None:
