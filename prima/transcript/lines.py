@@ -217,15 +217,17 @@ def head_model() -> type[BaseModel]:
     """The model against which the data of a run's record are checked."""
     from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
+    File = Annotated[str, AfterValidator(_file)]
+
     class Live(BaseModel):
         model_config = ConfigDict(strict=True)
-        robot: str = ""
-        scenario: str = ""
-        world: str = ""
-        services: str = ""
+        robot: File = ""
+        scenario: File = ""
+        world: File = ""
+        services: File = ""
         document: str = ""
-        fa: list[str] = []
-        ea: list[str] = []
+        fa: list[File] = []
+        ea: list[File] = []
         maps: list[str] = []
 
     class Head(BaseModel):
@@ -259,6 +261,12 @@ def check_head(head: Record, name: str) -> None:
         first = error.errors()[0]
         where = ".".join(map(str, first["loc"]))
         raise UsageError(f"{name}:1: the run record is damaged: {where}: {first['msg']}.") from None
+
+
+def _file(text: str) -> str:
+    if "\0" in text:
+        raise ValueError(f"{text!r} is not a file's name")
+    return text
 
 
 def _date(text: str) -> str:

@@ -280,6 +280,7 @@ def test_no_run_goes_on_from_a_journal_with_a_bad_line_in_its_midst(journal: Pat
         (headed("date", "someday"), ":1: the run record is damaged: date"),
         (headed("patience", -1), ":1: the run record is damaged: patience"),
         (headed("live", {"robot": 5}), r":1: the run record is damaged: live\.robot"),
+        (headed("live", {"robot": "r\0.xml", "document": ""}), "'r.x00.xml' is not a file's name"),
         (headed("live", {"robot": "r.xml", "maps": 7}), r":1: .* damaged: live\.maps"),
         (headed("live", {}), "does not say with which files"),
         (lambda records: records.pop(0), ":1: the transcript does not begin with its run record"),
