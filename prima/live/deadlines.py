@@ -43,7 +43,12 @@ def run(work: Coroutine[Any, Any, T]) -> T:
         finally:
             await leave([one for one in asyncio.all_tasks() if one is not own])
 
-    return asyncio.run(alone())
+    whole = alone()
+    try:
+        return asyncio.run(whole)
+    finally:  # Ctrl-C may come before the loop begins with them
+        whole.close()
+        work.close()
 
 
 async def leave(tasks: Collection[asyncio.Task[Any]]) -> None:

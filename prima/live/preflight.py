@@ -94,7 +94,7 @@ def check_robot(chosen: Chosen, settings: LiveSettings, say: Say) -> int:
     try:
         return run(_stoppable(Preflight(robot, site, drivers, say)))
     except KeyboardInterrupt as error:  # a driver blocked it
-        say(str(error))
+        say(str(error) or "The check was broken off.")
         return INTERRUPTED
 
 

@@ -11,6 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from prima.live.chosen import Chosen
+from prima.live.preflight import check_robot
+from prima.live.visit import LiveSettings
 from tests.live.test_live import ROOT, prima
 
 DRIVERS = """
@@ -167,6 +170,19 @@ def test_a_signal_ends_the_check_with_a_safe_robot(tmp_path: Path) -> None:
     running.send_signal(signal.SIGTERM)
     _, told = running.communicate(timeout=30)
     assert (running.returncode, "safe" in told) == (130, True), told
+
+
+def test_ctrl_c_before_a_check_begins_says_nothing_of_coroutines(
+    monkeypatch: pytest.MonkeyPatch, recwarn: pytest.WarningsRecorder
+) -> None:
+    def interrupted(_work: object) -> None:
+        raise KeyboardInterrupt
+
+    told: list[str] = []
+    monkeypatch.setattr("asyncio.run", interrupted)
+    chosen = Chosen(robot=str(ROOT / "documents" / "robots" / "simulated.xml"))
+    assert check_robot(chosen, LiveSettings(), told.append) == 130
+    assert (told, recwarn.list) == (["The check was broken off."], [])
 
 
 @pytest.mark.parametrize("name", ["simulated", "console"])
