@@ -227,6 +227,32 @@ def test_wrong_usage_is_told_with_exit_code_2(words: list[str], told: str) -> No
     assert "Traceback" not in ran.stderr
 
 
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        ("raise SystemExit", "d.py: it ends the program when it is imported. Put "),
+        ("import nowhere", "d.py: ModuleNotFoundError: No module named 'nowhere'."),
+        ("class Mine: kind = 'mine'", "d.py: it defines no Driver with a kind."),
+        (
+            "from prima.live.driver import TaskDriver\nclass Mine(TaskDriver): kind = 5",
+            "d.py: it defines no Driver with a kind.",
+        ),
+        (None, "d.py: cannot be read: it is not a file."),
+    ],
+)
+def test_a_file_that_brings_no_drivers_is_told(
+    code: str | None, told: str, hello: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "d.py"
+    if code is None:
+        file.mkdir()
+    else:
+        file.write_text(code)
+    ran = prima("live", "--robot", ROBOT, "--ea", hello, "--driver", str(file))
+    assert ran.returncode == 2, ran.stderr
+    assert told in ran.stderr and "defect" not in ran.stderr
+
+
 def test_a_full_disk_ends_the_run_and_is_told(hello: str) -> None:
     ran = prima("live", "--robot", ROBOT, "--ea", hello, "-o", "/dev/full")
     assert ran.returncode == 3

@@ -57,7 +57,8 @@ def drivers_in(file: str) -> list[type[Driver]]:
     """
     path = Path(file)
     if not path.is_file():
-        raise UsageError(f"{file}: cannot be read: there is no such file.")
+        why = "it is not a file" if path.exists() else "there is no such file"
+        raise UsageError(f"{file}: cannot be read: {why}.")
     if (folder := str(path.resolve().parent)) not in sys.path:
         sys.path.append(folder)
     spec = importlib.util.spec_from_file_location(f"prima_driver_{path.stem}", path)
@@ -66,10 +67,14 @@ def drivers_in(file: str) -> list[type[Driver]]:
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
+    except SystemExit as error:
+        remedy = 'Put what is for running it alone below: if __name__ == "__main__":'
+        raise UsageError(f"{file}: it ends the program when it is imported. {remedy}") from error
     except Exception as error:
         raise UsageError(f"{file}: {type(error).__name__}: {error}.") from error
     named = [one for _, one in inspect.getmembers(module, inspect.isclass)]
-    found = [one for one in named if issubclass(one, Driver) and one.kind]
+    drivers = [one for one in named if issubclass(one, Driver)]
+    found = [one for one in drivers if isinstance(one.kind, str) and one.kind]
     if not found:
         raise UsageError(f"{file}: it defines no Driver with a kind.")
     return found
