@@ -78,6 +78,11 @@ class Handler(BaseHTTPRequestHandler):
             self.send_response(302)
             self.send_header("Location", host.moved)
             self.end_headers()
+        elif path == "/short":
+            self.send_response(200)
+            self.send_header("Content-Length", "100")
+            self.end_headers()
+            self.wfile.write(b'{"title": "I, Robot"}')
         elif path == "/chat":
             said = {"choices": [{"message": {"content": host.said}}]}
             self._send(200, json.dumps(said).encode())
@@ -204,6 +209,7 @@ def test_slots_are_taken_out_of_an_answer(host: Host, tmp_path: Path) -> None:
         ('url="URL/infinite"/>', "the answer has a number that is too large"),
         ('url="URL/endless"/>', "the answer has a number that is too large"),
         ('url="URL/twice"/>', 'the answer has "title" twice'),
+        ('url="URL/short"/>', "the answer breaks off"),
         ('url="URL/half"/>', "the answer has half a letter"),
         ('url="URL/page"/>', "the answer is text/html, not application/json"),
         ('url="URL/list"/>', "the answer is not a JSON object"),
