@@ -192,6 +192,24 @@ def test_the_drivers_that_need_nothing_pass(name: str) -> None:
     assert re.search(r"^ok +say .* \d+ ms +\d+ ms$", ran.stdout, re.M), ran.stdout
 
 
+@pytest.mark.parametrize(
+    ("option", "told"),
+    [
+        ('name="usr" value="true"', 'no option "usr". The options are at, stopping and user.'),
+        ('name="user" value="no"', 'user is "no". Write true or false.'),
+        ('name="stopping" value="20"', "stopping is not a duration. Write it as 20ms."),
+    ],
+)
+def test_a_wrong_option_of_the_simulated_body_is_told(
+    option: str, told: str, tmp_path: Path
+) -> None:
+    robot = (ROOT / "documents" / "robots" / "simulated.xml").read_text()
+    wrong = f'<driver kind="sim"><option {option}/></driver>'
+    (tmp_path / "r.xml").write_text(robot.replace('<driver kind="sim"/>', wrong))
+    done = prima("live", "--robot", str(tmp_path / "r.xml"), "--check")
+    assert done.returncode == 2 and told in done.stdout + done.stderr
+
+
 def test_what_the_robots_document_says_does_nothing_to_the_terminal(tmp_path: Path) -> None:
     robot = (ROOT / "documents" / "robots" / "simulated.xml").read_text()
     wrong = '<driver kind="sim"><option name="at" value="&#x202e;&#x9b;31m"/></driver>'

@@ -53,6 +53,7 @@ class SimDriver(Driver):
             UsageError: an option is wrong.
         """
         options, site = self.settings.options, self.site
+        self._check_options()
         at = options.get("at", next(iter(site.places), ""))
         if at not in site.places and at:
             raise UsageError(f'{self.settings.place}: the map has no place "{at}".')
@@ -67,6 +68,15 @@ class SimDriver(Driver):
             angle = math.radians(heading)
             self.world.put("user", (x + math.cos(angle), y + math.sin(angle)))
         self._later, self._at, self._sees = [], None, Sees(False)
+
+    def _check_options(self) -> None:
+        """Refuse options that it has not, and a ``user`` that is neither true nor false."""
+        options, place = self.settings.options, self.settings.place
+        if unknown := sorted(options.keys() - {"at", "stopping", "user"}):
+            told = f'there is no option "{unknown[0]}". The options are at, stopping and user.'
+            raise UsageError(f"{place}: {told}")
+        if (user := options.get("user", "true")) not in ("true", "false"):
+            raise UsageError(f'{place}: user is "{user}". Write true or false.')
 
     def _stand_at(self, place: str) -> None:
         """Make an idle body."""
