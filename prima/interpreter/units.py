@@ -261,10 +261,7 @@ class Finder:
     def _visit(self, form: Form, unit: Unit, item: Item, found: dict[int, Reached]) -> None:
         """What may run while an item of a unit is visited."""
         inner = (*item.handlers, *unit.handlers)
-        waiting = [_Raised(event) for event in self._thrown(item)]
-        if isinstance(item, Field):  # what the user says to a link ends its question (V1)
-            links = (*form.links, *self._document.links)
-            waiting += [_Raised(link.event) for link in links if link.event]
+        waiting = [*map(_Raised, self._thrown(item)), *self._by_links(form, item)]
         for content in _own(item):
             waiting += self._take_in(self._made(content), True, _Raised(""), found)
         for handler in inner:
@@ -284,6 +281,11 @@ class Finder:
                     told = one.first or one.event or handler.events[0]
                     by = _Raised(one.event, told, one.code)
                     waiting += self._take_in(self._piece(handler), False, by, found)
+
+    def _by_links(self, form: Form, item: Item) -> list[_Raised]:
+        """The events of links: what the user says to one ends the question that listens (V1)."""
+        links = (*form.links, *self._document.links)
+        return [_Raised(one.event) for one in links if one.event and isinstance(item, Field)]
 
     @staticmethod
     def _take_in(

@@ -9,6 +9,7 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import entry_points
 from pathlib import Path
+from types import ModuleType
 
 from prima.errors import UsageError, did_you_mean, one_of
 from prima.live.driver import Driver
@@ -59,6 +60,20 @@ def drivers_in(file: str) -> list[type[Driver]]:
     if not path.is_file():
         why = "it is not a file" if path.exists() else "there is no such file"
         raise UsageError(f"{file}: cannot be read: {why}.")
+    named = [one for _, one in inspect.getmembers(_imported(path, file), inspect.isclass)]
+    drivers = [one for one in named if issubclass(one, Driver)]
+    found = [one for one in drivers if isinstance(one.kind, str) and one.kind]
+    if not found:
+        raise UsageError(f"{file}: it defines no Driver with a kind.")
+    return found
+
+
+def _imported(path: Path, file: str) -> ModuleType:
+    """A Python file as a module.
+
+    Raises:
+        UsageError: it cannot be run.
+    """
     if (folder := str(path.resolve().parent)) not in sys.path:
         sys.path.append(folder)
     spec = importlib.util.spec_from_file_location(f"prima_driver_{path.stem}", path)
@@ -72,9 +87,4 @@ def drivers_in(file: str) -> list[type[Driver]]:
         raise UsageError(f"{file}: it ends the program when it is imported. {remedy}") from error
     except Exception as error:
         raise UsageError(f"{file}: {type(error).__name__}: {error}.") from error
-    named = [one for _, one in inspect.getmembers(module, inspect.isclass)]
-    drivers = [one for one in named if issubclass(one, Driver)]
-    found = [one for one in drivers if isinstance(one.kind, str) and one.kind]
-    if not found:
-        raise UsageError(f"{file}: it defines no Driver with a kind.")
-    return found
+    return module
