@@ -249,13 +249,19 @@ def _restoring() -> Callable[[], None]:
 
 
 def _typed() -> str:
-    """The line as typed so far."""
+    """The line as typed so far.
+
+    It is copied before it is decoded: readline's own function decodes it while the thread that
+    edits changes it, and then it fails, or the C library ends the process.
+    """
     try:
         import readline
+        from ctypes import CDLL, c_char_p
 
-        return readline.get_line_buffer()
-    except ImportError:
+        line = c_char_p.in_dll(CDLL(readline.__file__), "rl_line_buffer").value
+    except (ImportError, AttributeError, OSError, ValueError):  # there is none that can be read
         return ""
+    return (line or b"").decode(sys.stdin.encoding, "replace")
 
 
 def edit_lines(complete: Callable[[str], list[str]]) -> None:

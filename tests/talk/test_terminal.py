@@ -191,3 +191,42 @@ def test_a_clock_leaves_out_what_was_typed(
     clock, hand = terminal.PausingClock(), Hand()
     assert clock.line(hand, 10_000) == "yes"
     assert clock.now == 600 - 100 * len(begun)
+
+
+POLLS = """
+import threading, time
+from prima.cli.terminal import _typed
+
+def edit():
+    while True:
+        input()
+
+seen = {_typed()}
+threading.Thread(target=edit, daemon=True).start()
+end = time.monotonic() + 2
+while time.monotonic() < end:
+    seen.add(_typed())
+print("read", len(seen) > 1)
+"""
+
+
+def test_a_line_is_read_while_it_changes() -> None:
+    """readline's own function fails, or aborts the process, if a key comes meanwhile."""
+    import select
+
+    pid, fd = pty.fork()
+    if pid == 0:  # pragma: no cover
+        os.environ.update({"PYTHONPATH": str(ROOT), "TERM": "xterm"})
+        os.execv(sys.executable, [sys.executable, "-c", POLLS])
+    shown = ""
+    while True:
+        reading, writing, _ = select.select([fd], [fd], [], 5)
+        try:
+            if writing and not reading:
+                os.write(fd, b"e" * 60 + b"\x15\r")
+                time.sleep(0.004)
+            shown += os.read(fd, 65536).decode("utf-8", "replace") if reading else ""
+        except OSError:  # the process has ended
+            break
+    assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 0, shown[-300:]
+    assert "read True" in shown
