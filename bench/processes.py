@@ -21,8 +21,7 @@ FLOORS = {
     "validate": ("click", "xml.parsers.expat", *SYNTAX),
     "run": ("click", "xml.parsers.expat", *SYNTAX, "pymunk", "networkx"),
 }
-"""The libraries that a command imports. The process of the engine, in which a script of the demo is
-checked and run, is not part of a floor."""
+"""The libraries that a command imports; the code of these documents is simple and needs no engine."""
 
 TINY = {
     "sismic": (

@@ -29,6 +29,7 @@ from prima.interpreter.checks.facts import Facts
 from prima.interpreter.checks.variables import Variables, place_in
 from prima.interpreter.elements import Document, Field, Form, Item, Prompt, Subdialog
 from prima.script.compile import compiled
+from prima.script.data import declared
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.known import Known
 from prima.script.parse import parse_expression
@@ -87,10 +88,10 @@ def check_code(facts: Facts) -> Iterator[Problem]:
     variables = Variables(facts)
     waiting: list[tuple[Expression, Known, bool]] = []
     for expr, known, script in _all_code(facts):
-        if script or compiled(expr.code) is None:
+        if (declared if script else compiled)(expr.code) is None:
             waiting.append((expr, known, script))  # needs an engine
         else:
-            yield from _used(variables, expr, known)
+            yield from _used(variables, expr, known, script)
     _look_ahead([(expr.code, script) for expr, _, script in waiting])
     for expr, known, script in waiting:
         if expr.attribute and expr.attribute not in expr.node.attributes:
@@ -98,14 +99,15 @@ def check_code(facts: Facts) -> Iterator[Problem]:
         problem = _compiled(expr, script)
         if problem is not None:
             yield problem
-        elif script:
-            yield from variables.of_script(expr, known)
         else:
-            yield from _used(variables, expr, known)
+            yield from _used(variables, expr, known, script)
     yield from variables.given()
 
 
-def _used(variables: Variables, expr: Expression, known: Known) -> Iterator[Problem]:
+def _used(variables: Variables, expr: Expression, known: Known, script: bool) -> Iterator[Problem]:
+    if script:
+        yield from variables.of_script(expr, known)
+        return
     yield from variables.of_expression(expr, known)
     yield from _assigns(expr)
 
