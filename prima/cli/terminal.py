@@ -258,8 +258,9 @@ def _typed() -> str:
         import readline
         from ctypes import CDLL, c_char_p
 
-        line = c_char_p.in_dll(CDLL(readline.__file__), "rl_line_buffer").value
-    except (ImportError, AttributeError, OSError, ValueError):  # there is none that can be read
+        library = CDLL(getattr(readline, "__file__", None))  # None: it is built into Python
+        line = c_char_p.in_dll(library, "rl_line_buffer").value
+    except (ImportError, OSError, ValueError):  # there is none that can be read
         return ""
     return (line or b"").decode(sys.stdin.encoding, "replace")
 

@@ -166,15 +166,21 @@ def test_x3_a_unit_joins_the_stream_that_is_held() -> None:
     assert check(stage.records, "prima+x3") == []
 
 
-def test_x3_the_floor_that_an_ending_stream_gives_back_is_taken() -> None:
-    # Both streams end in one instant; the one to be held comes first and finds the floor
-    # taken by the other, which ends then: nobody has it.
+def to_be_held_under_a_reaction() -> Stage:
+    """A stream that is to be held has just come to its end; a reaction has the floor and speaks."""
     stage = Stage("prima+x3")
     stage.request("ea", command("turn", angle=90), hold=5000)
     stage.select()
     stage.request("fa", say(), cause=1)
     stage.select()
     stage.at(100).end("ea#1")
+    return stage
+
+
+def test_x3_the_floor_that_an_ending_stream_gives_back_is_taken() -> None:
+    # Both streams end in one instant; the one to be held comes first and finds the floor
+    # taken by the other, which ends then: nobody has it.
+    stage = to_be_held_under_a_reaction()
     stage.end("fa#1")
     stage.select()
     stage.at(200).request("fa", command("turn", angle=90))
@@ -183,12 +189,7 @@ def test_x3_the_floor_that_an_ending_stream_gives_back_is_taken() -> None:
 
 
 def test_x3_who_is_held_has_the_floor_once_those_who_had_it_have_ended() -> None:
-    stage = Stage("prima+x3")
-    stage.request("ea", command("turn", angle=90), hold=5000)
-    stage.select()
-    stage.request("fa", say(), cause=1)
-    stage.select()
-    stage.at(100).end("ea#1")
+    stage = to_be_held_under_a_reaction()
     stage.select()
     assert stage.floor == ["fa:1"]
     stage.at(200).end("fa#1")

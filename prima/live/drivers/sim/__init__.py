@@ -70,7 +70,7 @@ class SimDriver(Driver):
         self._later, self._at, self._sees = [], None, Sees(False)
 
     def _check_options(self) -> None:
-        """Refuse options that it has not, and a ``user`` that is neither true nor false."""
+        """Refuse unknown options, and a ``user`` that is neither true nor false."""
         options, place = self.settings.options, self.settings.place
         if unknown := sorted(options.keys() - {"at", "stopping", "user"}):
             told = f'there is no option "{unknown[0]}". The options are at, stopping and user.'
