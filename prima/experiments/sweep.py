@@ -10,7 +10,7 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from errno import ENOSPC
-from itertools import product
+from itertools import chain, islice, product
 from pathlib import Path
 
 from prima.errors import UsageError, counted
@@ -239,28 +239,29 @@ class Output:
             UsageError: something cannot be written, or the table to be resumed is of another sweep.
             RunError: no process can be started.
         """
+        first: list[list[Json]] | None = None
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             there = self._earlier() if resume else 0
+            rows = self.sweep.results(self.pool, there, self.folder.name)
+            first = list(islice(rows, 1))  # before it replaces a table: a cluster may not answer
             if not there:
                 write_whole(self.rows, line([one.name for one in self.sweep.columns]))
             write_whole(self.folder / PLAN, json.dumps(self.sweep.key(), indent=1) + "\n")
-            write_whole(
-                self.folder / "dictionary.json", dictionary(self.path.name, self.sweep.columns)
-            )
+            described = dictionary(self.path.name, self.sweep.columns)
+            write_whole(self.folder / "dictionary.json", described)
             yield there
-            yield from self._append(there)
+            yield from self._append(there, chain(first, rows))
         except OSError as error:
             remedy = "; make room, then --resume" if error.errno == ENOSPC else ""
             raise UsageError(f"{self.path}: cannot be written: {error.strerror}{remedy}.") from None
         finally:
-            if self.parquet and self.rows.is_file():
+            if self.parquet and first is not None and self.rows.is_file():
                 write_parquet(self.rows, self.path, self.sweep.columns)
         self._write_orders()
 
-    def _append(self, begin: int) -> Iterator[int]:
+    def _append(self, begin: int, rows: Iterator[list[Json]]) -> Iterator[int]:
         with self.rows.open("a", encoding="utf-8", newline="") as stream:
-            rows = self.sweep.results(self.pool, begin, self.folder.name)
             for number, row in enumerate(rows, begin + 1):
                 stream.write(line(row))
                 stream.flush()
@@ -317,8 +318,7 @@ class Output:
         for row in self.read():
             if row["order"]:
                 firsts.setdefault(str(row["order"]), int(str(row["run"])))
-        left = {number: order for order, number in firsts.items()}
-        left = {n: o for n, o in left.items() if not (folder / f"{o}.jsonl").is_file()}
+        left = {n: o for o, n in firsts.items() if not (folder / f"{o}.jsonl").is_file()}
         if not left:
             return
         for variant in self.sweep:

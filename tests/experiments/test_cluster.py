@@ -220,10 +220,13 @@ def test_a_plan_counts_the_cluster_s_workers(dask: Cluster) -> None:
     assert "322 runs: about" in done.stdout and "with 3 processes" in done.stdout, done.stderr
 
 
-def test_nobody_answers() -> None:
+def test_nobody_answers(tmp_path: Path) -> None:
+    earlier = tmp_path / "t.csv"
+    earlier.write_text("An earlier table.")
     began = time.monotonic()
-    done = command.prima("sweep", "visit.xml", "--on", "tcp://127.0.0.1:9")
+    done = command.prima("sweep", "visit.xml", "--on", "tcp://127.0.0.1:9", "-o", str(earlier))
     assert (done.returncode, done.stdout) == (2, "")
+    assert earlier.read_text() == "An earlier table."
     assert "no scheduler" in done.stderr and "dask scheduler" in done.stderr, done.stderr
     assert time.monotonic() - began < 40
     for wrong in ("127.0.0.1:8786", "http://x", "tcp://", "tcp://x:port", "tcp://x:1/\x1b[2J"):
