@@ -26,10 +26,11 @@ demo: $(VENV)/.runtime
 test: $(VENV)/.dev
 	$(BIN)/python -m pytest -n $(WORKERS)
 
-# Drivers against the second parties of tests/parties, each in an environment of its own.
+# Drivers against the second parties of tests/parties, each in an environment of its own. They mostly
+# wait, so each file has a worker.
 test-live: $(VENV)/.dev
 	$(BIN)/python -m tools.environments
-	$(BIN)/python -m pytest -n 2 --dist loadfile tests/parties
+	$(BIN)/python -m pytest -n 8 --dist loadfile tests/parties
 
 check: $(VENV)/.dev
 	$(BIN)/ruff format --check .

@@ -96,7 +96,7 @@ def test_a_text_is_said_by_a_service_and_cut_off_by_another(robot: Process, driv
     driver.expect("Done", key=key)
     assert robot.expect("says")["text"] == "Hello!"
     robot.expect("says no more", cut=False)
-    key = driver.start("say", "This takes much longer than anybody wants to wait for it.")
+    key = driver.start("say", "This takes much longer than anybody wants to wait for it. " * 9)
     robot.expect("says")
     at = driver.cancel(key)
     assert robot.expect("says no more", cut=True)["at"] - at < 1
@@ -136,7 +136,7 @@ def test_what_is_sensed_is_told(robot: Process, driver: Driven) -> None:
 
 def test_safe_stops_everything(robot: Process, driver: Driven) -> None:
     go = driver.start("topological-move", to="door")
-    say = driver.start("say", "This takes much longer than anybody wants to wait for it.")
+    say = driver.start("say", "This takes much longer than anybody wants to wait for it. " * 9)
     robot.expect("says")
     driver.expect("Progress", key=go)
     driver.do("safe")

@@ -1,97 +1,18 @@
-"""A mediated run whose user is heard by sound: Figure 5.3, with another voice for the user.
+"""What the speech driver says and hears: the robot's voice and the recognisers are the real ones.
 
-The robot's voice, the detector of speech and both recognisers are the real ones; two pipes in
-memory are the sound card. What the user says is a scenario's answers.
+Two pipes in memory are the sound card.
 """
 
 from __future__ import annotations
 
 import json
 import os
-import signal
 import subprocess
 import wave
 from pathlib import Path
 from threading import Timer
 
-import pytest
-
-from tools.environments import install, python_of
-
-ROOT = Path(__file__).parents[3]
-HERE = "tests/parties/speech"
-LONGEST_S = 240
-LAST = "O.K. I'll stop following you."
-ROWS = [
-    "Where are you going?",
-    "Come on, let's go.",
-    "Topological Move (to kidode-room)",
-    "touches the robot's head",
-    "What's the matter with you?",
-    "Come on, follow me.",
-    "Active Sensing Human",
-    "a message from Prof. Kidode arrives",
-    "I've just got a message.",
-    "Do you have a reply?",
-    "O.K. I'll send your message.",
-    "I found you, I'll start following",
-    "Tracking Human",
-    "touches the robot's head",
-    "May I stop following you?",
-    LAST,
-]
-"""What is done and said, in this order."""
-
-
-@pytest.fixture(scope="module")
-def python() -> str:
-    install("speech")
-    return str(python_of("speech"))
-
-
-def prima(python: str, *words: str) -> subprocess.Popen[str]:
-    return subprocess.Popen(
-        [python, "-m", "prima", *words],
-        cwd=ROOT,
-        env={**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "200", "PYTHONUNBUFFERED": "1"},
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
-
-
-def test_a_user_who_is_heard_takes_the_robot_along(python: str, tmp_path: Path) -> None:
-    journal = tmp_path / "visit.jsonl"
-    running = prima(
-        python,
-        *("live", "--robot", f"{HERE}/heard.xml", "--driver", f"{HERE}/user.py"),
-        *("--world", "documents/worlds/office.xml", "--fa", "documents/fa/follow.xml"),
-        *("-o", str(journal)),
-    )
-    limit = Timer(LONGEST_S, running.kill)
-    limit.start()
-    shown, waited = [], list(ROWS)
-    assert running.stdout is not None
-    for line in running.stdout:
-        shown.append(line)
-        if waited and waited[0] in line:
-            waited.pop(0)
-        if not waited:
-            break
-    running.send_signal(signal.SIGINT)
-    running.communicate()
-    limit.cancel()
-    assert not waited, "".join(shown)
-    assert running.returncode == 130
-    assert "the recogniser" not in "".join(shown)
-    again = prima(python, "replay", str(journal))
-    told, _ = again.communicate(timeout=60)
-    assert again.returncode == 0
-    assert told.splitlines()[1:] == [
-        f"Go on with: prima live --resume {journal}",
-        "the same, byte for byte",
-    ]
+from tests.parties.speech.sounding import HERE, LONGEST_S, ROOT, prima
 
 
 def test_a_voicexml_form_is_filled_and_a_note_recorded_by_sound(
