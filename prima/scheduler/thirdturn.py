@@ -40,5 +40,4 @@ def goes_before(ab: Behavior, reaction: int | None, memory: WorkingMemory) -> in
 
 
 def _soon_over(ab: Behavior) -> bool:
-    lasting = ab.feedback or ab.leaves or ab.asks or ab.spans
-    return not lasting and ab.reaction is None and not ab.inserted
+    return not (ab.feedback or ab.leaves or ab.asks or ab.spans)

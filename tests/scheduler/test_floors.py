@@ -35,6 +35,18 @@ def test_f1_a_reaction_suspends_the_others_whatever_devices_they_need() -> None:
     assert [(r["tree"], r["by"]) for r in stage.phases("suspend")] == [("ea:1", "fa:1")]
 
 
+def test_f1_what_outranks_the_new_holder_starts_in_the_same_instant() -> None:
+    stage = Stage(apps={"fa": "fa", "ea": "ea", "other": "ea"})
+    stage.request("fa", command("gesture", name="bow"), cause=1)
+    stage.select()
+    stage.at(5).request("other", say())
+    assert stage.select() == []
+    assert stage.holds("other#1") == ["F2"], "it does not outrank the gesture"
+    stage.at(10).request("ea", move(), cause=2)
+    assert stage.select() == ["ea#1.1", "other#1"], "but the move, which has taken the floor"
+    assert stage.floor == ["fa:1", "ea:1"]
+
+
 def test_f2_a_reaction_to_another_event_may_break_in_and_one_to_the_same_may_not() -> None:
     stage = Stage()
     stage.request("fa", say(), cause=1)
