@@ -1,21 +1,20 @@
 """Proxies of engines in processes of their own.
 
-:class:`IsolatedEngine` has the methods of :class:`~prima.script.engine.Engine`. Values of the
-engine are :class:`~prima.script.worker.Handle` here.
+:class:`IsolatedEngine` has the methods of :class:`~prima.script.engine.Engine`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 from prima.errors import UsageError, one_of
 from prima.messages import Json
 from prima.script import worker
 from prima.script.ecmascript import UNDEFINED
-from prima.script.evaluation import SCOPES, EngineElement, EngineLost, Scope, bounded, plain_number
-from prima.script.remote import Remote, as_data, as_value, as_values
-from prima.script.worker import Handle, Worker
+from prima.script.evaluation import SCOPES, EngineElement, EngineLost, Scope
+from prima.script.remote import Remote
+from prima.script.worker import Worker
 
 if TYPE_CHECKING:
     from prima.script.engine import Engine
@@ -33,6 +32,8 @@ Made = TypeVar("Made")
 class IsolatedEngine(Remote):
     """The ECMAScript of an application, in another process."""
 
+    there = "Engine"
+
     def __init__(self, host: Worker, scopes: tuple[str, ...] = SCOPES) -> None:
         self.now = 0
         """The time by the run's calendar (ms since 1970, UTC), as ``Date`` gives it."""
@@ -40,8 +41,8 @@ class IsolatedEngine(Remote):
         """Seconds of processor time since the owner last reset it."""
         self.maker: Engines | None = None
         """The owner of the process, which must live as long as the process is used."""
-        super().__init__(host, "engine", [as_data(scopes)], self)
-        self.nothing = self._call("empty")
+        super().__init__(host, self, "engine", scopes)
+        self.nothing = self.empty()
         self._lenient: dict[str, str] = {}
 
     @property
@@ -49,14 +50,10 @@ class IsolatedEngine(Remote):
         """Why nothing can be evaluated any more, if so."""
         return self.host.why
 
-    def compile(self, code: str) -> None:
-        """See :meth:`Engine.compile`; returns nothing."""
-        self._call("compile", as_data(code))
-
     def lenient(self, code: str) -> str:
         """See :meth:`Engine.lenient`."""
         if code not in self._lenient:
-            self._lenient[code] = self._call("lenient", as_data(code))
+            self._lenient[code] = self._call("lenient", code)
         return self._lenient[code]
 
     def scope(self, **values: Json) -> Scope:
@@ -66,103 +63,20 @@ class IsolatedEngine(Remote):
             self.fill(scope, values)
         return scope
 
-    def named(self, name: str) -> Scope:
-        """See :meth:`Engine.named`."""
-        return self._call("named", as_data(name))
-
-    def view(self, scope: Scope) -> Scope:
-        """See :meth:`Engine.view`."""
-        return self._call("view", as_value(scope))
-
-    def event(self, name: str, message: str, data: Json) -> Scope:
-        """See :meth:`Engine.event`."""
-        return self._call("event", as_data(name), as_data(message), as_data(data))
-
-    def clock(self, scope: Scope, seconds: float) -> None:
-        """See :meth:`Engine.clock`."""
-        self._call("clock", as_value(scope), as_data(seconds))
-
-    def set(self, scope: Scope, name: str, value: Json) -> None:
-        """See :meth:`Engine.set`."""
-        given = as_value(value) if isinstance(value, Handle) else as_data(value)
-        self._call("set", as_value(scope), as_data(name), given)
-
-    def fill(self, scope: Scope, values: Mapping[str, Json]) -> None:
-        """See :meth:`Engine.fill`."""
-        self._call("fill", as_value(scope), as_data(values))
-
-    def unset(self, scope: Scope, *names: str) -> None:
-        """See :meth:`Engine.unset`."""
-        self._call("unset", as_value(scope), *map(as_data, names))
-
-    def has(self, scope: Scope, name: str) -> bool:
-        """See :meth:`Engine.has`."""
-        return bool(self._call("has", as_value(scope), as_data(name)))
-
-    def defined(self, scope: Scope, name: str) -> bool:
-        """See :meth:`Engine.defined`."""
-        return bool(self._call("defined", as_value(scope), as_data(name)))
-
-    def first_undefined(self, scope: Scope, *names: str) -> int:
-        """See :meth:`Engine.first_undefined`."""
-        return int(self._call("first_undefined", as_value(scope), *map(as_data, names)))
-
-    def raw(self, code: str, scopes: tuple[Scope, ...]) -> Any:
-        """See :meth:`Engine.raw`."""
-        return self._call("raw", as_data(code), as_values(scopes))
-
-    def condition(self, code: str, scopes: tuple[Scope, ...]) -> bool:
-        """See :meth:`Engine.condition`."""
-        return bool(self._call("condition", as_data(code), as_values(scopes)))
-
-    def text(self, code: str, scopes: tuple[Scope, ...]) -> str:
-        """See :meth:`Engine.text`."""
-        return bounded(str(self._call("text", as_data(code), as_values(scopes))))
-
-    def value(self, code: str, scopes: tuple[Scope, ...]) -> Json:
-        """See :meth:`Engine.value`."""
-        return plain_number(self._call("value", as_data(code), as_values(scopes)))
-
-    def get(self, scope: Scope, name: str) -> Json:
-        """See :meth:`Engine.get`."""
-        return plain_number(self._call("get", as_value(scope), as_data(name)))
-
     def elements(self, code: str, scopes: tuple[Scope, ...], most: int) -> list[Any]:
         """See :meth:`Engine.elements`."""
-        array = self._call("listed", as_data(code), as_values(scopes), as_data(most))
-        length = min(int(self._call("length", as_value(array))), most)
+        array = self.listed(code, scopes, most)
+        length = min(int(self.length(array)), most)
         return [EngineElement(array, index) for index in range(length)]
-
-    def assign(self, scope: Scope, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
-        """See :meth:`Engine.assign`."""
-        self._call("assign", as_value(scope), as_data(name), as_data(code), as_values(scopes))
-
-    def assign_declared(self, name: str, code: str, scopes: tuple[Scope, ...]) -> None:
-        """See :meth:`Engine.assign_declared`."""
-        self._call("assign_declared", as_data(name), as_data(code), as_values(scopes))
-
-    def detach(self, scope: Scope, name: str) -> None:
-        """See :meth:`Engine.detach`."""
-        self._call("detach", as_value(scope), as_data(name))
-
-    def hand(self, scope: Scope, name: str, source: Scope) -> None:
-        """See :meth:`Engine.hand`."""
-        self._call("hand", as_value(scope), as_data(name), as_value(source))
 
     def put(self, scope: Scope, name: str, value: Any) -> None:
         """See :meth:`Engine.put`."""
         if value is UNDEFINED:
             self.unset(scope, name)
         elif isinstance(value, EngineElement):
-            self._call(
-                "pick", as_value(scope), as_data(name), as_value(value.array), as_data(value.index)
-            )
+            self.pick(scope, name, value.array, value.index)
         else:
             self.set(scope, name, value)
-
-    def script(self, code: str, scope: Scope, scopes: tuple[Scope, ...]) -> None:
-        """See :meth:`Engine.script`."""
-        self._call("script", as_data(code), as_value(scope), as_values(scopes))
 
 
 class AbsentEngine:

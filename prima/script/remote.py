@@ -1,38 +1,46 @@
-"""Calls to engines in another process, and their arguments."""
+"""Objects in another process, whose methods are called there."""
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from prima.script.evaluation import EngineLost
+from prima.script.host import METHODS
 from prima.script.worker import Handle, Meter, Worker
 
 
-def as_data(value: Any) -> list[Any]:
-    """Data as an argument."""
-    return ["data", value]
-
-
-def as_value(value: Handle) -> list[Any]:
-    """A value of the engine as an argument."""
-    return ["value", value.number]
-
-
-def as_values(values: tuple[Handle, ...]) -> list[Any]:
-    """Several values of the engine as one argument."""
-    return ["values", [one.number for one in values]]
-
-
 class Remote:
-    """An object in another process."""
+    """An object in another process.
 
-    def __init__(self, host: Worker, maker: str, arguments: list[Any], meter: Meter) -> None:
+    It has the methods that :data:`~prima.script.host.METHODS` lists for its class. Values of the
+    engine, as arguments and as results, are :class:`~prima.script.worker.Handle` here.
+    """
+
+    there = ""
+    """The name of its class."""
+
+    def __init__(self, host: Worker, meter: Meter, maker: str, *arguments: Any) -> None:
         self.host = host
         self._use = host.use
         self._meter = meter
-        self._here: Handle = host.call(0, maker, arguments, meter)
+        self._here: Handle = host.call(0, maker, [*map(_sent, arguments)], meter)
 
-    def _call(self, method: str, *arguments: list[Any]) -> Any:
+    def __getattr__(self, name: str) -> Any:
+        if name not in METHODS[self.there]:
+            raise AttributeError(f"{self.there} has no method {name}")
+        return partial(self._call, name)
+
+    def _call(self, method: str, *arguments: Any) -> Any:
         if self._use != self.host.use:
             raise EngineLost("its run has ended")
-        return self.host.call(self._here.number, method, list(arguments), self._meter)
+        return self.host.call(self._here.number, method, [*map(_sent, arguments)], self._meter)
+
+
+def _sent(value: Any) -> list[Any]:
+    """An argument as it is sent: values of the engine by their numbers, or data."""
+    if isinstance(value, Handle):
+        return ["value", value.number]
+    if isinstance(value, tuple) and any(isinstance(one, Handle) for one in value):
+        return ["values", [one.number for one in value]]
+    return ["data", value]

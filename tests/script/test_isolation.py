@@ -13,6 +13,7 @@ from prima.errors import UsageError
 from prima.script import host, shared, worker
 from prima.script.evaluation import SCOPES, EngineLost, ScriptError
 from prima.script.isolated import Engines, IsolatedEngine
+from prima.script.remote import Remote
 from prima.script.shared import IsolatedTagEngine, syntax
 from tests.helpers.robot import Bench, document
 
@@ -243,16 +244,16 @@ def test_an_application_without_an_engine_ends_alone(monkeypatch: pytest.MonkeyP
 def test_an_engine_that_ends_while_its_application_is_made_is_replaced(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    named = IsolatedEngine.named
+    call = Remote._call
     ended: list[int] = []
 
-    def once(engine: IsolatedEngine, name: str) -> object:
-        if not ended:
+    def once(engine: Remote, method: str, *arguments: object) -> object:
+        if method == "named" and not ended:
             ended.append(engine.host.pid)
             os.kill(engine.host.pid, signal.SIGKILL)
-        return named(engine, name)
+        return call(engine, method, *arguments)
 
-    monkeypatch.setattr(IsolatedEngine, "named", once)
+    monkeypatch.setattr(Remote, "_call", once)
     bench = Bench(document(ASKS, "ea", "good"))
     bench.event("ask")
     assert bench.saying() == ["2"]
