@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from prima.interpreter.application import Interpreter
     from prima.interpreter.elements import Document
 
 GUARDS = ("n < 0", "n < -1", "n >= 0")
@@ -64,9 +65,15 @@ class Prima:
         from prima.interpreter.application import Interpreter
 
         app = self.session.apps["ring"]
-        assert isinstance(app, Interpreter) and app.frame is not None
+        assert isinstance(app, Interpreter)
         assert len(self.session.drain()) >= self.now, "records are missing"
-        return int(app.engine.get(app.frame.document, "n"))
+        return counted(app)
+
+
+def counted(app: Interpreter) -> int:
+    """The counter of a ring."""
+    assert app.frame is not None
+    return int(app.engine.value("n", (app.frame.document,) * 4))
 
 
 class Alone:
@@ -91,8 +98,8 @@ class Alone:
 
     def count(self) -> int:
         """The counter, read by the application itself."""
-        assert self.app.frame is not None and not self.app.actions
-        return int(self.app.engine.get(self.app.frame.document, "n"))
+        assert not self.app.actions
+        return counted(self.app)
 
 
 def applications(scripted: bool, guards: bool = False) -> Callable[[], Alone]:

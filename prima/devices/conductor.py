@@ -311,7 +311,7 @@ class Conductor:
                 continue
             if goal.cancelled:
                 reason = "the device does not stop"
-                self._goals.calls.append(Safe(reason))
+                self._goals.calls.append(Safe())
                 self._lose(Lost(goal.begin.devices, reason))
             else:
                 what = "answer" if goal.accepted else "accept it"

@@ -73,8 +73,6 @@ class Stand:
 class Safe:
     """Everything has to stop at once; the devices are considered lost."""
 
-    reason: str
-
 
 Call = Begin | Again | Cancel | Stand | Safe
 

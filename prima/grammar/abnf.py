@@ -102,7 +102,7 @@ class _AbnfReader:
         self._once("base", token)
 
     def LEXICONURI(self, token: Token) -> None:
-        self.document.lexicons.append(self._uri(token, media=True))
+        self._uri(token, media=True)
 
     def GLOBAL(self, token: Token) -> None:
         self.document.globals.append(self._tag(token))

@@ -154,7 +154,6 @@ class GrammarDocument:
     """Global tags of the header, run once before those of rules."""
     tags: list[Tag] = field(default_factory=list)
     references: list[Reference] = field(default_factory=list)
-    lexicons: list[str] = field(default_factory=list)
     meta: dict[str, str] = field(default_factory=dict)
     dialect: str = ""
     """How tags are read: ``script``, ``literals``, ``legacy``, or ``last`` (PRIMA's own language)."""

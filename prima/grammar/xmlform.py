@@ -126,10 +126,8 @@ class _Reader(GrammarChecker):
             self.note(node, "stray-text", f"<{node.tag}> holds nothing.", "Remove the text.")
         if node.tag == "tag":
             self.document.globals.append(Tag(node.own_text, partial(node.place_of, "")))
-        elif node.tag == "lexicon":
-            if not node.get("uri"):
-                self.note(node, "missing-attribute", "<lexicon> needs a uri.")
-            self.document.lexicons.append(node.get("uri"))
+        elif node.tag == "lexicon" and not node.get("uri"):
+            self.note(node, "missing-attribute", "<lexicon> needs a uri.")
         elif node.tag == "meta":
             self._meta(node)
 

@@ -186,7 +186,7 @@ class Bounds(Generic[Evaluator]):
         else:
             reason = f"{place}: this is a defect of prima: {type(error).__name__}: {error}"
         self.over, self.deadline = True, None
-        self.actions[:] = [Say("error", reason, place), Quit(reason, True, place)]
+        self.actions[:] = [Say("error", reason, place), Quit(reason, True)]
 
     def give_up(self, node: Node, reason: str) -> NoReturn:
         """End the application: it exceeded a limit, which no handler can remedy."""

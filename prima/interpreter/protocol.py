@@ -142,18 +142,18 @@ class App(Bounds[Evaluator], ABC):
     def leave_states(self) -> None:
         """O3: give up all that is requested and awaited."""
 
-    def quit(self, reason: str, failed: bool = False, place: str = "") -> None:
+    def quit(self, reason: str, failed: bool = False) -> None:
         """End the application."""
         if self.over:
             return
         self.over = True
         self.leave_states()
-        self.actions.append(Quit(reason, failed, place))
+        self.actions.append(Quit(reason, failed))
 
     def quit_unhandled(self, thrown: Thrown) -> None:
         """End the application by an unhandled event (5.2.5)."""
         self.actions.append(Say("error", thrown.reason, thrown.source))
-        self.quit(thrown.reason, True, thrown.source)
+        self.quit(thrown.reason, True)
 
 
 def sendable(data: Data) -> Data:

@@ -190,10 +190,6 @@ class PythonEngine:
         """Evaluate an expression and give its value as plain data."""
         return outward((self._functions.get(code) or self._call(code))(scopes))
 
-    def get(self, scope: Scope, name: str) -> Json:
-        """A variable's value as plain data."""
-        return outward(scope.get(name, UNDEFINED))
-
     def elements(self, code: str, scopes: Scopes, most: int) -> list[Any]:
         """Evaluate an expression that gives an array; give its elements.
 

@@ -83,7 +83,7 @@ class States(App["AnyEngine | PythonEngine"]):
         except (Thrown, ScriptError) as unhandled:
             self.quit_unhandled(thrown_of(unhandled))
         except GoOut as out:
-            self.quit(out.reason, out.failed, out.source)
+            self.quit(out.reason, out.failed)
 
     def _seek_handler(self, thrown: Thrown) -> None:
         """Find a handler of an error outside all content, as in a handler's condition."""

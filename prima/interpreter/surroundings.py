@@ -30,7 +30,6 @@ class Surroundings:
     """The names that a world and a robot define."""
 
     places: frozenset[str]
-    things: frozenset[str]
     gestures: frozenset[str]
     sensors: frozenset[str]
     voices: frozenset[str] = frozenset()

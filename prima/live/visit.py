@@ -76,8 +76,6 @@ class Visit:
     missed: list[Record] = field(default_factory=list)
     """Records missing from the last instant of a broken journal; empty for a new run."""
     resumed: bool = False
-    latest: int = 0
-    """The maximum lateness (ms) of its instants."""
     stopped: bool = False
     """Whether it was ended from outside."""
     before: list[Record] = field(default_factory=list)
@@ -159,7 +157,6 @@ class Visit:
             try:
                 await shell.run()
             finally:
-                self.latest = shell.latest
                 if not (shell.opened or self.resumed) and self.journal is not None:
                     self.journal.discard()  # nothing has happened: the command can be repeated
 

@@ -88,7 +88,6 @@ class Quit:
 
     reason: str
     failed: bool = False
-    source: str = ""
 
 
 @dataclass(slots=True)

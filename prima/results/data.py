@@ -38,8 +38,6 @@ class Levels:
 
     names: list[str]
     codes: Groups
-    ranges: bool = False
-    """Whether each is a range of values that hold equally many runs."""
 
 
 class FactorColumn:
@@ -89,7 +87,7 @@ class FactorColumn:
         codes = np.where(absent, len(names), codes).astype(np.int64)
         if self.missing:
             names.append(NOTHING)
-        return Levels(names, codes, len(self.distinct) > most)
+        return Levels(names, codes)
 
     def _worded(self, most: int) -> Levels:
         names = self.distinct

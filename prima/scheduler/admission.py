@@ -217,7 +217,7 @@ class Maker:
         self, app: Application, stream: Stream, asked: Request, now: int, unit: Behavior | None
     ) -> list[Behavior]:
         """The ABs of a request's steps, linked as they say; roots wait for nothing yet."""
-        run = AwaitedRun(asked.run, app, len(asked.steps))
+        run = AwaitedRun(asked.run, len(asked.steps))
         made: list[Behavior] = []
         for step in asked.steps:
             ab = self.behavior(app, stream, step.what, now, asked.state, run, unit)

@@ -124,7 +124,6 @@ class AwaitedRun:
     """Commands that an application sent together and whose end it awaits."""
 
     number: int
-    app: Application
     left: int
     begun: bool = False
     """Whether any of them has started."""

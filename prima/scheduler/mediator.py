@@ -138,10 +138,6 @@ class Mediator:
         asking = (one for one in members if one.command and one.command.type == "q-and-a")
         return next((one for one in asking if one.run is not None and not one.silent), None)
 
-    def has(self, extension: str) -> bool:
-        """Whether an extension is on."""
-        return extension in self._all.policy.extensions
-
     def failed(self, behavior: str, device: str, reason: str) -> None:
         """E1: a device fails."""
         ab = self.running(behavior)

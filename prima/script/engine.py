@@ -239,10 +239,6 @@ class Engine:
             return None
         return json.loads(bounded(well_formed_json(text)))
 
-    def get(self, scope: Scope, name: str) -> Json:
-        """A variable's value as plain data."""
-        return self.out(self._call(self._help["item"], (scope, name)))
-
     def elements(self, code: str, scopes: tuple[Scope, ...], most: int) -> list[Any]:
         """Evaluate an expression that gives an array; its elements, to be :meth:`put`.
 

@@ -36,7 +36,7 @@ METHODS: Mapping[str, Mapping[str, int]] = {
         "named": GIVES_VALUE, "view": GIVES_VALUE, "event": GIVES_VALUE, "clock": GIVES_NOTHING,
         "set": GIVES_NOTHING, "fill": GIVES_NOTHING, "unset": GIVES_NOTHING, "has": GIVES_DATA,
         "defined": GIVES_DATA, "first_undefined": GIVES_DATA, "raw": GIVES_VALUE, "condition": GIVES_DATA, "text": GIVES_DATA, "value": GIVES_DATA,
-        "get": GIVES_DATA, "listed": GIVES_VALUE, "length": GIVES_DATA, "pick": GIVES_NOTHING,
+        "listed": GIVES_VALUE, "length": GIVES_DATA, "pick": GIVES_NOTHING,
         "assign": GIVES_NOTHING, "assign_declared": GIVES_NOTHING, "detach": GIVES_NOTHING,
         "hand": GIVES_NOTHING, "script": GIVES_NOTHING,
         "empty": GIVES_VALUE,

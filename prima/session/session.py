@@ -79,11 +79,6 @@ class Session:
         return self._apps.named
 
     @property
-    def documents(self) -> Mapping[str, AnyDocument]:
-        """The documents that the applications run, by the applications' names."""
-        return self._apps.documents
-
-    @property
     def failures(self) -> list[str]:
         """Applications that ended with an error, as ``NAME: what``."""
         return self._wiring.failures

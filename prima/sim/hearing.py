@@ -79,7 +79,7 @@ def _not_there(cast: Cast) -> Iterator[Problem]:
     """Names in documents that neither the world nor the robot has."""
     world, robot = cast.world, cast.robot
     names = Surroundings(
-        *(frozenset(world.places), frozenset(world.things), frozenset(robot.gestures)),
+        *(frozenset(world.places), frozenset(robot.gestures)),
         *(robot.touch, frozenset(robot.voices), frozenset({*world.places, *world.things})),
     )
     for document in cast.documents:

@@ -60,11 +60,6 @@ class Result:
         """The file of the expected table, whether it exists or not."""
         return golden_of(Path(self.path))
 
-    @property
-    def checked(self) -> bool:
-        """Whether there is any expectation."""
-        return bool(self.expectations) or self.golden in ("same", "differs")
-
 
 def run_one(path: str, choice: TestOptions) -> Result:
     """Test one scenario.

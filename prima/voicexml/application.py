@@ -242,7 +242,7 @@ class VoiceInterpreter(App[AnyEngine]):
         except GoOut as out:
             if out.failed:
                 self.actions.append(Say("error", out.reason, out.source))
-            self.quit(out.reason, out.failed, out.source)
+            self.quit(out.reason, out.failed)
         except Thrown as thrown:  # when nothing is left to handle it
             self.quit_unhandled(thrown)
         except RecursionError:

@@ -46,7 +46,6 @@ class Arranged:
     """
 
     steps: list[Step]
-    source: str
     type: str = "par"
     cues: tuple[Cue, ...] = ()
     hook: object = False

@@ -10,7 +10,6 @@ from urllib.parse import urldefrag, urlsplit
 from prima.errors import DocumentError, Problem
 from prima.markup.tree import Node
 from prima.markup.uris import join
-from prima.messages import Json
 from prima.voicexml.checks import check_code
 from prima.voicexml.site import Site
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
@@ -101,8 +100,6 @@ class VoiceDocument:
     node: Node
     glance: Glance | None = None
     """Where recordings are looked up; without it they are fetched."""
-    watches: list[Json] = field(default_factory=list)
-    forms: dict[str, Json] = field(default_factory=dict)
 
     @property
     def folder(self) -> str:

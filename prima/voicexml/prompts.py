@@ -261,7 +261,7 @@ class Speaker(VoiceEvaluator):
             return
         steps = self.steps([node], lambda one: self.command(one, context, local, lang))
         if steps:
-            self.owner.queue.append(Arranged(steps, source(node)))
+            self.owner.queue.append(Arranged(steps))
 
     def steps(self, nodes: list[Node], make: Maker) -> list[Step]:
         """Commands and units of them, one after another but for branches (U3)."""

@@ -229,7 +229,7 @@ def test_a_file_that_a_page_of_a_host_plays_is_not_looked_at() -> None:
 
     page = vxml(block(f'<audio src="{FILE}.wav">Words.</audio>'))
     call = Online({}, asks("<option>on</option>").replace(TELL, '<goto next="http://h.example/"/>'))
-    document = call.session.documents["app"]
+    document = call.session._apps.documents["app"]
     assert isinstance(document, VoiceDocument)
     document.glance = glance
     call.web = {"http://h.example/": page}

@@ -275,7 +275,7 @@ def test_assignments_reach_the_innermost_variable() -> None:
     scopes = (engine.scope(n=0), engine.scope(n=1), engine.named("dialog"), engine.scope())
     engine.assign_declared("n", "n + 10", scopes)
     engine.assign_declared("application.n", "n + 100", scopes)
-    assert [engine.get(scope, "n") for scope in scopes[:2]] == [111, 11]
+    assert [engine.value("n", (scope,) * 4) for scope in scopes[:2]] == [111, 11]
     with pytest.raises(ScriptError, match='the variable "m" is not declared'):
         engine.assign_declared("m", "1", scopes)
     with pytest.raises(ScriptError, match=r'the variable "dialog\.n" is not declared'):
@@ -286,7 +286,7 @@ def test_values_from_outside_are_copies() -> None:
     engine, data = PythonEngine(), {"rooms": [1, 2]}
     scope = engine.event("message", "", data)
     data["rooms"].append(3)
-    assert engine.get(scope, "event") == {
+    assert engine.value("event", (scope,) * 4) == {
         "name": "message",
         "message": "",
         "data": {"rooms": [1, 2]},

@@ -217,7 +217,7 @@ def test_a_document_of_voicexml_1_is_read_as_2(tmp_path: Path) -> None:
     call.answer("2")
     assert call.said()[0] == "It is very nice. Doctor no 12 tomato"
     assert call.logs() == ["2", "connection.disconnect.hangup"]
-    assert call.session.documents["app"].lang == "en-GB"
+    assert call.session._apps.documents["app"].lang == "en-GB"
 
 
 def test_a_grammar_of_voicexml_1_without_a_type_is_not_supported(tmp_path: Path) -> None:

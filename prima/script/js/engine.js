@@ -69,6 +69,4 @@ return {
   listed: function (v) { const made = [];
     for (let i = 0; i < v.length; i++) made[i] = v[i]; return made; },
   pick: function (o, k, v, i) { declare(o, k, v[i]); },
-  item: function (v, i) { const x = v[i];
-    return typeof x === 'string' ? give(x) : x; },
 }; })()
