@@ -9,11 +9,10 @@ AB of its own in the transcript, named ``ea#5.1``, ``ea#5.2``, ... (rule U2).
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import lru_cache
 from typing import Final, Literal
 
 from prima.language.commands import CommandType
-from prima.messages import Command, Data, Group, Record
+from prima.messages import Command, Data, Group
 from prima.scheduler.robot_state import Effects
 
 HIGH: Final = 1
@@ -23,12 +22,6 @@ LINKED: Final = "linked"
 WAITING: Final = "waiting"
 RUNNING: Final = "running"
 GONE: Final = "gone"
-
-
-@lru_cache(maxsize=1000)
-def in_order(devices: frozenset[str]) -> tuple[str, ...]:
-    """Devices in the order in which they are checked and reported."""
-    return tuple(sorted(devices))
 
 
 @dataclass(slots=True, eq=False)
@@ -219,8 +212,6 @@ class Behavior:
     """The mark from which it resumes after an interruption, as its device reported it (X2)."""
     late: int | None = None
     """When it will have run for too long (U5, E1), once it has started."""
-    told: Record | None = None
-    """The common fields of its records: see :mod:`prima.scheduler.recorder`."""
     id: str = field(init=False)
     """The AB's name in the transcript; a loop of a feedback Command has its number (U2)."""
     feedback: bool = field(init=False)
@@ -241,9 +232,9 @@ class Behavior:
         self.priority = HIGH if row is None else row.priority
 
     @property
-    def in_order(self) -> tuple[str, ...]:
+    def in_order(self) -> list[str]:
         """Its devices in the order in which they are checked and reported."""
-        return in_order(self.devices)
+        return sorted(self.devices)
 
     @property
     def asks(self) -> bool:

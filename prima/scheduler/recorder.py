@@ -24,21 +24,6 @@ class Recorder:
         """Add a record. Fields that are None are omitted when it is written."""
         self.records.append({"time": self.now, "phase": phase, "actor": actor, **fields})
 
-    def event(self, name: str, actor: str, app: str | None, data: Data, serial: int) -> None:
-        """Record an inbound event."""
-        self.records.append(
-            {
-                "time": self.now,
-                "phase": "event",
-                "actor": actor,
-                "app": app,
-                "event": name,
-                "data": dict(data) if data else None,
-                "serial": serial,
-                "inbound": True,
-            }
-        )
-
     def drain(self) -> list[Record]:
         """Return the records made since the last call."""
         records, self.records = self.records, []
@@ -46,12 +31,17 @@ class Recorder:
 
     def behavior(self, phase: str, ab: Behavior, **fields: Json) -> None:
         """Record what becomes of an AB."""
-        record = (ab.told or describe(ab)).copy()
-        record["time"] = self.now
-        record["phase"] = phase
-        record["behavior"] = ab.id
-        record.update(fields)
-        self.records.append(record)
+        self.add(
+            phase,
+            "robot",
+            app=ab.app.name,
+            behavior=ab.id,
+            tree=ab.stream.name,
+            command=ab.type.name if ab.type else "iu",
+            text=ab.command.text if ab.command else None,
+            unit=ab.unit.id if ab.unit else None,
+            **fields,
+        )
 
     def end(self, ab: Behavior, outcome: str, goal: bool, data: Data, inbound: bool) -> None:
         """Record the end of an AB, or of a loop of one."""
@@ -66,7 +56,7 @@ class Recorder:
 
     def start(self, ab: Behavior, rule: str, reaction: int | None) -> None:
         """Record the start of an AB, or of a loop of one."""
-        fields: Record = {"devices": [*ab.in_order], "rule": rule}
+        fields: Record = {"devices": ab.in_order, "rule": rule}
         if ab.feedback and ab.parent is not None:
             fields["parent"] = ab.parent
         if reaction is not None:
@@ -87,7 +77,7 @@ class Recorder:
             ab,
             parent=ab.parent,
             parents=sorted(ab.waits_for) if len(ab.waits_for) > 1 else None,
-            devices=[*ab.in_order],
+            devices=ab.in_order,
             priority="high" if ab.priority else "low",
             reactive=ab.reaction is not None,
             cause=ab.reaction,
@@ -134,25 +124,6 @@ class Recorder:
             losers=losers[:LOSERS_NAMED],
             losers_count=len(losers),
         )
-
-
-def describe(ab: Behavior) -> Record:
-    """Set the fields that an AB's records share, with placeholders for those that all have."""
-    told: Record = {
-        "time": 0,
-        "phase": "",
-        "actor": "robot",
-        "app": ab.app.name,
-        "behavior": "",
-        "tree": ab.stream.name,
-        "command": ab.type.name if ab.type else "iu",
-    }
-    if ab.command is not None and ab.command.text is not None:
-        told["text"] = ab.command.text
-    if ab.unit is not None:
-        told["unit"] = ab.unit.id
-    ab.told = told
-    return told
 
 
 def shown_cues(cues: tuple[Cue, ...]) -> list[dict[str, Json]]:

@@ -253,7 +253,15 @@ class Session:
     def _occurred(self, value: Occurred) -> None:
         name, app, data = value.name, value.app, value.data
         self._wiring.serial = serial = self._wiring.serial + 1
-        self.recorder.event(name, value.actor, app, data, serial)
+        self.recorder.add(
+            "event",
+            value.actor,
+            app=app,
+            event=name,
+            data=dict(data) or None,
+            serial=serial,
+            inbound=True,
+        )
         if name in SEEING:
             self.mediator.sees_user(name == "human.found")
         elif value.actor == "user":
