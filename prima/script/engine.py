@@ -14,8 +14,6 @@ from collections.abc import Callable, Mapping
 from time import thread_time
 from typing import TYPE_CHECKING, Any
 
-import _quickjs as quickjs
-
 from prima.script import sandbox
 from prima.script.ecmascript import UNDEFINED
 from prima.script.evaluation import (
@@ -32,7 +30,7 @@ from prima.script.evaluation import (
 from prima.script.hoisting import Hoisted, hoisted
 from prima.script.names import script_names
 from prima.script.surrogates import as_json, well_formed, well_formed_json
-from prima.script.syntax import FAILURES, TIME_LIMIT, Syntax, column_in, script_error
+from prima.script.syntax import FAILURES, Syntax, column_in, confined, script_error
 from prima.script.wrapping import Helpers, assignment, guarded, head, wrapped
 
 if TYPE_CHECKING:
@@ -46,11 +44,7 @@ class Engine:
     """Why nothing can be evaluated any more: never, in the caller's own process."""
 
     def __init__(self, scopes: tuple[str, ...] = SCOPES) -> None:
-        context = quickjs.Context()
-        context.set_memory_limit(sandbox.MEMORY_LIMIT)
-        context.set_max_stack_size(sandbox.STACK_LIMIT)
-        context.set_time_limit(TIME_LIMIT)
-        self._context = context
+        self._context = context = confined()
         self._syntax = Syntax(context)
         self._scopes = scopes
         self._names, self._withs = head(scopes)
@@ -63,7 +57,7 @@ class Engine:
         self._assigning: dict[tuple[str, str, int], Any] = {}
         self._scripts: dict[str, tuple[Any, Hoisted]] = {}
         context.eval(sandbox.GUARDS)
-        self._help = Helpers(context)
+        self._help = Helpers(context, sandbox.source("engine.js"))
         self.now = self._told = 0
         """The time by the run's calendar (ms since 1970, UTC), as ``Date`` gives it."""
         self._clocked = False

@@ -24,6 +24,15 @@ FAILURES = (
 """Exceptions of the engine, and of the binding for values that it cannot convert to Python."""
 
 
+def confined(memory: int = MEMORY_LIMIT) -> Any:
+    """A new engine with the limits of all engines, and so many bytes."""
+    context = quickjs.Context()
+    context.set_memory_limit(memory)
+    context.set_max_stack_size(STACK_LIMIT)
+    context.set_time_limit(TIME_LIMIT)
+    return context
+
+
 CALLED = re.compile(r"<input>:(\d+):(\d+)")
 
 
@@ -54,12 +63,7 @@ class Syntax:
     now, spent = 0, 0.0
 
     def __init__(self, context: Any = None) -> None:
-        if context is None:
-            context = quickjs.Context()
-            context.set_memory_limit(MEMORY_LIMIT)
-            context.set_max_stack_size(STACK_LIMIT)
-            context.set_time_limit(TIME_LIMIT)
-        self._declare = context.eval(DECLARE)
+        self._declare = (context or confined()).eval(DECLARE)
         self._sound: set[str] = set()
         """Expressions compiled successfully."""
         self._lenient: dict[str, str] = {}

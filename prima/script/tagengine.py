@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import _quickjs as quickjs
 
 from prima.script.budget import TIME_LIMIT
-from prima.script.evaluation import ScriptError
+from prima.script.evaluation import ScriptError, bounded
 from prima.script.sandbox import (
     CLOCK,
     DATE,
@@ -21,11 +21,12 @@ from prima.script.sandbox import (
     GUARDS,
     MEMORY_LIMIT,
     PRELUDE,
-    STACK_LIMIT,
     reason,
     source,
 )
 from prima.script.surrogates import well_formed, well_formed_json
+from prima.script.syntax import confined
+from prima.script.wrapping import Helpers
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -34,8 +35,6 @@ DONE = 1_000_000
 """The code after a rule's last tag."""
 LEAST_MEMORY = 1024 * 1024
 """Bytes that the first sandbox may use: each further one has half as many."""
-RESULT_LIMIT = 100_000
-"""Maximum length of a value that leaves the engine."""
 
 HELPERS = source("tags.js")
 
@@ -78,17 +77,14 @@ class TagEngine:
         """The time that the tags see (ms since 1970, UTC)."""
         self.spent = 0.0
         """Seconds of processor time that the tags of this utterance have taken."""
-        context = quickjs.Context()
-        context.set_memory_limit(max(MEMORY_LIMIT >> others, LEAST_MEMORY))
-        context.set_max_stack_size(STACK_LIMIT)
-        context.set_time_limit(TIME_LIMIT)
+        context = confined(max(MEMORY_LIMIT >> others, LEAST_MEMORY))
         context.eval(GUARDS)
         clock = context.eval(CLOCK)(DATE)
         context.eval(PRELUDE)
         clock()
         self._clock = clock
         self._context = context
-        self._helpers = context.eval(HELPERS)
+        self._help = Helpers(context, HELPERS)
         self._check = context.eval(CHECK)
         self._functions: dict[str, Any] = {}
 
@@ -114,11 +110,11 @@ class TagEngine:
 
     def box(self, value: Json) -> Any:
         """Box a value from outside for functions of the sandbox."""
-        return self._call(self._helper("box"), json.dumps(value))
+        return self._call(self._help["box"], json.dumps(value))
 
     def environment(self, text: str, merges: bool) -> Any:
         """The environment of a rule's tags; rules that it refers to are added in order."""
-        return self._call(self._helper("environment"), well_formed(text), merges)
+        return self._call(self._help["environment"], well_formed(text), merges)
 
     def add(self, environment: Any, name: str, box: Any, text: str) -> None:
         """Add the value of a rule that was referred to."""
@@ -154,33 +150,21 @@ class TagEngine:
 
     def carry(self, box: Any) -> str:
         """A boxed value as text, for :meth:`take` of another sandbox; functions are undefined there."""
-        text = self._call(self._helper("carry"), box)
-        if len(text) > RESULT_LIMIT:
-            raise ScriptError(f"it gives more than {RESULT_LIMIT:,} characters")
-        return str(text)
+        return bounded(str(self._call(self._help["carry"], box)))
 
     def take(self, text: str) -> Any:
         """Unbox a value from another sandbox."""
-        return self._call(self._helper("take"), text)
+        return self._call(self._help["take"], text)
 
     def json(self, box: Any) -> Json:
         """A boxed value as plain data; undefined and functions become None."""
-        text = self._call(self._helper("json"), box)
+        text = self._call(self._help["json"], box)
         if not isinstance(text, str):
             return None
-        if len(text) > RESULT_LIMIT:
-            raise ScriptError(f"it gives more than {RESULT_LIMIT:,} characters")
         try:
-            return json.loads(well_formed_json(text))
+            return json.loads(well_formed_json(bounded(text)))
         except RecursionError:
             raise ScriptError("its value is nested too deep") from None
-
-    def _helper(self, name: str) -> Any:
-        found = self._functions.get(f"={name}")
-        if found is None:
-            guard = self._context.eval(GUARD)
-            found = self._functions[f"={name}"] = guard(self._member(self._helpers, name))
-        return found
 
     def _member(self, thing: Any, name: str) -> Any:
         getter = self._functions.get(f".{name}")

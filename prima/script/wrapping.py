@@ -10,10 +10,9 @@ from prima.script.evaluation import ScriptError
 from prima.script.globals import GLOBALS, IDENTIFIER, STRANGE, WORD
 from prima.script.hoisting import HIDDEN, Hoisted
 from prima.script.names import script_names
-from prima.script.sandbox import DECLARE, GUARD, NAME, SAFE, source
+from prima.script.sandbox import DECLARE, GUARD, NAME, SAFE
 from prima.script.syntax import FAILURES, script_error
 
-HELPERS = source("engine.js")
 INTO = "$into$"
 """The scope in which a script declares variables, for our code around it."""
 EVALUATING = re.compile(r"eval|\\u")
@@ -23,9 +22,9 @@ EVALUATING = re.compile(r"eval|\\u")
 class Helpers(dict[str, Any]):
     """Our functions in an engine by their names, each fetched when it is first needed."""
 
-    def __init__(self, context: Any) -> None:
+    def __init__(self, context: Any, code: str) -> None:
         super().__init__()
-        self._all = context.eval(HELPERS)
+        self._all = context.eval(code)
         self._guarded = context.eval(f"(all, name) => {GUARD}(all[name])")
 
     def __missing__(self, name: str) -> Any:
