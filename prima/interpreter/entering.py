@@ -18,7 +18,7 @@ from prima.interpreter.elements import (
     Subdialog,
     all_items,
 )
-from prima.interpreter.events import beginnings
+from prima.interpreter.selection import beginnings
 from prima.script.choices import choices
 
 MOST_STEPS = 100_000

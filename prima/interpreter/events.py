@@ -19,7 +19,7 @@ from prima.interpreter.acts import (
     run_commands,
 )
 from prima.interpreter.elements import Acts, Document, Field, Item, all_items
-from prima.interpreter.selection import takes
+from prima.interpreter.selection import beginnings, takes
 from prima.language.commands import DEVICES, WRITTEN
 from prima.language.values import EVENT
 from prima.markup.spans import value_span
@@ -59,8 +59,6 @@ HABITS = {
 """Names that authors expect, with the language's names."""
 DEFAULTS = frozenset(["noinput", "nomatch", "help"])
 """Thrown events that end nothing if unhandled."""
-MOST_PARTS = 20
-"""Maximum number of dots considered in an event's name."""
 MOST_GUESSES = 200
 """Maximum number of handlers of a document checked for misspelt names: each guess takes time."""
 NEAR = 0.8
@@ -80,13 +78,6 @@ class RaisedEvent:
     attribute: str
     fatal: bool
     """Whether it ends the application if no handler takes it."""
-
-
-def beginnings(event: str) -> Iterator[str]:
-    """The names under which handlers take an event: its own, and its prefixes."""
-    parts = event.split(".")
-    yield from (".".join(parts[:count]) for count in range(1, min(len(parts), MOST_PARTS) + 1))
-    yield event
 
 
 def near(word: str, known: Iterable[str]) -> str:

@@ -17,7 +17,7 @@ from prima.interpreter.acts import (
 )
 from prima.interpreter.elements import Block, Field, Form, Item, Unit
 from prima.interpreter.entering import is_left
-from prima.interpreter.events import beginnings
+from prima.interpreter.selection import beginnings
 from prima.markup.tree import Node
 
 

@@ -21,9 +21,9 @@ from prima.interpreter.elements import (
     all_items,
 )
 from prima.interpreter.entering import EnteredDocument, FormTarget, forms_of, is_open
-from prima.interpreter.events import beginnings
 from prima.interpreter.leaving import Leaving, brings_news, cleared_by, goes_by, said_first
 from prima.interpreter.returning import callers_of, calls_again, returns_of, told_again
+from prima.interpreter.selection import beginnings
 from prima.interpreter.ways import Ways
 from prima.markup.tree import Node
 from prima.script.choices import choices

@@ -13,7 +13,7 @@ from prima.errors.diagnoses.behaviour import TOLD_TWICE
 from prima.interpreter.acts import Assign, Handler, Return, all_acts
 from prima.interpreter.elements import Form, Subdialog, all_items
 from prima.interpreter.entering import EnteredDocument, FormTarget, forms_of, is_left
-from prima.interpreter.events import beginnings
+from prima.interpreter.selection import beginnings
 
 REMEDY = (
     "Handle the event here without <return>: the speech then continues. Or give the speech a cond."

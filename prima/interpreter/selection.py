@@ -9,10 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from typing import Generic, NamedTuple, TypeVar
 
 T = TypeVar("T")
+
+MOST_PARTS = 100
+"""Maximum number of dots considered in an event's name."""
 
 
 class Candidate(NamedTuple, Generic[T]):
@@ -55,11 +57,15 @@ def takes(handler_event: str, event: str) -> bool:
     return not handler_event or event == handler_event or event.startswith(f"{handler_event}.")
 
 
-@lru_cache(maxsize=1000)
-def prefixes(event: str) -> tuple[str, ...]:
-    """All names under which an event counts: itself, its prefixes, and the empty one."""
-    parts = event.split(".")
-    return ("", *(".".join(parts[: n + 1]) for n in range(len(parts))))
+def beginnings(event: str) -> list[str]:
+    """The names under which handlers take an event: its prefixes, and its own."""
+    parts = event.split(".", MOST_PARTS)
+    return [".".join(parts[:count]) for count in range(1, len(parts) + 1)]
+
+
+def prefixes(event: str) -> list[str]:
+    """All names under which an event counts: these, and the empty one, which takes all events."""
+    return ["", *beginnings(event)]
 
 
 def taking(

@@ -9,7 +9,8 @@ from prima.devices.profile import Profile
 from prima.errors import Hint, Place, Problem, Span, meant, one_of, suggestion
 from prima.errors.diagnoses.names import UNKNOWN_EVENT, UNSUPPORTED_COMMAND
 from prima.interpreter.elements import Document
-from prima.interpreter.events import STANDARD, KnownEvents, beginnings, event_place, near
+from prima.interpreter.events import STANDARD, KnownEvents, event_place, near
+from prima.interpreter.selection import beginnings
 from prima.interpreter.surroundings import (
     PLACED,
     Sayings,

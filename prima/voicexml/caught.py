@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator
 
 from prima.errors import Problem, Span, meant
 from prima.errors.diagnoses.names import UNKNOWN_EVENT
-from prima.interpreter.events import MOST_GUESSES, STANDARD, beginnings, event_place, slip_of
+from prima.interpreter.events import MOST_GUESSES, STANDARD, event_place, slip_of
+from prima.interpreter.selection import beginnings
 from prima.markup.tree import Node
 
 EVENTS = STANDARD | {

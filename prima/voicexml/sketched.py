@@ -9,8 +9,8 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from prima.errors import Problem
 from prima.interpreter.entering import EnteredDocument
-from prima.interpreter.events import beginnings
 from prima.interpreter.repeats import told_twice
+from prima.interpreter.selection import beginnings
 from prima.interpreter.units import Reached, long_unit, speak, unit_problem, unit_speaks
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.voicexml.acting import commands_in

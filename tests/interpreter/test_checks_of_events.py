@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import tracemalloc
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from prima.interpreter.reader import read_document
+from tests.helpers.bad_input import app
 from tests.helpers.here import prima
 
 
@@ -90,3 +93,16 @@ def test_the_end_of_a_question_has_the_name_of_its_command(tmp_path: Path) -> No
     (found,) = problems(tmp_path, text % "field", "unknown-event")
     assert 'Did you mean "end.q-and-a"?' in found["message"] + found["remedy"]
     assert not problems(tmp_path, text % "q-and-a", "unknown-event")
+
+
+def test_a_name_of_many_parts_takes_no_more_room_than_a_few_of_them() -> None:
+    name = ".".join("a" * 20_000)
+    text = app(
+        f'<form id="f"><on event="touch" reactive="true"><throw event="{name}"/></on></form>'
+    )
+    tracemalloc.start()
+    try:
+        read_document("a.xml", text.encode())
+        assert tracemalloc.get_traced_memory()[1] < 20_000_000
+    finally:
+        tracemalloc.stop()
