@@ -36,6 +36,7 @@ from prima.interpreter.acts import (
     Text,
     Throw,
     all_acts,
+    commands_of,
     run_commands,
 )
 from prima.interpreter.elements import (
@@ -267,7 +268,7 @@ def _runs(contents: list[Sequence[Act]]) -> list[CommandRun]:
 
 def _commands(contents: list[Sequence[Act]]) -> list[CommandTemplate]:
     """The Commands in content."""
-    return [command for run in _runs(contents) for command in run_commands(run.steps)]
+    return [command for content in contents for command in commands_of(content)]
 
 
 def _leaves_at_its_end(items: Sequence[Item]) -> bool:

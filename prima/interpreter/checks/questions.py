@@ -6,14 +6,13 @@ from collections.abc import Iterator
 
 from prima.errors import Diagnosis, Problem
 from prima.interpreter.acts import (
-    CommandRun,
     Exit,
     Goto,
     Handler,
     Return,
     Throw,
     all_acts,
-    run_commands,
+    commands_of,
 )
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Field
@@ -64,9 +63,7 @@ def _leaves(handler: Handler) -> Iterator[Problem]:
     acts = all_acts(handler.content)
     if any(isinstance(act, Goto | Exit | Return | Throw) for act in acts):
         return
-    commands = [
-        one for act in acts if isinstance(act, CommandRun) for one in run_commands(act.steps)
-    ]
+    commands = commands_of(handler.content)
     leaving = [one for one in commands if one.type in TABLE_4_2 and TABLE_4_2[one.type].leaves]
     if leaving and not any(one.type == "active-sensing-human" for one in commands):
         node = leaving[0].node
