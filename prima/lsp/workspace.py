@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from prima.errors import DocumentError
@@ -25,47 +26,38 @@ FRESH_SECONDS = 3.0
 """How long a listing of the workspace is used."""
 
 
-@dataclass(slots=True)
+@dataclass
 class Text:
-    """A document's text, with results computed from it."""
+    """A document's text, with results computed from it once."""
 
     text: str
     version: int | None = None
     stamp: tuple[int, int] = (0, 0)
-    _lines: Lines | None = None
-    _top: ScannedText | None = None
-    _page: ScannedText | None = None
-    _marks: list[Mark] | None = None
 
-    @property
+    @cached_property
     def page(self) -> ScannedText:
         """Its tags."""
-        if self._page is None:
-            self._page = ScannedText(self.text, self.lines)
-            resolve(self._page)
-        return self._page
+        return self._scanned()
 
-    @property
+    @cached_property
     def top(self) -> ScannedText:
         """Its first tag alone, which is found faster."""
-        if self._top is None:
-            self._top = ScannedText(self.text, self.lines, most=1)
-            resolve(self._top)
-        return self._top
+        return self._scanned(most=1)
 
-    @property
+    def _scanned(self, most: int = 0) -> ScannedText:
+        page = ScannedText(self.text, self.lines, most)
+        resolve(page)
+        return page
+
+    @cached_property
     def lines(self) -> Lines:
         """Its lines."""
-        if self._lines is None:
-            self._lines = Lines(self.text)
-        return self._lines
+        return Lines(self.text)
 
-    @property
+    @cached_property
     def marks(self) -> list[Mark]:
         """Its names."""
-        if self._marks is None:
-            self._marks = marks(self.page)
-        return self._marks
+        return marks(self.page)
 
     def data(self) -> bytes:
         """The text as bytes in its declared encoding."""
