@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from prima.markup.tree import Node
 
@@ -226,6 +226,43 @@ class Handler:
 
 HOLDING = frozenset([If, Foreach, CommandRun])
 """Kinds of content that hold other content."""
+
+
+Made = TypeVar("Made")
+Flattened = list[tuple[Made, tuple[int, ...]]]
+"""Steps, each with the indices of those that it waits for."""
+
+
+def arrange(
+    nodes: Iterable[Node],
+    make: Callable[[Node], Made | None],
+    visit: Callable[[Node], None] = lambda _: None,
+) -> Flattened[Made]:
+    """Commands and units one after another (U3).
+
+    Args:
+        nodes: the elements, ``par`` and ``seq`` among them.
+        make: makes a step of a Command or of an ``iu``, if it gives any.
+        visit: is called for each element before what is in it.
+    """
+    found: Flattened[Made] = []
+
+    def add(nodes: Iterable[Node], after: tuple[int, ...]) -> tuple[int, ...]:
+        """Gives what whatever follows has to wait for."""
+        for node in nodes:
+            visit(node)
+            if node.tag == "par":
+                ends = [end for branch in node.nodes for end in add([branch], after)]
+                after = tuple(dict.fromkeys(ends)) or after
+            elif node.tag == "seq":
+                after = add(node.nodes, after)
+            elif (made := make(node)) is not None:
+                found.append((made, after))
+                after = (len(found) - 1,)
+        return after
+
+    add(nodes, ())
+    return found
 
 
 def all_acts(content: Sequence[Act]) -> list[Act]:

@@ -13,6 +13,7 @@ from prima.interpreter.acts import (
     Declare,
     Exit,
     Expression,
+    Flattened,
     Foreach,
     Goto,
     GroupTemplate,
@@ -25,6 +26,7 @@ from prima.interpreter.acts import (
     SendOut,
     StepTemplate,
     Throw,
+    arrange,
     run_commands,
 )
 from prima.interpreter.attributes import AttributeReader
@@ -150,46 +152,35 @@ class ContentBuilder(AttributeReader):
 
     def run(self, nodes: list[Node]) -> CommandRun:
         """Commands that follow one another, flattened into steps."""
-        steps: list[StepTemplate] = []
-        self.sequence(nodes, (), steps)
         self._runs += 1
-        return CommandRun(tuple(steps), nodes[0])
+        return CommandRun(self.steps(nodes), nodes[0])
 
-    def sequence(
-        self, nodes: list[Node], after: tuple[int, ...], steps: list[StepTemplate]
-    ) -> tuple[int, ...]:
-        """Add steps one after another; gives the steps that the next one waits for."""
-        for node in nodes:
-            if node.tag == "par":
-                ends: list[int] = []
-                for branch in node.nodes:
-                    ends += self.sequence([branch], after, steps)
-                after = tuple(ends) or after
-            elif node.tag == "seq":
-                after = self.sequence(node.nodes, after, steps)
-            elif node.tag == "iu":
-                group = self.group(node)
-                if group.steps:
-                    steps.append(StepTemplate(group, after))
-                    after = (len(steps) - 1,)
-            elif node.key:  # unknown or misplaced ones are reported already
-                if steps and self.is_now(node):
-                    self.problems.append(now_inside(node))
-                steps.append(StepTemplate(self.command(node), after))
-                after = (len(steps) - 1,)
-        return after
+    def steps(self, nodes: list[Node]) -> tuple[StepTemplate, ...]:
+        """Commands and units around them as steps."""
+        arranged: Flattened[CommandTemplate | GroupTemplate] = arrange(nodes, self.step)
+        steps = tuple(StepTemplate(what, after) for what, after in arranged)
+        for one in steps[1:]:
+            if isinstance(one.what, CommandTemplate) and self.is_now(one.what.node):
+                self.problems.append(now_inside(one.what.node))
+        return steps
+
+    def step(self, node: Node) -> CommandTemplate | GroupTemplate | None:
+        """A Command, or a unit that holds any; unknown or misplaced ones are reported already."""
+        if node.tag == "iu":
+            group = self.group(node)
+            return group if group.steps else None
+        return self.command(node) if node.key else None
 
     def group(self, node: Node) -> GroupTemplate:
         """A unit around Commands."""
-        steps: list[StepTemplate] = []
-        self.sequence(node.nodes, (), steps)
+        steps = self.steps(node.nodes)
         for command in run_commands(steps):
             problem = unit_problem(Reached(command, True), TABLE_4_2.get(command.type))
             self.problems += [problem] if problem is not None else []
         if not steps and all(one.key for one in node.nodes):
             self.problem(EMPTY_UNIT, node)
         longest = self.value(node, "longest", "duration", LONGEST_UNIT_MS)
-        return GroupTemplate(tuple(steps), longest, node, node.get("restartable") == "true")
+        return GroupTemplate(steps, longest, node, node.get("restartable") == "true")
 
     def command(self, node: Node) -> CommandTemplate:
         """A Command element."""

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import TypeVar
 
 from prima.errors import Hint, Problem, one_of, suggestion
 from prima.errors.diagnoses.behaviour import SHARED_DEVICE
 from prima.errors.diagnoses.reading import TOO_DEEP
 from prima.errors.diagnoses.structure import EMPTY, MISPLACED_ELEMENT, STRAY_TEXT, UNKNOWN_ATTRIBUTE
 from prima.errors.diagnoses.values import BAD_VALUE
-from prima.interpreter.acts import CommandTemplate
+from prima.interpreter.acts import CommandTemplate, arrange
 from prima.interpreter.units import LONGEST_UNIT_MS, Reached, now_inside, unit_problem
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.language.commands import TABLE_4_2
@@ -32,7 +31,6 @@ BESIDE = {"filled": ", with a namelist of its fields"} | dict.fromkeys(
     ("grammar", "link", "property", "var", "script", "data", "subdialog", "transfer", "object"), ""
 )
 """Elements that belong in the form, each with the remedy."""
-Made = TypeVar("Made")
 DEEPEST = 50
 """Maximum nesting of such elements."""
 
@@ -74,38 +72,6 @@ def holds(item: Node, name: str) -> bool:
 
 Queued = Command | Arranged
 """What is played when a wait is reached."""
-
-
-def arrange(
-    nodes: Iterable[Node],
-    make: Callable[[Node], Made],
-    visit: Callable[[Node], None] = lambda _: None,
-) -> list[tuple[Made, tuple[int, ...]]]:
-    """Commands and units one after another, each with the indices of those that it waits for (U3).
-
-    Args:
-        nodes: the elements, ``p:par`` and ``p:seq`` among them.
-        make: makes a step of a Command or of a ``p:iu``.
-        visit: is called for each element before what is in it.
-    """
-    found: list[tuple[Made, tuple[int, ...]]] = []
-
-    def add(nodes: Iterable[Node], after: tuple[int, ...]) -> tuple[int, ...]:
-        """Gives what whatever follows has to wait for."""
-        for node in nodes:
-            visit(node)
-            if node.tag == "par":
-                ends = [end for branch in node.nodes for end in add([branch], after)]
-                after = tuple(dict.fromkeys(ends)) or after
-            elif node.tag == "seq":
-                after = add(node.nodes, after)
-            else:
-                found.append((make(node), after))
-                after = (len(found) - 1,)
-        return after
-
-    add(nodes, ())
-    return found
 
 
 def longest_of(unit: Node) -> int:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from urllib.parse import urldefrag
 
+from prima.interpreter.acts import arrange
 from prima.interpreter.places import source
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Step
 from prima.script.evaluation import Scope
-from prima.voicexml.arranging import ARRANGING, Arranged, Queued, arrange, longest_of, said_last
+from prima.voicexml.arranging import ARRANGING, Arranged, Queued, longest_of, said_last
 from prima.voicexml.cues import MAX_CUES, MAX_NAME, break_ms, later, milliseconds, rate_of
 from prima.voicexml.document import FetchError, Page, of_web
 from prima.voicexml.elements import SILENT
@@ -265,7 +266,7 @@ class Speaker(VoiceEvaluator):
 
     def steps(self, nodes: list[Node], make: Maker) -> list[Step]:
         """Commands and units of them, one after another but for branches (U3)."""
-        made = arrange(
+        made: list[tuple[Command | Group, tuple[int, ...]]] = arrange(
             nodes,
             lambda one: self.unit(one, make) if one.tag == "iu" else make(one),
             self.owner.app.count_step,

@@ -12,10 +12,11 @@ from prima.checks.prices.tags import commands_in, holders, says
 from prima.checks.prices.times import QUESTION
 from prima.devices.profile import Profile
 from prima.devices.voice import duration
+from prima.interpreter.acts import arrange
 from prima.language.commands import TABLE_4_2
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
-from prima.voicexml.arranging import UNIT, arrange, longest_of
+from prima.voicexml.arranging import UNIT, longest_of
 from prima.voicexml.calls import CONNECT_MS, kind_of
 from prima.voicexml.document import VoiceDocument
 from prima.voicexml.elements import HANDLERS
