@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from prima.errors import did_you_mean
 from prima.language.arguments import check_arguments
 from prima.language.commands import LONGEST_TURN_MS, TABLE_4_2, CommandType, too_long
-from prima.messages import NO_DEVICES, Command, Group, OpenUnit, Request, Step
+from prima.messages import NO_DEVICES, Command, Group, OpenUnit, Step
 from prima.scheduler.behavior import GONE, Application, AwaitedRun, Behavior, Inside, Stream
 
 Table = Mapping[str, CommandType]
@@ -214,13 +214,19 @@ class Maker:
         return unit
 
     def chain(
-        self, app: Application, stream: Stream, asked: Request, now: int, unit: Behavior | None
+        self,
+        app: Application,
+        stream: Stream,
+        steps: list[Step],
+        now: int,
+        state: int,
+        run: AwaitedRun | None,
+        unit: Behavior | None,
     ) -> list[Behavior]:
-        """The ABs of a request's steps, linked as they say; roots wait for nothing yet."""
-        run = AwaitedRun(asked.run, len(asked.steps))
+        """The ABs of steps, linked as they say; roots wait for nothing yet."""
         made: list[Behavior] = []
-        for step in asked.steps:
-            ab = self.behavior(app, stream, step.what, now, asked.state, run, unit)
+        for step in steps:
+            ab = self.behavior(app, stream, step.what, now, state, run, unit)
             for index in step.after:
                 link(made[index], ab)
             made.append(ab)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from prima.messages import Command, Data, Group, Notice
+from prima.messages import Command, Data, Notice
+from prima.scheduler.admission import commands_of
 from prima.scheduler.behavior import GONE, RUNNING, Behavior
 from prima.scheduler.mediation import HaltedUnit, Mediation
 
@@ -65,7 +66,7 @@ def _remember_parts(mediation: Mediation, unit: Behavior) -> None:
         return
     left = _parts(unit)
     pending = {id(one) for part in left for one in _pending(part)}
-    every = commands_of(unit.group)
+    every = [*commands_of(unit.group.steps)]
     finished = [command for command in every if id(command) not in pending]
     running = [part for part in left if part.state is RUNNING and part.command is not None]
     told = min(running, key=_speaks_first, default=None)
@@ -77,7 +78,7 @@ def _pending(part: Behavior) -> list[Command]:
     """A part's pending Commands; a unit that has begun is counted by its own parts."""
     if part.command is not None:
         return [part.command]
-    return commands_of(part.group) if part.group is not None and not part.inner else []
+    return [*commands_of(part.group.steps)] if part.group is not None and not part.inner else []
 
 
 def _speaks_first(part: Behavior) -> tuple[bool, int]:
@@ -91,14 +92,6 @@ def _parts(unit: Behavior) -> list[Behavior]:
         part = parts.pop()
         parts += part.inner.values()
         found.append(part)
-    return found
-
-
-def commands_of(group: Group) -> list[Command]:
-    """The Commands of a unit, including those of nested units, in their order."""
-    found: list[Command] = []
-    for step in group.steps:
-        found += commands_of(step.what) if isinstance(step.what, Group) else [step.what]
     return found
 
 

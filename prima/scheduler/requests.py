@@ -12,7 +12,7 @@ from prima.scheduler.admission import (
     parent_in,
     substitute,
 )
-from prima.scheduler.behavior import GONE, Application, Behavior, Stream
+from prima.scheduler.behavior import GONE, Application, AwaitedRun, Behavior, Stream
 from prima.scheduler.endings import cancel, close_unit, withdraw
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.streams import continue_with, drop_hints, going_on, held_of, let_go, opened, x3
@@ -44,7 +44,8 @@ def _take_in(mediation: Mediation, app: Application, asked: Request, unit: Behav
         stream, parent = place(mediation, app, reaction, unit)
     x3(mediation, stream, asked)
     stream.words = asked.words if "x9" in mediation.policy.extensions else None
-    made = mediation.maker.chain(app, stream, asked, mediation.now, unit)
+    run, now = AwaitedRun(asked.run, len(asked.steps)), mediation.now
+    made = mediation.maker.chain(app, stream, asked.steps, now, asked.state, run, unit)
     for ab in made:
         if not ab.waits_for:
             _root(mediation, ab, parent, reaction)

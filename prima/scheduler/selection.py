@@ -252,16 +252,8 @@ def f5(mediation: Mediation) -> None:
 def u4(mediation: Mediation, unit: Behavior) -> None:
     """U4: the Commands of a group become the unit's own ABs when it starts."""
     assert unit.group is not None and unit.inside is not None
-    made: list[Behavior] = []
-    for step in unit.group.steps:
-        ab = mediation.maker.behavior(
-            unit.app, unit.stream, step.what, mediation.now, unit.document_state, None, unit
-        )
-        for index in step.after:
-            ab.waits_for.add(made[index].name)
-            ab.parent = made[index].id
-            made[index].children.append(ab)
-        made.append(ab)
+    steps, now, state = unit.group.steps, mediation.now, unit.document_state
+    for ab in mediation.maker.chain(unit.app, unit.stream, steps, now, state, None, unit):
         unit.inside.members[ab.name] = ab
         mediation.memory.add(ab)
         mediation.recorder.request(ab)
