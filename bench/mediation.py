@@ -39,7 +39,7 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
         for _ in range(CHAIN):
             asked += 1
             step = Step(Command("speak", {}, "Hello."))
-            mediator.request(f"a{app}", Request(asked, [step], 1))
+            mediator.ask(f"a{app}", Request(asked, [step], 1))
 
     times = request_times(waiting + 1)
     for app in range(waiting + 1):

@@ -72,25 +72,19 @@ class Mediator:
             self._all.changed = True
             requests.e2(self._all, app, reason)
 
-    def request(self, name: str, asked: Request) -> None:
-        """U3, E3: an application requests Commands."""
+    def ask(self, name: str, asked: Request | OpenUnit | CloseUnit | LeaveState) -> None:
+        """An application requests Commands, begins or leaves a unit, or leaves a state."""
         self._all.changed = True
-        requests.u3(self._all, self.memory.apps[name], asked)
-
-    def open_unit(self, name: str, asked: OpenUnit) -> None:
-        """U5: a unit that spans questions begins."""
-        self._all.changed = True
-        requests.u5(self._all, self.memory.apps[name], asked)
-
-    def close_unit(self, name: str, asked: CloseUnit) -> None:
-        """U5: the unit is left."""
-        self._all.changed = True
-        endings.close_unit(self._all, self.memory.apps[name], asked.unit)
-
-    def leave_state(self, name: str, asked: LeaveState) -> None:
-        """O3: a state of the document is left."""
-        self._all.changed = True
-        requests.o3(self._all, self.memory.apps[name], asked)
+        app = self.memory.apps[name]
+        match asked:
+            case Request():
+                requests.u3(self._all, app, asked)
+            case OpenUnit():
+                requests.u5(self._all, app, asked)
+            case CloseUnit():
+                endings.close_unit(self._all, app, asked.unit)
+            case LeaveState():
+                requests.o3(self._all, app, asked)
 
     def open_window(self, told: Told) -> None:
         """C3: an application begins to handle a notice."""

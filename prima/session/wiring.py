@@ -176,15 +176,7 @@ class Wiring:
         """Request Commands, a unit or an end from the mediator."""
         if isinstance(action, (Request, OpenUnit)) and action.cause == PROMOTED:
             action.cause = self._promoted
-        match action:
-            case Request():
-                self.mediator.request(app.name, action)
-            case OpenUnit():
-                self.mediator.open_unit(app.name, action)
-            case CloseUnit():
-                self.mediator.close_unit(app.name, action)
-            case LeaveState():
-                self.mediator.leave_state(app.name, action)
+        self.mediator.ask(app.name, action)
 
     def _send(self, app: AnyApp, action: Send) -> None:
         data = {"to": action.service, **action.data}

@@ -99,17 +99,17 @@ class Stage:
         self.runs += 1
         asked = Request(self.runs, steps or chain(*whats), state, cause, unit, hold, connect)
         asked.words, asked.fresh = words, fresh
-        self.mediator.request(app, asked)
+        self.mediator.ask(app, asked)
         return self.runs
 
     def leave(self, app: str, state: int = 1) -> None:
-        self.mediator.leave_state(app, LeaveState(state))
+        self.mediator.ask(app, LeaveState(state))
 
     def open(self, app: str, number: int, *devices: str, longest: int | None = None) -> None:
-        self.mediator.open_unit(app, OpenUnit(number, 1, frozenset(devices), longest))
+        self.mediator.ask(app, OpenUnit(number, 1, frozenset(devices), longest))
 
     def close(self, app: str, number: int) -> None:
-        self.mediator.close_unit(app, CloseUnit(number))
+        self.mediator.ask(app, CloseUnit(number))
 
     # What happens ---------------------------------------------------------------
 

@@ -215,7 +215,7 @@ def test_u5_a_unit_owns_the_devices_of_what_the_profile_adds() -> None:
     camera = replace(TABLE_4_2["turn"], name="take-picture", devices=frozenset({"camera"}))
     stage = Stage(table={**TABLE_4_2, "take-picture": camera})
     asked = OpenUnit(1, 1, frozenset({"speaker"}), types=("take-picture",))
-    stage.mediator.open_unit("fa", asked)
+    stage.mediator.ask("fa", asked)
     stage.select()
     stage.request("ea", Command("take-picture", {"angle": 1}))
     assert stage.select() == []

@@ -160,11 +160,11 @@ class Requester:
                     )
                     asked.fresh = deed.fresh
                     asked.words = command("speak") if deed.words else None
-                    mediator.request(self.name, asked)
+                    mediator.ask(self.name, asked)
                     self._asked, cause = True, None
                 case Open() if self.unit is None:
                     self.unit, self.devices = next(self._numbers), deed.devices
-                    mediator.open_unit(
+                    mediator.ask(
                         self.name,
                         OpenUnit(self.unit, self.state, deed.devices, deed.longest, cause),
                     )
@@ -182,12 +182,12 @@ class Requester:
     def _leave(self, mediator: Mediator) -> None:
         self._close(mediator)
         if self._asked:
-            mediator.leave_state(self.name, LeaveState(self.state))
+            mediator.ask(self.name, LeaveState(self.state))
         self._asked = False
 
     def _close(self, mediator: Mediator) -> None:
         if self.unit is not None:
-            mediator.close_unit(self.name, CloseUnit(self.unit))
+            mediator.ask(self.name, CloseUnit(self.unit))
             self.unit = None
 
     def _steps(self, asked: Ask) -> list[Step]:
