@@ -139,6 +139,8 @@ class _Fetching:
     done: threading.Event = field(default_factory=threading.Event)
     found: Fetched | None = None
     size: int = 0
+    asked: str = ""
+    """The URI requested last: the first one's, or that of a redirection."""
     held: list[socket.socket] = field(default_factory=list)
 
     def wait(self) -> Fetched | None:
@@ -153,10 +155,12 @@ class _Fetching:
     def run(self, method: str, values: Data) -> None:
         """Send the request, and keep the answer or the error."""
         try:
-            data = self._body(form_request(self.uri, method, values))
+            request = form_request(self.uri, method, values)
+            data = self._body(request)
             self.size = len(data)
             self.found = answer("", 0, self.uri, data)
             self.found.host = True
+            self.found.moved = self.asked if self.asked != request.full_url else ""
         except HTTPError as error:
             problem = f"the host answers {error.code}"
             self.found = Fetched("", 0, self.uri, status=error.code, problem=problem)
@@ -189,6 +193,7 @@ class _Fetching:
     def _check(self, request: Request) -> None:
         self.hosts.check(request.full_url)
         self.hosts.count(self.app)
+        self.asked = request.full_url
 
     def _read(self, response: HTTPResponse) -> bytes:
         """An answer's body, unmodified, up to the maximum length of a document."""

@@ -133,7 +133,8 @@ class Fetched:
 
     ``serial`` is the :class:`Send`'s. ``problem`` says why there is no answer; ``status`` is
     a host's, or 0. ``body`` is text which, encoded by ``charset``, gives the resource's bytes.
-    ``host`` is whether a real host has sent it, rather than a service of the scenario.
+    ``host`` is whether a real host has sent it, rather than a service of the scenario; ``moved``
+    is the URI to which that has redirected the request, if it has.
     """
 
     app: str
@@ -144,6 +145,7 @@ class Fetched:
     status: int = 0
     problem: str = ""
     host: bool = False
+    moved: str = ""
 
 
 @dataclass(slots=True)

@@ -71,8 +71,8 @@ def load_page(
 def _read(owner: MachineOwner, uri: str, data: bytes) -> Page:
     """Read a document; one from a host is not part of the folder, whatever URI the folder maps."""
     if uri in owner.hosted:
-        whole = owner.document.outside(uri)
-        return read_page(whole, whole, data)
+        where = owner.hosted[uri]
+        return read_page(where, where, data)
     return read_page(uri, owner.document.seen(uri), data, owner.document.page.site)
 
 
@@ -96,9 +96,9 @@ def fetch(
         missing = "the folder has no such file; " if lacks else ""
         raise Thrown.at(node, name, f"{asked}: {missing}{answer.problem}")
     if answer.host:
-        owner.hosted.add(whole)
+        owner.hosted[whole] = urldefrag(answer.moved)[0] or asked
     else:
-        owner.hosted.discard(whole)
+        owner.hosted.pop(whole, None)
     return _weighed(owner, answer.body.encode(answer.charset), node)
 
 

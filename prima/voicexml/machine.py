@@ -50,8 +50,8 @@ class Machine:
         self.pages: dict[str, Page] = {app.document.page.uri: app.document.page}
         self.resources: dict[str, bytes | Thrown] = {}
         """Resources of grammars that are not files: the bytes, or why they cannot be fetched."""
-        self.hosted: set[str] = set()
-        """Names and URIs that a real host, not a service, has answered."""
+        self.hosted: dict[str, str] = {}
+        """Names and URIs that a real host, not a service, has answered, and where it did."""
         self.queue: list[Queued] = []
         """Prompts and Commands that are played when a wait is reached (4.1.8)."""
         self.asking: Node | None = None

@@ -230,8 +230,8 @@ class MachineOwner(Protocol):
     """Documents by their URIs."""
     resources: dict[str, bytes | Thrown]
     """Resources of grammars that are not files: the bytes, or why they cannot be fetched."""
-    hosted: set[str]
-    """Names and URIs that a real host, not a service, has answered."""
+    hosted: dict[str, str]
+    """Names and URIs that a real host, not a service, has answered, and where it did."""
     queue: list[Queued]
     """Prompts and Commands that are played when a wait is reached (4.1.8)."""
     asking: Node | None

@@ -311,10 +311,14 @@ class Host(BaseHTTPRequestHandler):
     """Answers as a test wants."""
 
     def do_GET(self) -> None:
-        if self.path.startswith("/away"):
+        moved = {"/away": "http://other.example/", "/moved": "/deep/page"}
+        if where := moved.get(self.path.partition("?")[0]):
             self.send_response(302)
-            self.send_header("Location", "http://other.example/")
+            self.send_header("Location", where)
             self.end_headers()
+            return
+        if self.path == "/deep/page":
+            self._give(vxml(block('<goto next="beside"/>')))
             return
         if self.path.startswith("/none"):
             self.send_error(404)
@@ -323,6 +327,9 @@ class Host(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         body = self.rfile.read(int(self.headers["Content-Length"])).decode()
+        if self.path == "/moved":
+            self.do_GET()
+            return
         self._give(vxml(block(f"You sent {body.replace('&', '&amp;')}.")))
 
     def _give(self, text: str) -> None:
@@ -376,6 +383,13 @@ def test_no_host_is_asked_that_the_run_does_not_allow(place: Path, host: str) ->
 def test_a_redirection_leads_to_no_other_host(place: Path, host: str) -> None:
     (said,) = run(place, submit(host, "/away"), "", [host])
     assert 'add "--allow-host other.example"' in said
+
+
+@pytest.mark.parametrize("method", ["get", "post"])
+def test_relative_names_in_a_document_that_has_moved_are_of_its_new_place(
+    place: Path, host: str, method: str
+) -> None:  # RFC 3986, 5.1.3
+    assert run(place, submit(host, "/moved", method), "", [host]) == ["You asked /deep/beside."]
 
 
 def test_a_hosts_refusal_has_its_status(place: Path, host: str) -> None:
