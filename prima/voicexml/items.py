@@ -205,8 +205,11 @@ def _slot(item: Node) -> str:
 
 
 def slot_of(found: Json, path: str, otherwise: Any) -> Any:
-    """A slot's value in an interpretation, which may be null; a path may have dots (3.1.6)."""
-    for part in path.split("."):
+    """A slot's value in an interpretation, which may be null.
+
+    A name with dots is a property's whole name or else a path to one further in (3.1.6, C).
+    """
+    for part in [path] if isinstance(found, dict) and path in found else path.split("."):
         if not isinstance(found, dict) or part not in found:
             return otherwise
         found = found[part]

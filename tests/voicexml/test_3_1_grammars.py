@@ -169,6 +169,15 @@ def test_a_slot_picks_a_part_of_the_meaning() -> None:  # 3.1.6
 
 
 @pytest.mark.parametrize(
+    "held", ["{}<field name='f' slot='size.n'/>", "<field name='f' slot='size.n'>{}</field>"]
+)
+def test_a_slot_with_dots_may_name_a_property_itself(held: str) -> None:  # C
+    taken = grammar("big", "out = {'size.n': 3, size: {n: 4}}")
+    text = f"<form>{held.format(taken)}<block>{holds('f === 3')}</block></form>"
+    assert run(text, "big").logs() == ["pass"]
+
+
+@pytest.mark.parametrize(
     "held",
     [
         "{}<field name='n'><prompt>Which?</prompt></field>",
