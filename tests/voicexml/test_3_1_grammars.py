@@ -232,7 +232,7 @@ def test_a_meaning_without_the_fields_slot_is_the_fields_whole_value() -> None: 
 
 
 def test_a_private_rule_does_not_listen_for_a_document() -> None:  # SRGS 3.2
-    abnf = "#ABNF 1.0; language en; root $one; public $one = no; private $two = big;"
+    abnf = "#ABNF 1.0;\nlanguage en; root $one; public $one = no; private $two = big;"
     call = Call(
         '<catch event="error.badfetch"><log>refused</log><exit/></catch><form><field name="q">'
         '<prompt>Well?</prompt><grammar src="a.gram#two" type="application/srgs"/></field></form>',
