@@ -48,8 +48,6 @@ class Piped:
     def __init__(self) -> None:
         self._held = b""
         self._over = sys.stdin is None
-        self._cut = False
-        """Whether the rest of a line is skipped."""
 
     def line(self, wait: float | None) -> str | None:
         """See :class:`Typist`."""

@@ -71,8 +71,6 @@ class AB:
     """When its last parent ended or was cancelled."""
     interrupted: bool = False
     """Whether it has to start again from its beginning (X2)."""
-    broken: bool = False
-    """Whether a loop of it was cut since it started, so that it starts afresh (U2)."""
     content: list[Record] = field(default_factory=list)
     """The requests inside the unit since it started from its beginning."""
     before: list[Record] = field(default_factory=list)

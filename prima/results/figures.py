@@ -186,9 +186,9 @@ def _row(found: ValueSummary, scale: Scale, y: float) -> list[str]:
     ]
 
 
-def _middle(x: float, y: float, what: str, kind: str = "") -> str:
+def _middle(x: float, y: float, what: str) -> str:
     """A line of text around a place."""
-    return text(x - measure(what) / 2.15, y, what, kind)
+    return text(x - measure(what) / 2.15, y, what)
 
 
 # Orders ----------------------------------------------------------------------------------

@@ -44,13 +44,6 @@ class ValueSummary:
     median: float
     upper: float
     most: float
-    bootstrapped: bool
-    """Whether the interval is bootstrapped; else it is that of the normal distribution."""
-
-    @property
-    def constant(self) -> bool:
-        """Whether all values are the same."""
-        return self.least == self.most
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +87,7 @@ def summary(values: Values) -> ValueSummary | None:
     known = values[~np.isnan(values)]
     if not len(known):
         return None
-    low, high, drawn = interval(known)
+    low, high = interval(known)
     lower, median, upper = np.quantile(known, [0.25, 0.5, 0.75])
     spread = float(np.std(known, ddof=1)) if len(known) > 1 else 0.0
     return ValueSummary(
@@ -109,12 +102,11 @@ def summary(values: Values) -> ValueSummary | None:
         float(median),
         float(upper),
         float(known.max()),
-        drawn,
     )
 
 
-def interval(known: Values) -> tuple[float, float, bool]:
-    """The 95 % interval of a mean, and whether it is bootstrapped.
+def interval(known: Values) -> tuple[float, float]:
+    """The 95 % interval of a mean.
 
     It is the percentile bootstrap's. Drawing values with replacement means drawing how often each
     distinct value occurs, so equal values cost nothing. If there are too many distinct ones, the
@@ -123,15 +115,15 @@ def interval(known: Values) -> tuple[float, float, bool]:
     distinct, counts = np.unique(known, return_counts=True)
     size = len(known)
     if len(distinct) == 1:
-        return float(distinct[0]), float(distinct[0]), True
+        return float(distinct[0]), float(distinct[0])
     tail = (1 - LEVEL) / 2
     if len(distinct) > MOST_DISTINCT:
         half = float(stats.norm.ppf(1 - tail) * np.std(known, ddof=1) / np.sqrt(size))
-        return float(np.mean(known)) - half, float(np.mean(known)) + half, False
+        return float(np.mean(known)) - half, float(np.mean(known)) + half
     drawn = np.random.default_rng(SEED).multinomial(size, counts / size, size=RESAMPLES)
     means = (drawn * distinct).sum(axis=1) / size
     low, high = np.quantile(means, [tail, 1 - tail])
-    return float(low), float(high), True
+    return float(low), float(high)
 
 
 def compare(values: Values, groups: Groups, names: Sequence[str]) -> FactorTest | Untested:

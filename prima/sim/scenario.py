@@ -53,7 +53,6 @@ class Scenario:
     """A run's script. Paths are as written, relative to the scenario's file."""
 
     id: str
-    title: str
     world: str
     robot: str
     until: int
@@ -133,7 +132,6 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
     seed = reader.get(root, "seed")
     scenario = Scenario(
         id=root.get("id"),
-        title=root.get("title"),
         world=root.get("world"),
         robot=root.get("robot"),
         until=UNTIL_MS if until is None else until,
