@@ -9,8 +9,8 @@ from typing import IO, TYPE_CHECKING
 
 from prima.api.transcripts import Transcript, ends_early, read, records_of
 from prima.errors import UsageError, did_you_mean
-from prima.loading.heads import VERSION
 from prima.messages import Record
+from prima.version import __version__
 
 if TYPE_CHECKING:
     from prima.exports import Exported
@@ -56,9 +56,9 @@ def export(
     if isinstance(output, str | Path):
         made.parts()  # may raise, before a file is overwritten
         with _output(Path(output), name) as stream:
-            write(to, made, records([]), tags, VERSION, stream)
+            write(to, made, records([]), tags, __version__, stream)
     else:
-        write(to, made, records([]), tags, VERSION, output)
+        write(to, made, records([]), tags, __version__, output)
     early = ends_early(name, made.end / 1000) if made.head and not made.over and not cut else ""
     return Exported(len(made.tiers), made.marks, made.end / 1000, " ".join(cut), early)
 

@@ -32,6 +32,7 @@ from prima.cli.common import (
     why_option,
     write_for_programs,
 )
+from prima.cli.progress import print_records
 from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
@@ -166,7 +167,7 @@ def _run(visit: Visit, why: bool, as_json: bool) -> None:
     """Carry out a run, with its rows on stdout."""
     if as_json:
         write_for_programs()
-    sink = _write if as_json else Rows(visit, why)
+    sink = print_records if as_json else Rows(visit, why)
     visit.run(sink, lambda text: tell(f"prima: {text}"))
     session = visit.loop.session
     for failure in session.failures:
@@ -178,15 +179,6 @@ def _run(visit: Visit, why: bool, as_json: bool) -> None:
         raise Exit(INTERRUPTED)
     if session.failures:
         raise Exit(3)
-
-
-def _write(records: list[Record]) -> None:
-    """Records as JSON lines, to stdout."""
-    from prima.transcript.lines import line
-
-    for record in records:
-        sys.stdout.write(line(record))
-    sys.stdout.flush()
 
 
 class Rows:

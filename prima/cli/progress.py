@@ -1,4 +1,4 @@
-"""The progress of runs, shown while they are made and written."""
+"""The records of runs, and their progress, shown while they are made and written."""
 
 from __future__ import annotations
 
@@ -14,9 +14,18 @@ from prima.errors import UsageError
 
 if TYPE_CHECKING:
     from prima.api import Transcript
+    from prima.messages import Record
 
 PROGRESS_SECONDS = 0.5
 """How often the progress of a long run is shown."""
+
+
+def print_records(records: list[Record]) -> None:
+    """Print the records of an instant as JSON lines."""
+    from prima.transcript.lines import line
+
+    sys.stdout.writelines(map(line, records))
+    sys.stdout.flush()
 
 
 def run_into(output: str, rehearse: Callable[[Any], Transcript]) -> Transcript:

@@ -24,10 +24,10 @@ from prima.cli.common import (
     why_option,
     write_for_programs,
 )
+from prima.cli.progress import print_records
 from prima.cli.screen import TerminalScreen
 from prima.cli.terminal import Keyboard, PausingClock, Piped, Typist, edit_lines, ending_well
 from prima.errors import TOO_MUCH, RunError, UsageError
-from prima.language.commands import PATIENCE_MS
 from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def talk(
     folder = os.path.dirname(scenario or "")
     json = form == "json"
     web = fetcher(list(hosts), len(loaded.cast.documents))
-    game = Game(loaded, folder, policy, scripted, web, _write if json else None)
+    game = Game(loaded, folder, policy, scripted, web, print_records if json else None)
     terminal = _is_terminal()
     screen = TerminalScreen(game, why, json, terminal)
     names = loaded.files if scenario is not None else [*loaded.files][1:]
@@ -112,7 +112,7 @@ def talk(
         conversation.check_target(target)
     if json:
         write_for_programs()
-        _write([_head(game, loaded)])
+        print_records([_head(game, loaded)])
     _greet(game, screen)
     with ending_well(lambda: _keep(conversation, target)):
         try:
@@ -184,36 +184,15 @@ def _keep(conversation: Conversation, target: str | None) -> None:
         tell(f"Saved {target}.")
 
 
-def _write(records: list[Record]) -> None:
-    """Records as JSON lines, to stdout."""
-    from prima.transcript.lines import line
-
-    for record in records:
-        sys.stdout.write(line(record))
-    sys.stdout.flush()
-
-
 def _head(game: Game, loaded: Loaded) -> Record:
     """The first record, without the scenario's digest, since its user is replaced."""
-    from prima.loading.heads import VERSION
+    from prima.loading import Loaded
+    from prima.loading.heads import run_record
 
-    scenario = game.cast.scenario
     own = os.path.basename(loaded.cast.scenario.node.source.file)
-    return {
-        "time": 0,
-        "phase": "run",
-        "actor": "mediator",
-        "data": {
-            "version": VERSION,
-            "scenario": scenario.id,
-            "policy": game.policy,
-            "bound": None,
-            **({} if scenario.patience == PATIENCE_MS else {"patience": scenario.patience / 1000}),
-            "date": scenario.date,
-            "applications": [doc.id for doc in game.cast.documents],
-            "files": {name: digest for name, digest in loaded.files.items() if name != own},
-        },
-    }
+    files = {name: digest for name, digest in loaded.files.items() if name != own}
+    played = Loaded(game.cast, files)
+    return run_record(played, game.policy, None, game.cast.scenario.patience)
 
 
 def _greet(game: Game, screen: TerminalScreen) -> None:

@@ -9,8 +9,7 @@ from prima.language.commands import ABSENCE_MS, PATIENCE_MS
 from prima.loading import Loaded, favourite_problem
 from prima.messages import Json, Record
 from prima.scheduler.policy import Policy, policy_named
-
-VERSION = "1.0.0"
+from prima.version import __version__
 
 
 def chosen_policy(name: str, loaded: Loaded) -> Policy:
@@ -44,7 +43,7 @@ def run_record(
         "phase": "run",
         "actor": "mediator",
         "data": {
-            "version": VERSION,
+            "version": __version__,
             "scenario": cast.scenario.id,
             "policy": policy,
             "bound": bound,

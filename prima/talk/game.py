@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from prima.errors import UsageError, one_of
 from prima.grammar.phrases import phrases
 from prima.language.values import LONGEST_MS
-from prima.loading import Loaded, favourite_problem
+from prima.loading import Loaded
+from prima.loading.heads import chosen_policy
 from prima.messages import Record
 from prima.scheduler.behavior import Behavior
-from prima.scheduler.policy import policy_named
 from prima.sim.devices import Cast
 from prima.sim.rehearsal import Rehearsal
 from prima.sim.services import Web
@@ -73,9 +73,7 @@ class Game:
     ) -> None:
         cast = loaded.cast
         self.policy = policy or cast.scenario.policy
-        self._chosen = policy_named(self.policy)
-        if problem := favourite_problem(self.policy, cast.documents):
-            raise UsageError(f"{problem[0]} {problem[1].text}")
+        self._chosen = chosen_policy(self.policy, loaded)
         self.scene = Scene(cast.scenario.node, folder, self.policy, scripted)
         scenario = scenario_of(self.scene, [])
         scenario.services = cast.scenario.services  # with their answers
