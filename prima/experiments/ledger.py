@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import stat
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +13,6 @@ from prima.version import __version__
 
 MOST_LEDGER = 1_000_000
 """Maximum length of a ledger (characters)."""
-MOST_DIGESTS = 10_000
-"""Maximum number of digests in memory."""
 KEPT = (
     "policy", "exit", "ended", "records", "seconds", "streams_broken", "collisions",
     "reactions", "reaction_mean", "reaction_max",
@@ -43,23 +40,13 @@ class InputDigests:
     head = text
 
 
-_digests: dict[tuple[str, int, int, int], str] = {}
-"""Digests of files by path, modification time, size and inode."""
-
-
 def file_digest(path: str | Path) -> str | None:
     """A file's SHA-256, or None if there is no such file."""
     try:
-        state = os.stat(path)
-        if not stat.S_ISREG(state.st_mode):
+        if not os.path.isfile(path):
             return None
-        key = (str(path), state.st_mtime_ns, state.st_size, state.st_ino)
-        if key not in _digests:
-            if len(_digests) >= MOST_DIGESTS:
-                _digests.clear()
-            with open(path, "rb") as stream:
-                _digests[key] = hashlib.file_digest(stream, "sha256").hexdigest()
-        return _digests[key]
+        with open(path, "rb") as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
     except (OSError, ValueError):
         return None
 
