@@ -14,7 +14,6 @@ from prima.errors.visible import visible
 WIDEST = 100
 """Maximum width of a source line."""
 COLOURS: dict[Severity, str] = {"error": "31", "warning": "33", "note": "36"}
-LEVELS: dict[Severity, str] = {"error": "error", "warning": "warning", "note": "note"}
 TOKEN = re.compile(r"""<[^\s/>]*|"[^"]*"?|'[^']*'?|[^\s<>"'=]+|\S""")
 SARIF_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
@@ -54,23 +53,23 @@ def excerpt(line: str, column: int) -> tuple[str, str]:
     if len(line) > WIDEST and start > WIDEST // 2:
         cut = start - WIDEST // 2
     shown = line[cut : cut + WIDEST]
-    before = "".join(map(_blank, shown[: start - cut]))
-    marked = sum(_width(letter) for letter in shown[start - cut : start - cut + length])
-    head, tail = "..." if cut else "", "..." if cut + WIDEST < len(line) else ""
     plain = visible(shown, "\t")
+    before = "".join(map(_blank, plain[: start - cut]))
+    marked = sum(map(columns_of, plain[start - cut : start - cut + length]))
+    head, tail = "..." if cut else "", "..." if cut + WIDEST < len(line) else ""
     return f"{head}{plain}{tail}", f"{' ' * len(head)}{before}^{'~' * (max(marked, 1) - 1)}"
 
 
-def _width(letter: str) -> int:
-    """The width of a character in columns of a terminal."""
-    if unicodedata.combining(letter):
+def columns_of(letter: str) -> int:
+    """The width of a character in columns of a terminal: 0 if it combines with the one before it."""
+    if unicodedata.category(letter) in ("Mn", "Me", "Cf"):
         return 0
     return 2 if unicodedata.east_asian_width(letter) in "WF" else 1
 
 
 def _blank(letter: str) -> str:
     """The padding under a character: a tab under a tab."""
-    return "\t" if letter == "\t" else " " * _width(letter)
+    return "\t" if letter == "\t" else " " * columns_of(letter)
 
 
 def problem_data(problem: Problem) -> dict[str, Any]:
@@ -121,7 +120,7 @@ def _result(problem: Problem, rule: int) -> dict[str, Any]:
     result = {
         "ruleId": problem.code,
         "ruleIndex": rule,
-        "level": LEVELS[problem.severity],
+        "level": problem.severity,
         "message": {"text": f"{problem.message} {problem.remedy}".strip()},
         "locations": [{"physicalLocation": {"artifactLocation": file, "region": region}}],
     }

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from prima.errors.rendering import columns_of
 from prima.errors.visible import visible
 from prima.transcript.row import Row
 
@@ -27,14 +27,7 @@ def width(text: str) -> int:
     """The width of a text in columns of a terminal."""
     if text.isascii():
         return len(text)
-    return sum(map(_columns, text))
-
-
-def _columns(letter: str) -> int:
-    """The width of a character: 0 if it combines with the one before it."""
-    if unicodedata.category(letter) in ("Mn", "Me", "Cf"):
-        return 0
-    return 2 if unicodedata.east_asian_width(letter) in "WF" else 1
+    return sum(map(columns_of, text))
 
 
 def _pad(text: str, columns: int) -> str:
@@ -132,11 +125,11 @@ def _cut(word: str, columns: int) -> list[str]:
     pieces = []
     while width(word) > columns:
         end = taken = 0
-        while taken + _columns(word[end]) <= columns:
-            taken += _columns(word[end])
+        while taken + columns_of(word[end]) <= columns:
+            taken += columns_of(word[end])
             end += 1
         for _ in range(min(MOST_KEPT, end - 1)):
-            if word[end] not in CLOSING and _columns(word[end]):
+            if word[end] not in CLOSING and columns_of(word[end]):
                 break
             end -= 1
         pieces.append(word[:end])
@@ -182,7 +175,7 @@ def _spread(line: str) -> str:
         return line
     made = ""
     for letter in line:
-        taken = _columns(letter)
+        taken = columns_of(letter)
         if taken:
             made += letter + "\0" * (taken - 1)
     return made
