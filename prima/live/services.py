@@ -31,7 +31,6 @@ from prima.sim.services import (
     fetched_of,
     host_of,
     not_allowed,
-    serial_of,
 )
 from prima.sim.telephone import Telephone
 
@@ -164,7 +163,7 @@ class LiveServices:
             raise Unfit(not_allowed(uri))
         asking = self._web(order.app, uri, data["method"], data["params"])
         found = await in_thread(asking) or Fetched("", 0, uri, problem=NO_ANSWER)
-        found.app, found.serial = order.app, serial_of(order)
+        found.app, found.serial = order.app, order.serial
         return found
 
     async def _fetch(self, endpoint: Endpoint, order: Order, params: Data) -> Inbound:
@@ -173,7 +172,7 @@ class LiveServices:
         where = endpoint.uri if uri.startswith(SCHEME) else uri
         repeats = method == "get" or endpoint.repeats
         body = await self._ask(endpoint, lambda: form_request(where, method, params), repeats)
-        found = answer(order.app, serial_of(order), uri, body)
+        found = answer(order.app, order.serial, uri, body)
         found.host = True
         return found
 

@@ -34,6 +34,11 @@ class Order:
     """For ``send``: the service and what it is sent. For a ``start`` after an interruption: the
     mark to go on from, as the device told it (:class:`Halted`)."""
 
+    @property
+    def serial(self) -> int:
+        """The serial number of an application's message (``send``)."""
+        return int(self.behavior.rpartition("!")[2])
+
 
 @dataclass(slots=True, eq=False)
 class Notice:

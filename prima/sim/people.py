@@ -77,8 +77,6 @@ class People:
         self._playing: list[TriggeredScript] = []
         """What is being done at this instant and is not in the heap meanwhile."""
         self._serial = 0
-        self._listens = False
-        """Whether anything waits for what is said."""
         self._texts: dict[str, str] = {}
         """The texts of the behaviours that are under way."""
         self._following: dict[str, float] = {}
@@ -89,7 +87,6 @@ class People:
                 self._begin(when.doings, time, False, when.person)
             for phase in PHASES.get(when.trigger, ()):
                 self._awaited.setdefault(phase, []).append((index, when))
-            self._listens = self._listens or when.trigger in ("asked", "said")
 
     def _begin(
         self, doings: list[Doing], time: int, triggered: bool, who: str = "", number: int = 1
@@ -125,12 +122,12 @@ class People:
         """Observe what has happened, and react to it after a delay."""
         for record in records:
             phase = record["phase"]
-            if phase == "start" and self._listens and record.get("text"):
+            if phase == "start" and record.get("text"):
                 self._texts[record["behavior"].partition(".")[0]] = record["text"]
             for index, when in self._awaited.get(phase, ()):
                 if self._is(when, phase, record):
                     self._trigger(index, when, now)
-            if self._texts and phase in OVER and record.get("outcome") != "again":
+            if phase in OVER and record.get("outcome") != "again":
                 self._texts.pop(str(record.get("behavior")).partition(".")[0], None)
 
     def _trigger(self, index: int, when: When, now: int) -> None:
@@ -174,15 +171,14 @@ class People:
     def collect(self, now: int) -> list[Inbound]:
         """Everything that the scenario's script does at ``now``."""
         made: list[Inbound] = []
-        if self._scripts and self._scripts[0].time <= now:
-            while self._scripts and self._scripts[0].time <= now:
-                self._playing.append(heappop(self._scripts))
-            for script in self._playing:
-                made += self._go_on(script, now)
-            for script in self._playing:
-                if script.left or script.speaking:
-                    heappush(self._scripts, script)
-            self._playing.clear()
+        while self._scripts and self._scripts[0].time <= now:
+            self._playing.append(heappop(self._scripts))
+        for script in self._playing:
+            made += self._go_on(script, now)
+        for script in self._playing:
+            if script.left or script.speaking:
+                heappush(self._scripts, script)
+        self._playing.clear()
         return made
 
     def follow(self) -> None:

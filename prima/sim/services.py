@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from bisect import insort
 from collections.abc import Callable, Iterable
-from heapq import heappop, heappush
 from html import escape
+from operator import itemgetter
 from typing import Generic, Protocol, TypeVar
 from urllib.parse import urlsplit
 
@@ -88,10 +89,10 @@ class Services:
         self._services = Directory(services)
         self._web = web
         self._asked: dict[tuple[str, str], int] = {}
-        self._pending: list[tuple[int, int, Occurred | Fetched]] = []
+        self._pending: list[tuple[int, Occurred | Fetched]] = []
+        """What arrives and when, by time."""
         self._begun: list[tuple[int, Order, Answering]] = []
         """Pending requests to hosts: since when, and what waits for the answer."""
-        self._serial = 0
 
     def order(self, now: int, order: Order) -> None:
         """Take a message to a service, or a fetch."""
@@ -123,7 +124,7 @@ class Services:
         problem = not_allowed(uri)
         if uri.startswith(SCHEME):
             problem = self._services.lacking(uri)
-        self._later(now, 1, Fetched(order.app, serial_of(order), uri, problem=problem))
+        self._later(now, 1, Fetched(order.app, order.serial, uri, problem=problem))
 
     def _wait(self, now: int) -> None:
         """Wait, in real time, for what hosts were asked before this instant."""
@@ -132,18 +133,17 @@ class Services:
             found, after = asking(), 1
             if found is None:
                 found, after = Fetched("", 0, order.data["to"], problem=NO_ANSWER), SILENCE
-            found.app, found.serial = order.app, serial_of(order)
+            found.app, found.serial = order.app, order.serial
             self._later(asked, after, found)
 
     def _later(self, now: int, after: int, value: Occurred | Fetched) -> None:
-        self._serial += 1
-        heappush(self._pending, (now + after, self._serial, value))
+        insort(self._pending, (now + after, value), key=itemgetter(0))
 
     @property
     def owed(self) -> set[str]:
         """The applications to which an answer is under way."""
         begun = {order.app for _, order, _ in self._begun}
-        return begun | {value.app or "" for _, _, value in self._pending}
+        return begun | {value.app or "" for _, value in self._pending}
 
     def due(self) -> int | None:
         """When the next answer arrives, if any is under way."""
@@ -158,13 +158,8 @@ class Services:
         self._wait(now)
         arrived: list[Inbound] = []
         while self._pending and self._pending[0][0] <= now:
-            arrived.append(heappop(self._pending)[2])
+            arrived.append(self._pending.pop(0)[1])
         return arrived
-
-
-def serial_of(order: Order) -> int:
-    """The serial of an application's message."""
-    return int(order.behavior.rpartition("!")[2])
 
 
 def is_below(uri: str, base: str) -> bool:
@@ -184,7 +179,7 @@ def event_of(order: Order, reply: Reply) -> Occurred:
 
 def fetched_of(order: Order, reply: Reply) -> Fetched:
     """A reply as the answer to a fetch."""
-    serial, uri = serial_of(order), order.data["to"]
+    serial, uri = order.serial, order.data["to"]
     if reply.error:
         return Fetched(order.app, serial, uri, status=reply.status, problem=reply.error)
     return answer(order.app, serial, uri, reply.body or _xml(reply.data))

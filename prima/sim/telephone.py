@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from bisect import insort
 from collections.abc import Iterable
-from heapq import heappop, heappush
+from operator import itemgetter
 
 from prima.messages import Inbound, Order, Transferred
 from prima.sim.happenings import AT_ONCE, UNANSWERED, CallTransfer
@@ -22,12 +23,11 @@ class Telephone:
         self._seed = seed
         self._transfers = list(transfers)
         self._made: dict[str, int] = {}
-        self._pending: list[tuple[int, int, Transferred]] = []
-        self._serial = 0
+        self._pending: list[tuple[int, Transferred]] = []
+        """What is reported and when, by time."""
 
     def order(self, now: int, order: Order) -> None:
         """Make a call, or end one."""
-        serial = int(order.behavior.rpartition("!")[2])
         if order.data["transfer"] == "over":
             self._hang_up(order.app, order.data["call"])
             return
@@ -38,10 +38,10 @@ class Telephone:
             first, then = ANSWERED, call.outcome
         made = self._made.get(call.to, 1)
         begins = now + max(call.after.ms(self._seed, made), 1)
-        self._later(begins, Transferred(order.app, serial, uri, first))
+        self._later(begins, Transferred(order.app, order.serial, uri, first))
         if then and kind == "bridge":
             ends = begins + max(call.lasts.ms(self._seed, made), 1)
-            self._later(ends, Transferred(order.app, serial, uri, then))
+            self._later(ends, Transferred(order.app, order.serial, uri, then))
 
     def _of(self, uri: str) -> CallTransfer | None:
         """How the next call to a destination goes: the longest matching prefix wins, in order."""
@@ -55,13 +55,12 @@ class Telephone:
 
     def _hang_up(self, app: str, serial: int) -> None:
         """Drop a call, with its pending reports."""
-        self._pending = sorted(
-            one for one in self._pending if (one[2].app, one[2].serial) != (app, serial)
-        )
+        self._pending = [
+            one for one in self._pending if (one[1].app, one[1].serial) != (app, serial)
+        ]
 
     def _later(self, time: int, value: Transferred) -> None:
-        self._serial += 1
-        heappush(self._pending, (time, self._serial, value))
+        insort(self._pending, (time, value), key=itemgetter(0))
 
     def due(self) -> int | None:
         """When the next report on a call is due, if ever."""
@@ -71,5 +70,5 @@ class Telephone:
         """The reports on calls at ``now``."""
         arrived: list[Inbound] = []
         while self._pending and self._pending[0][0] <= now:
-            arrived.append(heappop(self._pending)[2])
+            arrived.append(self._pending.pop(0)[1])
         return arrived

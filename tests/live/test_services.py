@@ -152,7 +152,7 @@ def asked(path: Path, data: Mapping[str, Any], environment: Mapping[str, str] = 
             tasks.append(asyncio.ensure_future(what))
 
         services.run = cast(Any, SimpleNamespace(now=lambda: 5, wake=woken.set, spawn=spawn))
-        order = cast(Order, SimpleNamespace(app="a", behavior="a!7", data=data, verb="send"))
+        order = Order("send", "a!7", app="a", data=data)
         began = time.monotonic()
         services.order(1, order)
         assert time.monotonic() - began < 0.2
