@@ -13,7 +13,7 @@ from prima.errors import UsageError
 from prima.errors.visible import visible
 from prima.messages import Json
 from prima.scheduler import policy as known
-from prima.transcript.criteria import Criteria, shown_time
+from prima.transcript.criteria import CRITERIA, Criteria, shown_time
 from prima.transcript.diff import compare
 from prima.transcript.observer import observe
 from prima.transcript.row import Row
@@ -133,7 +133,7 @@ def format_csv(results: Iterable[StudyResult]) -> str:
     names = [one.name for one in fields(StudyResult) if one.name != "criteria"]
     writer = csv.DictWriter(
         made,
-        [*names, *(one.name for one in fields(Criteria) if one.name != "delays")],
+        [*names, *CRITERIA],
         lineterminator="\n",
         extrasaction="ignore",
     )

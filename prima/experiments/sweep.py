@@ -330,11 +330,11 @@ class Output:
                 return
 
 
-def estimate(sweep: Sweep, workers: int, runs: int = 10) -> str:
-    """Estimates a sweep's duration and the size of its table, from a few runs across the plan."""
+def estimate(sweep: Sweep, workers: int) -> str:
+    """Estimates a sweep's duration and the size of its table, from ten runs across the plan."""
     from time import perf_counter
 
-    chosen = [sweep.at(number) for number in range(0, len(sweep), -(-len(sweep) // runs))]
+    chosen = [sweep.at(number) for number in range(0, len(sweep), -(-len(sweep) // 10))]
     sweep.stage.run(chosen[0])  # the first one of a process is much slower
     begin = perf_counter()
     size = sum(len(line(sweep.row(one, sweep.stage.run(one), "x"))) for one in chosen)

@@ -14,8 +14,8 @@ from typing import IO, TYPE_CHECKING, Any
 from prima.errors import UsageError
 from prima.errors.visible import harmless, unharmed
 from prima.experiments.levels import Factor
-from prima.experiments.variants import CRITERIA
 from prima.messages import Json
+from prima.transcript.criteria import CRITERIA
 from prima.version import __version__
 
 if TYPE_CHECKING:

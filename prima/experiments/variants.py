@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,7 @@ from prima.experiments.kept import Kept
 from prima.experiments.scenariotext import ScenarioText, Variant
 from prima.interpreter.elements import Document
 from prima.loading import Loaded, load_text, with_robot, with_scenario
+from prima.loading.applications import digest
 from prima.loading.files import Files, in_place_of_files, read_file
 from prima.loading.writing import write_whole
 from prima.markup.collecting import seldom_collected
@@ -29,14 +30,13 @@ from prima.sim.paths import ScenarioValue
 from prima.testing.checking import Failure, check
 from prima.testing.facts import make_run
 from prima.testing.tracing import states_of
-from prima.transcript.criteria import Criteria
+from prima.transcript.criteria import CRITERIA
 from prima.transcript.row import Row
 
 MOST_LOADED = 64
 """Maximum number of combinations of documents, worlds and robots kept loaded."""
 MOST_MESSAGE = 1_000
 """Maximum length of a run's messages (characters)."""
-CRITERIA = [one.name for one in fields(Criteria) if one.name != "delays"]
 
 
 @dataclass(slots=True)
@@ -129,7 +129,7 @@ class Stage:
         """The SHA-256 of everything that is read."""
         assert isinstance(self.files, Kept)
         contents = (*self.files.texts.values(), *(data for _, data in self.scenarios))
-        return sorted({hashlib.sha256(data).hexdigest() for data in contents})
+        return sorted({digest(data) for data in contents})
 
     def problems(self, variant: Variant) -> list[Problem]:
         """The error of a variant before it runs, if any."""

@@ -37,14 +37,6 @@ class Exported:
     """A message that the transcript ends before its run did, if so."""
 
 
-def installed(library: str) -> bool:
-    """Whether a library is installed; does not import it."""
-    try:
-        return find_spec(library) is not None
-    except ValueError:
-        return False
-
-
 def checked(name: str, languages: Mapping[str, str]) -> dict[str, str]:
     """The languages, checked with the format; see :func:`prima.api.export`.
 
@@ -55,7 +47,7 @@ def checked(name: str, languages: Mapping[str, str]) -> dict[str, str]:
     if name not in FORMATS:
         hint = did_you_mean(name, FORMATS) or f"Name {one_of(FORMATS)}."
         raise UsageError(f'Unknown format "{name}". {hint}')
-    if name == "mcap" and not installed("mcap"):
+    if name == "mcap" and find_spec("mcap") is None:
         raise UsageError("mcap needs another library: pip install 'prima[export]'.")
     if languages and name != "eaf":
         raise UsageError(f"--lang works only with --to eaf, not with {name}.")

@@ -7,15 +7,13 @@ from dataclasses import asdict
 from typing import Any
 
 from prima.errors.visible import visible
-from prima.report.lanes import Bar, Lanes
+from prima.report.lanes import LONGEST_NAME, Bar, Lanes
 from prima.report.view import View
 from prima.scheduler.policy import BASELINES
 from prima.transcript.colours import NOBODY
 from prima.transcript.diff import MARKS, Difference
 from prima.transcript.row import Row
 from prima.transcript.rules import RULES
-
-LONGEST_NAME = 200
 
 
 def page_data(
@@ -55,7 +53,7 @@ def _run(view: View, shades: dict[str, int]) -> dict[str, Any]:
         "seconds": lanes.seconds,
         "apps": [visible(app[:LONGEST_NAME]) for app in lanes.apps],
         "colours": [shades[app] for app in lanes.apps],
-        "devices": [visible(device)[:200] for device in lanes.devices],
+        "devices": [visible(device)[:LONGEST_NAME] for device in lanes.devices],
         "rows": [_row_data(view, row) for row in view.rows],
         "whys": view.whys,
         "names": view.names,

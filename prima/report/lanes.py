@@ -14,6 +14,8 @@ MOST_APPS = 24
 """Maximum number of applications with a lane."""
 MOST_DEVICES = 16
 """Maximum number of devices with a lane."""
+LONGEST_NAME = 200
+"""Maximum length of a name."""
 MOST_ON_FLOOR = 8
 """Maximum number of named streams in the stack of the floor."""
 

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from string import Template
 
 from prima.errors import counted
-from prima.report.data import LONGEST_NAME, page_data
+from prima.report.data import page_data
+from prima.report.lanes import LONGEST_NAME
 from prima.report.parts import json_text, part, policy_of, style_of, text
 from prima.report.view import View
 from prima.transcript import colours

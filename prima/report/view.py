@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from prima.errors.visible import visible
 from prima.messages import Json
-from prima.report.lanes import Lanes, make_lanes
+from prima.report.lanes import LONGEST_NAME, Lanes, make_lanes
 from prima.report.walk import RobotWalk, walk_of
 from prima.transcript.criteria import shown_times
 from prima.transcript.row import Row, describe
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
 MOST_REASONS = 12
 """Maximum number of reasons of each kind; the latest are shown."""
-LONGEST_NAME = 200
-"""Maximum length of a name."""
 KANA = re.compile("[\u3041-\u30ff\u31f0-\u31ff\uff66-\uff9d]")
 HAN = re.compile("[\u2e80-\u2fdf\u3400-\u4dbf\u4e00-\u9fff\uf900-\ufaff]")
 HANGUL = re.compile("[\u1100-\u11ff\u3130-\u318f\uac00-\ud7af]")

@@ -6,7 +6,7 @@ or suspensions, so that all policies are measured alike. Times in seconds.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 
 @dataclass(slots=True)
@@ -55,6 +55,10 @@ class Criteria:
     response_max: float | None = None
     delays: list[ReactionDelay] = field(default_factory=list)
     """The delay of each application's reaction to each event."""
+
+
+CRITERIA = tuple(one.name for one in fields(Criteria) if one.name != "delays")
+"""The criteria that are numbers, in order."""
 
 
 def shown_time(seconds: float | None) -> str:

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from prima.errors import Place
 from prima.markup.tree import Node
 
+UNKNOWN_LETTERS = 20
+"""The assumed text of an expression."""
 SPEECH = "speech"
 """The event by which links react to the user's words."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
+from prima.checks.prices.model import UNKNOWN_LETTERS
 from prima.devices.voice import timeline
 from prima.markup.tree import Node
 from prima.messages import Cue
@@ -14,8 +15,6 @@ from prima.voicexml.inputs import words_of
 from prima.voicexml.prompts import APART, SENTENCE, UNKNOWN_MS
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
-UNKNOWN_LETTERS = 20
-"""The assumed text of an expression."""
 SAYS = "an expression gives a part of what it says"
 REPEATED = "an expression says how often a part of it is said"
 

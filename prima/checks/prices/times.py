@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from prima.checks.prices.commands import command_price, group_price, unit_price
 from prima.checks.prices.contents import again, contents_of, inside, thrown_by
-from prima.checks.prices.model import Price, devices_of
+from prima.checks.prices.model import UNKNOWN_LETTERS, Price, devices_of
 from prima.checks.prices.texts import Constants
 from prima.devices.profile import Profile
 from prima.devices.voice import duration
@@ -27,8 +27,6 @@ from prima.interpreter.selection import takes
 from prima.interpreter.units import reach_of
 from prima.language.commands import TABLE_4_2
 
-UNKNOWN_LETTERS = 20
-"""The assumed text of an expression."""
 ASKED_AGAIN = "the question is asked again until the user answers"
 OFTEN = "an expression says how often it is done"
 SAYS = "an expression gives its text"
