@@ -45,11 +45,12 @@ PHASES = {
     "cancel": Phase(
         "an AB is deleted, or halted by the emergency stop",
         "`rule`, `outcome`: the state it was in",
+        ("behavior",),
     ),
     "fail": Phase("an AB fails, or a Command is refused", "`event`, `device`, `message`, `rule`"),
     "hold": Phase("a waiting AB may not start", "`rule`, `by`", ("behavior", "rule", "by")),
-    "suspend": Phase("a stream is suspended by another", "`tree`, `by`, `rule`"),
-    "resume": Phase("a suspended stream resumes", "`tree`, `behavior`, `rule`"),
+    "suspend": Phase("a stream is suspended by another", "`tree`, `by`, `rule`", ("tree", "app")),
+    "resume": Phase("a suspended stream resumes", "`tree`, `behavior`, `rule`", ("tree", "app")),
     "floor": Phase("the floor is taken or returned", "`tree`, `outcome`, `floor`, `rule`"),
     "window": Phase(
         "an application begins or finishes handling the end of its Command", "`tree`, `outcome`"
@@ -77,7 +78,11 @@ PHASES = {
         "a stream is kept open for an event, or no longer (x3)",
         "`tree`, `outcome`: `begun`, `joined`, `left` or `over`; `data`: until when (s)",
     ),
-    "interrupt": Phase("a restartable AB yields to a reaction (x2)", "`behavior`, `by`, `rule`"),
+    "interrupt": Phase(
+        "a restartable AB yields to a reaction (x2)",
+        "`behavior`, `by`, `rule`",
+        ("behavior", "command"),
+    ),
     "halted": Phase(
         "the device reports how much of it was done",
         "`behavior`, `data`: `done` (0 to 1), `heard`; of what has marks, `mark` and how many "
@@ -120,6 +125,7 @@ PHASES = {
         "a message to a service or a URI; a call to somebody, or its end, where `data` has "
         "`transfer`",
         "`data`, `serial`",
+        ("app", "data"),
     ),
     "log": Phase("what a `log` element says", "`message`, `source`", ("message",)),
     "error": Phase("an error that no handler took", "`message`, `source`"),

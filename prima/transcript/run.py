@@ -7,21 +7,13 @@ report, graphs and exports are views of the :class:`Run` that comes out. Times a
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import suppress
 
 from prima.errors import UsageError
 from prima.messages import Record
 from prima.transcript.fold import Fold
 from prima.transcript.record import Entry, lacking
 from prima.transcript.spans import Run
-
-NEEDED = {
-    "suspend": ("tree", "app"),
-    "resume": ("tree", "app"),
-    "interrupt": ("behavior", "command"),
-    "cancel": ("behavior",),
-    "send": ("app", "data"),
-}
-"""Fields that views need besides the required ones."""
 
 
 def run_of(records: Iterable[Record], name: str = "") -> Run:
@@ -32,15 +24,11 @@ def run_of(records: Iterable[Record], name: str = "") -> Run:
     """
     fold = Fold()
     for number, record in enumerate(records, 1):
-        try:
-            needed = NEEDED.get(record["phase"], ())
-            lacks = lacking(record) or any(record.get(one) is None for one in needed)
-            if not lacks:
+        with suppress(KeyError, TypeError, ValueError, AttributeError):
+            if not lacking(record):
                 fold.add(Entry(record))
-        except (KeyError, TypeError, ValueError, AttributeError):
-            lacks = True
-        if lacks:
-            raise UsageError(f"{name}: record {number} lacks a field of its phase.") from None
+                continue
+        raise UsageError(f"{name}: record {number} lacks a field of its phase.")
     return fold.run()
 
 
