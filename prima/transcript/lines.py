@@ -26,9 +26,8 @@ any run writes."""
 
 
 _encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
-_orders: dict[tuple[str, ...], list[str]] = {}
-"""The fields of records in their order, by the order in which they were set: the same code always
-sets the same fields."""
+_places = {name: place for place, name in enumerate(FIELDS)}
+"""The place of each field in a line."""
 
 
 def line(record: Record) -> str:
@@ -43,10 +42,7 @@ def finished(record: Record) -> Record:
 
 def _shown(record: Record) -> Record:
     """A record's fields in order, without those that do not apply; its time in seconds."""
-    fields = tuple(record)
-    names = _orders.get(fields)
-    if names is None:
-        names = _orders[fields] = [name for name in FIELDS if name in record]
+    names = sorted(record, key=_places.__getitem__)
     shown = {name: value for name in names if (value := record[name]) is not None}
     shown["time"] = record["time"] / 1000
     return shown

@@ -37,10 +37,7 @@ class Entry:
     """
 
     def __init__(self, record: Record, time: float | None = None) -> None:
-        if None in record.values():
-            self.__dict__ = {name: one for name, one in record.items() if one is not None}
-        else:
-            self.__dict__ = dict(record)
+        self.__dict__ = {name: one for name, one in record.items() if one is not None}
         if time is not None:
             self.time = time
 
