@@ -113,7 +113,7 @@ def _delay(event: str, mine: list[PricedReaction], theirs: _Other) -> Delay | No
     first = _first_delay(event, mine, theirs)
     firsts = _firsts(mine)
     until = [price for one in mine for price in one.responds]
-    found = first or Delay(event, (), 0, "", None)
+    found = first or Delay(event)
     if all(_same(one) for one in mine):
         found.response = replace(found) if until else None
         return first
@@ -151,7 +151,7 @@ def _first_delay(event: str, mine: list[PricedReaction], theirs: _Other) -> Dela
     whole = _whole(firsts, theirs, [busy for _, busy in same])
     if not theirs.gaps and whole is None and worst(theirs.parts, needed) is None:
         return None
-    delay = Delay(event, (), 0, "", None, unknown=list(theirs.gaps))
+    delay = Delay(event, unknown=list(theirs.gaps))
     _add_longest(delay, theirs, needed)
     delay.each = max((_first(one, needed) for one in theirs.foreign), default=0)
     _add_own(delay, theirs, needed)

@@ -14,12 +14,12 @@ class Delay:
     """The wait of one reaction of an application for the other, and its cause."""
 
     event: str
-    devices: tuple[str, ...]
+    devices: tuple[str, ...] = ()
     """The devices that both need."""
-    lasts: int
+    lasts: int = 0
     """The longest wait (ms), as far as known."""
-    what: str
-    place: Place | None
+    what: str = ""
+    place: Place | None = None
     """The place of the longest part; None if only the rest causes the wait."""
     listens: bool = False
     """Whether the user may speak in it: the time of their words is extra."""
