@@ -322,7 +322,8 @@ def limits() -> str:
         ),
         (
             "steps of content in one instant, or in instants joined by events sent without delay; beginning a "
-            "form or form item counts 10, a dialog of VoiceXML 100",
+            "form or form item counts 10, a dialog of VoiceXML 100, looking for the handler of an event "
+            "among very many 1 for each 100",
             f"{bounds.MAX_STEPS:,}",
             "the application ends",
         ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sized
 from typing import TYPE_CHECKING, Generic, Literal, NamedTuple, NoReturn, TypeVar
 
 from prima.interpreter.places import source
@@ -21,6 +22,8 @@ Evaluator = TypeVar("Evaluator", bound="AnyEngine | PythonEngine")
 """The evaluator of an application's code."""
 MAX_STEPS = 20_000
 """Pieces of content that an application may execute in one instant."""
+HANDLERS_A_STEP = 100
+"""How many handlers are looked at, to find the one that takes an event, for a piece of content."""
 MAX_OUTPUT, MAX_WRITTEN = 1_000_000, 10_000_000
 """Characters that an application may say, log, send and pass on in one instant, and in a run."""
 MAX_RUN_STEPS, STEPS_A_SECOND = 1_500_000, 5_000
@@ -133,6 +136,11 @@ class Bounds(Generic[Evaluator]):
             self.give_up(node, "its scripts take too long without ever waiting")
         if self.engine.lost:
             self.give_up(node, self.engine.lost)
+
+    def count_handlers(self, node: Node, handlers: Sized) -> None:
+        """Bound the handlers looked at: a document may have very many."""
+        if len(handlers) >= HANDLERS_A_STEP:
+            self.count_step(node, len(handlers) // HANDLERS_A_STEP)
 
     def count_output(self, characters: int, node: Node) -> None:
         """Bound the text that an application says, logs, sends and passes on."""

@@ -19,6 +19,7 @@ from prima.interpreter.acts import (
     all_acts,
     commands_of,
 )
+from prima.interpreter.selection import Takers
 from prima.markup.tree import Node
 
 if TYPE_CHECKING:
@@ -135,9 +136,8 @@ class Form:
     connect: bool = False
     words: str = ""
     """What is said when its stream resumes after others have spoken (X9)."""
-    takers: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
-    """The handlers that take an event in it, cached for events that have occurred: by the event's
-    name, or by the names of the visited item and the event."""
+    takers: Takers[Handler] = field(default_factory=Takers, repr=False, compare=False)
+    """The handlers that take an event in it, kept by the event and the visited item."""
     bare: bool = False
     """Whether entering it does nothing but wait for events."""
 

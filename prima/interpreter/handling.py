@@ -16,20 +16,11 @@ from prima.script.evaluation import Scope, ScriptError
 
 MAX_FIBERS = 64
 """Maximum number of handlers running at once in a state."""
-MOST_KEPT = 1_000
-"""Maximum number of event names for which a form caches its handlers."""
 REPROMPTED = frozenset({"noinput", "nomatch", "help"})
 """Events after which a field asks again if unhandled (VoiceXML 5.2.5)."""
 
 
 Taking = list[Candidate[Handler]]
-Key = str | tuple[str, str]
-"""An event by its name and that of the item being visited, if any."""
-
-
-def key_of(item: Item | None, event: str) -> Key:
-    """The key under which a form keeps the handlers of an event."""
-    return event if item is None else (item.name, event)
 
 
 def name_of(item: Item | None) -> str:
@@ -223,20 +214,14 @@ class Handling:
         for _, unit in reversed(frame.units):
             if unit is not item:
                 found += unit.handlers
-        return offers([*found, *frame.form.handlers, *self.owner.document.handlers], event)
+        found += [*frame.form.handlers, *self.owner.document.handlers]
+        self.owner.count_handlers(frame.form.node, found)
+        return offers(found, event)
 
     def takers(self, frame: Frame, item: Item | None, event: str) -> Taking:
-        """The handlers in scope whose names take an event, cached in the form."""
-        if frame.units:
-            return self._in_scope(frame, item, event)
-        kept = frame.form.takers
-        key = key_of(item, event)
-        found = kept.get(key)
-        if found is None:
-            if len(kept) >= MOST_KEPT:
-                kept.clear()
-            found = kept[key] = self._in_scope(frame, item, event)
-        return found
+        """The handlers in scope whose names take an event, kept in the form."""
+        key = (event, name_of(item), len(frame.units))
+        return frame.form.takers.of(key, lambda: self._in_scope(frame, item, event))
 
     def _candidates(self, frame: Frame, fiber: Fiber, item: Item | None, event: str) -> Taking:
         """Handlers inside the Command whose event is being handled, and those in scope."""
@@ -250,6 +235,7 @@ class Handling:
             first = candidates[0].handler
             if first.cond is None and first.count <= 1:
                 return first
+        self.owner.count_handlers(frame.form.node, candidates)
         return select_handler(
             candidates,
             lambda name: frame.counters.seen(name_of(item), name),

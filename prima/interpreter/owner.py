@@ -9,7 +9,7 @@ them all, by the protocols here alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Sized
 from typing import TYPE_CHECKING, Literal, NoReturn, Protocol
 
 from prima.interpreter.acts import Act, Expression, SendOut, Text
@@ -132,6 +132,9 @@ class Owner(Protocol):
 
     def note(self, node: Node, what: Literal["in", "true", "false", "heard"] = "in") -> None:
         """An element is gone through, or its condition has been evaluated."""
+
+    def count_handlers(self, node: Node, handlers: Sized) -> None:
+        """Bound the handlers looked at: a document may have very many."""
 
     def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound the steps of one instant."""

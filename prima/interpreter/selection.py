@@ -13,6 +13,8 @@ from typing import Generic, NamedTuple, TypeVar
 
 T = TypeVar("T")
 
+MOST_KEPT = 10_000
+"""Maximum number of handlers, each with each event that it takes, that are kept."""
 MOST_PARTS = 100
 """Maximum number of dots considered in an event's name."""
 
@@ -23,6 +25,25 @@ class Candidate(NamedTuple, Generic[T]):
     handler: T
     names: tuple[str, ...]
     least: int
+
+
+class Takers(Generic[T]):
+    """The handlers that take events, kept for events that come again."""
+
+    def __init__(self) -> None:
+        self._kept: dict[Hashable, list[Candidate[T]]] = {}
+        self._room = MOST_KEPT
+
+    def of(self, key: Hashable, find: Callable[[], list[Candidate[T]]]) -> list[Candidate[T]]:
+        """The handlers under a key, which names the event and where it occurs."""
+        found = self._kept.get(key)
+        if found is None:
+            found = find()
+            if self._room <= len(found):
+                self._kept, self._room = {}, MOST_KEPT
+            self._room -= 1 + len(found)
+            self._kept[key] = found
+        return found
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-from prima.interpreter.selection import Candidate, select_handler, takes, taking
+from prima.interpreter.selection import (
+    Candidate,
+    Takers,
+    select_handler,
+    takes,
+    taking,
+)
 from prima.interpreter.transfers import MAX_DEPTH, GoBack, GoItem, GoOut, Thrown, thrown_of
 from prima.markup.tree import Node
 from prima.script.evaluation import Scope, ScriptError
@@ -35,6 +39,7 @@ class Events:
     def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
         self.engine = owner.engine
+        self._kept: Takers[Node] = Takers()
 
     def handle(self, context: Context, thrown: Thrown, depth: int = 0) -> Flow:
         """Find an event's handler and run it, or do what the platform does (5.2.4, 5.2.5)."""
@@ -58,8 +63,10 @@ class Events:
     def find(self, context: Context, thrown: Thrown) -> Node | None:
         """The handler of an event: innermost scope, prefix, condition, count, order (5.2.4)."""
         local, where = self._scope(thrown), _place(context)
+        found = self._takers(context, thrown)
+        self.owner.app.count_handlers(self.owner.document.node, found)
         return select_handler(
-            _takers(context, thrown),
+            found,
             lambda name: context.counters.seen(where, name),
             lambda one: self.owner.content.holds(one, context, local),
         )
@@ -94,8 +101,22 @@ class Events:
 
         Only names that a handler uses are counted.
         """
-        names = {name for one in _takers(context, thrown) for name in one.names}
+        names = {name for one in self._takers(context, thrown) for name in one.names}
         context.counters = context.counters.came(_place(context), names)
+
+    def _takers(self, context: Context, thrown: Thrown) -> list[Candidate[Node]]:
+        """The handlers in scope that take an event; one for all events takes VoiceXML's own alone."""
+        scopes = _scopes(context)
+
+        def find() -> list[Candidate[Node]]:
+            found = [one for node in scopes if node is not None for one in node.all(*HANDLERS)]
+            self.owner.app.count_handlers(self.owner.document.node, found)
+            known = (
+                Candidate(one, tuple(handler_names(one)), handler_number(one)) for one in found
+            )
+            return taking(known, thrown.name, by_name=thrown.shared)
+
+        return self._kept.of((*scopes, thrown.name, thrown.shared), find)
 
     def _scope(self, thrown: Thrown) -> Scope:
         """The anonymous scope of a handler, with ``_event`` and ``_message`` (5.2.2)."""
@@ -142,22 +163,12 @@ class Events:
             yield from self.unhandled(context, thrown)
 
 
-def _handlers(context: Context) -> Iterator[Node]:
-    """The handlers in scope, innermost first and each scope's in document order (5.2.4)."""
+def _scopes(context: Context) -> tuple[Node | None, ...]:
+    """The elements whose handlers are in scope, innermost first (5.2.4)."""
     item = context.item if context.item is not context.form else None
     root = context.root.root if context.root else None
     unit = context.unit if context.unit is not context.item else None
-    for node in (item, unit, context.form, context.page.root, root):
-        if node is not None:
-            yield from node.all(*HANDLERS)
-
-
-def _takers(context: Context, thrown: Thrown) -> list[Candidate[Node]]:
-    """The handlers in scope that take an event; one for all events takes VoiceXML's own alone."""
-    known = (
-        Candidate(one, tuple(handler_names(one)), handler_number(one)) for one in _handlers(context)
-    )
-    return taking(known, thrown.name, by_name=thrown.shared)
+    return item, unit, context.form, context.page.root, root
 
 
 def _place(context: Context) -> int:

@@ -7,7 +7,7 @@ machine, and the application that owns it by the protocols here alone.
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Sequence, Sized
 from typing import Literal, NoReturn, Protocol
 
 from prima.interpreter.bounds import ElementVisit
@@ -59,6 +59,9 @@ class VoiceApplication(Protocol):
 
     def count_step(self, node: Node, steps: int = 1) -> None:
         """Bound what is done in one instant."""
+
+    def count_handlers(self, node: Node, handlers: Sized) -> None:
+        """Bound the handlers looked at: a document may have very many."""
 
     def utterance(self) -> Budget:
         """What matching one more utterance may take."""

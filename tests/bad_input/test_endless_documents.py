@@ -98,6 +98,7 @@ EATERS = [
     ("slow-errors", app(block('<log expr="(function(){while(1);})()"/>').replace("</form>", '<on event="error"><goto next="#f"/></on></form>')), 3),
     ("logs", app(block("<foreach item=\"i\" array=\"Array(9000).fill(1)\"><log expr=\"'x'.repeat(99999)\"/></foreach><exit/>")), 3),
     ("values", app(block("<var name=\"b\" expr=\"'x'.repeat(99999)\"/><speak>" + '<value expr="b"/>' * 30_000 + "</speak><exit/>")), 0),
+    ("handlers-of-new-events", app(form("<block><assign name=\"n\" expr=\"n + 1\"/><throw event-expr=\"'a.' + n\"/></block>" + '<on event="a" count="999"/>' * 20_000 + '<on event="a"><goto next="#f"/></on>').replace("<form", '<var name="n" expr="0"/><form', 1)), 3),
     ("event-name", app(block('<throw event="' + "a." * 60_000 + 'a"/>').replace("</form>", '<on event="a"><exit/></on></form>')), 1),
 ]  # fmt: skip
 
@@ -106,6 +107,17 @@ EATERS = [
 def test_time_and_memory(tmp_path: Path, name: str, data: str, code: int) -> None:
     path = stage(tmp_path, data)
     process(tmp_path, "run", path, "-o", "t", seconds=6, memory=GIGABYTE).check(code)
+
+
+def test_events_among_very_many_handlers_of_voicexml(tmp_path: Path) -> None:
+    many = "".join(f'<catch event="e{number}"/>' for number in range(40_000))
+    write(
+        tmp_path,
+        "a.vxml",
+        f'<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml"><form id="f">{many}'
+        '<block><throw event="go"/></block><catch event="go"><goto next="#f"/></catch></form></vxml>',
+    )
+    process(tmp_path, "run", "--ea", "a.vxml", "-o", "t", seconds=6, memory=GIGABYTE).check(3)
 
 
 HAPPENINGS = [
