@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import socket
 from pathlib import Path
 
 import pytest
 
-from tests.parties.bench import Process, Visit
+from tests.parties.bench import ROS_HOME, Process, Visit
 
 HERE = Path(__file__).parent
-HOME = {"ROS_DOMAIN_ID": str(20 + os.getpid() % 80), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
 PARTIES = {"naoqi": "go over", "ros2": "go canceled", "rosbridge": "go over"}
 """What robots tell when they have been stopped on their way."""
 
@@ -29,11 +27,12 @@ BY_SIGNAL = [(party, end) for party in PARTIES for end in (signal.SIGTERM, signa
 # A bridge cancels no goals of a connection that is gone; ROS 2 takes seconds to forget a process.
 @pytest.mark.parametrize(("party", "end"), [*BY_SIGNAL, ("naoqi", signal.SIGKILL)])
 def test_the_robot_stops_when_the_run_ends(party: str, end: signal.Signals, tmp_path: Path) -> None:
-    port, environment = free_port(), HOME if party == "ros2" else {}
+    port, environment = free_port(), ROS_HOME if party == "ros2" else {}
     words = {"naoqi": [port], "ros2": [], "rosbridge": [port, "threads"]}[party]
     document = tmp_path / "robot.xml"
     document.write_text((HERE / party / "robot.xml").read_text().replace("PORT", port))
     robot = Process(party, str(HERE / party / "robot.py"), *words, **environment)
+    robot.expect("ready")
     visit = Visit(party, document, tmp_path / "visit.jsonl", **environment)
     try:
         robot.expect("goes")
