@@ -7,15 +7,14 @@ unreadable input; 3 a run ended by an error or a limit; 130 Ctrl-C.
 from __future__ import annotations
 
 import os
-import signal
 import sys
-from contextlib import suppress
 from importlib import import_module
 
 import click
 
 from prima.cli.common import escape_for_people, tell
 from prima.cli.failures import INTERRUPTED, exit_code
+from prima.cli.interrupts import interruptible
 from prima.errors import did_you_mean
 from prima.version import __version__
 
@@ -90,23 +89,6 @@ def cli() -> None:
     """
 
 
-def interrupt_again(lost: sys.UnraisableHookArgs) -> None:
-    """Repeat a Ctrl-C whose exception was raised where exceptions are swallowed.
-
-    Such places are callbacks of a library in C, and code that Python runs to free an object.
-    """
-    if not isinstance(lost.exc_value, KeyboardInterrupt):
-        sys.__unraisablehook__(lost)
-        return
-    from threading import Timer
-
-    started = False
-    while not started:
-        with suppress(KeyboardInterrupt):  # the timer was quicker than its start: lost here, too
-            Timer(0.01, os.kill, (os.getpid(), signal.SIGINT)).start()
-            started = True
-
-
 def main() -> None:
     """Run the command line; each ending has its exit code and no traceback."""
     if sys.stdout is None:
@@ -114,15 +96,13 @@ def main() -> None:
     if sys.stderr is None:
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
     escape_for_people()
-    hook, sys.unraisablehook = sys.unraisablehook, interrupt_again
-    try:
-        code = cli.main(standalone_mode=False)
-        sys.stdout.flush()
-    except (click.Abort, KeyboardInterrupt):
-        tell("prima: interrupted")
-        code = INTERRUPTED
-    except (Exception, SystemExit) as error:
-        code = exit_code(error)
-    finally:
-        sys.unraisablehook = hook
+    with interruptible():
+        try:
+            code = cli.main(standalone_mode=False)
+            sys.stdout.flush()
+        except (click.Abort, KeyboardInterrupt):
+            tell("prima: interrupted")
+            code = INTERRUPTED
+        except (Exception, SystemExit) as error:
+            code = exit_code(error)
     sys.exit(code if isinstance(code, int) else 0)

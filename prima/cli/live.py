@@ -32,6 +32,7 @@ from prima.cli.common import (
     why_option,
     write_for_programs,
 )
+from prima.cli.interrupts import leave_to_python
 from prima.cli.progress import print_records
 from prima.scheduler.policy import POLICIES, USAGE
 
@@ -135,6 +136,7 @@ def live(
     from prima.live.prepared import check_usage, prepared
     from prima.live.visit import LiveSettings
 
+    leave_to_python()
     raise_limits(limits)
     chosen = Chosen(robot or "", scenario or "", world or "", fas, eas, maps, services or "")
     check_usage(chosen, output, journal, checks)

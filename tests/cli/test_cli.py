@@ -409,7 +409,17 @@ def test_every_command_has_a_help_with_an_example(name: str) -> None:
 
 def test_every_module_of_a_command_is_listed() -> None:
     modules = {path.stem for path in (ROOT / "prima" / "cli").glob("*.py")}
-    shared = {"__init__", "batch", "common", "failures", "progress", "runs", "screen", "terminal"}
+    shared = {
+        "__init__",
+        "batch",
+        "common",
+        "failures",
+        "interrupts",
+        "progress",
+        "runs",
+        "screen",
+        "terminal",
+    }
     assert modules - shared == set(COMMANDS)
 
 

@@ -2,14 +2,39 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 import threading
+from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
 
 import pytest
 
-from prima.cli import interrupt_again
+from prima.cli.interrupts import interrupt_again
+
+ROOT = Path(__file__).parents[2]
+IN_PHYSICS = """
+import signal, sys
+from prima.__main__ import main
+left = [1]
+def watch(frame, event, _):
+    if event == "call" and frame.f_code.co_name == "{place}" and left:
+        left.clear()
+        signal.raise_signal(signal.SIGINT)
+sys.setprofile(watch)
+main()
+"""
+
+
+@pytest.mark.parametrize("place", ["ext_cpSpaceShapeIteratorFunc", "spacefree", "step", "add"])
+def test_ctrl_c_breaks_nothing_in_physics(place: str) -> None:
+    """A world that was half freed crashed the process at its end."""
+    done = subprocess.run(
+        [sys.executable, "-c", IN_PHYSICS.format(place=place), "test", "documents/scenarios", "-j", "1"],
+        capture_output=True, text=True, timeout=60, check=False, cwd=ROOT,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr.lstrip()) == (130, "prima: interrupted\n")
 
 
 def test_a_lost_ctrl_c_is_repeated_until_its_timer_has_started(

@@ -1,0 +1,66 @@
+"""Ctrl-C: where its exception would be lost, or break what is under way, it comes a little later."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from types import FrameType
+
+SOON_S = 0.01
+PHYSICS = "pymunk"
+"""A library whose objects crash the process later if they are left half made or half freed."""
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Handle Ctrl-C in the way of this module, unless the caller ignores it or does so already."""
+    hook, sys.unraisablehook = sys.unraisablehook, interrupt_again
+    before = signal.getsignal(signal.SIGINT)
+    if before is signal.default_int_handler:
+        with suppress(ValueError):  # not the main thread: it gets no signals
+            signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield
+    finally:
+        sys.unraisablehook = hook
+        leave_to_python()
+
+
+def leave_to_python() -> None:
+    """Let Python handle Ctrl-C, as event loops expect it."""
+    if signal.getsignal(signal.SIGINT) is interrupt:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def interrupt(_: int, frame: FrameType | None) -> None:
+    """Break off what runs, unless that is physics: then soon."""
+    while frame is not None:
+        if str(frame.f_globals.get("__name__")).startswith(PHYSICS):
+            _soon()
+            return
+        frame = frame.f_back
+    raise KeyboardInterrupt
+
+
+def interrupt_again(lost: sys.UnraisableHookArgs) -> None:
+    """Repeat a Ctrl-C whose exception was raised where exceptions are swallowed.
+
+    Such places are callbacks of a library in C, and code that Python runs to free an object.
+    """
+    if not isinstance(lost.exc_value, KeyboardInterrupt):
+        sys.__unraisablehook__(lost)
+        return
+    _soon()
+
+
+def _soon() -> None:
+    from threading import Timer
+
+    started = False
+    while not started:
+        with suppress(KeyboardInterrupt):  # the timer was quicker than its start: lost here, too
+            Timer(SOON_S, os.kill, (os.getpid(), signal.SIGINT)).start()
+            started = True
