@@ -36,7 +36,6 @@ from prima.interpreter.acts import (
     Text,
     Throw,
     all_acts,
-    commands_of,
     run_commands,
 )
 from prima.interpreter.elements import (
@@ -268,7 +267,7 @@ def _runs(contents: list[Sequence[Act]]) -> list[CommandRun]:
 
 def _commands(contents: list[Sequence[Act]]) -> list[CommandTemplate]:
     """The Commands in content."""
-    return [command for content in contents for command in commands_of(content)]
+    return [command for run in _runs(contents) for command in run_commands(run.steps)]
 
 
 def _leaves_at_its_end(items: Sequence[Item]) -> bool:

@@ -288,12 +288,6 @@ def _held(act: Act) -> Iterator[Sequence[Act]]:
             yield from (handler.content for handler in command.handlers)
 
 
-def commands_of(content: Sequence[Act]) -> list[CommandTemplate]:
-    """The Commands of executable content."""
-    runs = [act for act in all_acts(content) if isinstance(act, CommandRun)]
-    return [command for run in runs for command in run_commands(run.steps)]
-
-
 def run_commands(steps: Sequence[StepTemplate]) -> list[CommandTemplate]:
     """The Commands of a run, those inside units included."""
     found: list[CommandTemplate] = []

@@ -10,14 +10,12 @@ from prima.grammar.answers import Answers
 from prima.interpreter.acts import (
     Act,
     CommandRun,
-    CommandTemplate,
     Declare,
     Expression,
     Handler,
     Script,
     Text,
     all_acts,
-    commands_of,
 )
 from prima.interpreter.selection import Takers
 from prima.markup.tree import Node
@@ -189,25 +187,31 @@ class Document:
     """Whether any code may read the event being handled."""
     sensors: tuple[frozenset[str] | None] | None = None
     """The sensors that code may read; None until computed: see :mod:`prima.interpreter.sensors`."""
-    _contents: list[Content] | None = field(default=None, repr=False, compare=False)
+    _holders: tuple[list[Form | None], list[Holder]] | None = field(
+        default=None, repr=False, compare=False
+    )
 
-    def contents(self) -> Sequence[Content]:
+    def contents(self) -> Iterator[Content]:
         """Every piece of executable content, with its form and the element that holds it."""
-        if self._contents is None:  # used by every check; a document does not change
-            self._contents = [(None, one.content, one.node) for one in self.handlers]
-            for form in self.forms.values():
-                held: list[Holder] = [*form.handlers, *form.filled]
-                for item in all_items(form.items):
-                    held += [*item.handlers, *own_holders(item)]
-                self._contents += [(form, one.content, one.node) for one in held]
-        return self._contents
+        if self._holders is None:  # used by every check; a document does not change
+            self._holders = self._gather()
+        return ((form, one.content, one.node) for form, one in zip(*self._holders, strict=True))
 
-
-def own_holders(item: Item) -> Sequence[Holder]:
-    """The elements with the content of an item, without its handlers."""
-    if isinstance(item, Block):
-        return (item,)
-    return item.filled if isinstance(item, Field | Subdialog) else ()
+    def _gather(self) -> tuple[list[Form | None], list[Holder]]:
+        """The elements with content, each with its form."""
+        holders: list[Holder] = [*self.handlers]
+        forms: list[Form | None] = [None] * len(holders)
+        for form in self.forms.values():
+            held: list[Holder] = [*form.handlers, *form.filled]
+            for item in all_items(form.items):
+                held += item.handlers
+                if isinstance(item, Block):
+                    held.append(item)
+                elif isinstance(item, Field | Subdialog):
+                    held += item.filled
+            holders += held
+            forms += [form] * len(held)
+        return forms, holders
 
 
 Kind = TypeVar("Kind", bound=Act)
@@ -218,14 +222,21 @@ class Acts:
 
     def __init__(self, document: Document) -> None:
         self._document = document
-        self._found: dict[type, list[tuple[Form | None, Any]]] = {}
+        self._found: dict[type, tuple[list[Form | None], list[Any]]] = {}
+        """Acts by kinds, with a parallel list of forms: a pair for each would be many objects."""
+        found = self._found
         for form, content, _ in document.contents():
             for act in all_acts(content):
-                self._found.setdefault(type(act), []).append((form, act))
+                kind = type(act)
+                if kind not in found:
+                    found[kind] = [], []
+                forms, acts = found[kind]
+                forms.append(form)
+                acts.append(act)
 
-    def of(self, kind: type[Kind]) -> Sequence[tuple[Form | None, Kind]]:
+    def of(self, kind: type[Kind]) -> Iterator[tuple[Form | None, Kind]]:
         """All of a kind in document order, each with its form; None for the document's own."""
-        return self._found.get(kind, ())
+        return zip(*self._found.get(kind, ((), ())), strict=True)
 
     def among(self, *kinds: type[Act]) -> list[Act]:
         """All of some kinds, in document order."""
@@ -245,12 +256,6 @@ def all_items(items: Sequence[Item]) -> Sequence[Item]:
         if isinstance(item, Unit):
             found += all_items(item.items)
     return found
-
-
-def document_commands(document: Document) -> Iterator[CommandTemplate]:
-    """Every Command of a document."""
-    for _, content, _ in document.contents():
-        yield from commands_of(content)
 
 
 def runs_of(document: Document) -> Iterator[CommandRun]:

@@ -9,13 +9,16 @@ from dataclasses import dataclass
 from prima.errors import Place, Problem, Span, guessable, meant
 from prima.errors.diagnoses.names import UNHEARD_EVENT, UNKNOWN_EVENT
 from prima.interpreter.acts import (
+    CommandRun,
+    CommandTemplate,
     Expression,
     Handler,
     Return,
     SendOut,
     Throw,
+    run_commands,
 )
-from prima.interpreter.elements import Acts, Document, Field, Item, all_items, document_commands
+from prima.interpreter.elements import Acts, Document, Field, Item, all_items
 from prima.interpreter.selection import beginnings, takes
 from prima.language.commands import DEVICES, WRITTEN
 from prima.language.values import EVENT
@@ -100,14 +103,19 @@ def slip_of(name: str, known: Iterable[str]) -> str:
     return f"{meant}.{rest}" if meant else ""
 
 
-def handlers_of(document: Document) -> Iterator[Handler]:
-    """Every handler of a document."""
+def handlers_of(document: Document, acts: Acts | None = None) -> Iterator[Handler]:
+    """Every handler of a document; ``acts`` are its acts, where they have been gathered."""
     yield from document.handlers
     for form in document.forms.values():
         yield from form.handlers
         yield from (one for item in all_items(form.items) for one in item.handlers)
-    for command in document_commands(document):
+    for command in _commands(acts or Acts(document)):
         yield from command.handlers
+
+
+def _commands(acts: Acts) -> Iterator[CommandTemplate]:
+    for _, run in acts.of(CommandRun):
+        yield from run_commands(run.steps)
 
 
 def items_of(document: Document) -> Iterator[Item]:
@@ -147,10 +155,10 @@ class KnownEvents:
 
     def __init__(self, document: Document, acts: Acts | None = None) -> None:
         acts = acts or Acts(document)
-        self.handlers = list(handlers_of(document))
+        self.handlers = list(handlers_of(document, acts))
         self.heard = {name for handler in self.handlers for name in handler.events}
         self.raised = list(raised_by(document, acts))
-        self.commands = {command.type for command in document_commands(document)}
+        self.commands = {command.type for command in _commands(acts)}
         if any(isinstance(item, Field) for item in items_of(document)):
             self.commands.add("q-and-a")
         self.asked = [*_asked(acts)]

@@ -15,14 +15,15 @@ from prima.errors import Problem
 from prima.errors.diagnoses.behaviour import LONG_UNIT, NOT_IN_UNIT, NOW_INSIDE
 from prima.interpreter.acts import (
     Act,
+    CommandRun,
     CommandTemplate,
     Expression,
     Handler,
     Text,
     Throw,
     all_acts,
-    commands_of,
     pauses_in,
+    run_commands,
 )
 from prima.interpreter.elements import (
     Block,
@@ -34,7 +35,6 @@ from prima.interpreter.elements import (
     Subdialog,
     Unit,
     all_items,
-    own_holders,
 )
 from prima.interpreter.naming import events_named
 from prima.interpreter.selection import takes
@@ -182,6 +182,12 @@ def now_inside(node: Node, prefix: str = "") -> Problem:
     return NOW_BEHIND_OTHERS.at(node.place, p=prefix, tag=node.tag)
 
 
+def commands_of(content: Sequence[Act]) -> list[CommandTemplate]:
+    """The Commands of executable content."""
+    runs = [act for act in all_acts(content) if isinstance(act, CommandRun)]
+    return [command for run in runs for command in run_commands(run.steps)]
+
+
 class UnitPiece:
     """Executable content of a unit or a handler: its Commands and thrown events."""
 
@@ -256,8 +262,8 @@ class Finder:
         """What may run while an item of a unit is visited."""
         inner = (*item.handlers, *unit.handlers)
         waiting = [*map(_Raised, self._thrown(item)), *self._by_links(form, item)]
-        for holder in own_holders(item):
-            waiting += self._take_in(self._made(holder.content), True, _Raised(""), found)
+        for content in _own(item):
+            waiting += self._take_in(self._made(content), True, _Raised(""), found)
         for handler in inner:
             waiting += self._take_in(self._piece(handler), True, _Raised(""), found)
         for filled in _answered(form, item):
@@ -319,6 +325,13 @@ def _taking(handlers: Iterable[Handler], event: str | None) -> list[Handler]:
     if event is None:
         return [handler for handler in handlers if handler.events]
     return [one for one in handlers if any(takes(name, event) for name in one.events)]
+
+
+def _own(item: Item) -> list[tuple[Act, ...]]:
+    """The content of an item itself."""
+    if isinstance(item, Block):
+        return [item.content]
+    return [one.content for one in item.filled] if isinstance(item, Field) else []
 
 
 def _answered(form: Form, item: Item) -> Iterator[Filled]:

@@ -13,15 +13,17 @@ from prima.interpreter.acts import (
     SendOut,
     Throw,
     all_acts,
-    commands_of,
+    run_commands,
 )
 from prima.interpreter.elements import (
+    Block,
     Document,
+    Field,
     Form,
     Item,
+    Subdialog,
     Unit,
     all_items,
-    own_holders,
 )
 
 
@@ -37,13 +39,16 @@ def handlers_of(document: Document) -> Iterator[tuple[Form | None, Handler]]:
 def hooks_of(document: Document) -> Iterator[tuple[Form | None, Handler]]:
     """The handlers in Commands, each with the form of its Command."""
     for form, content, _ in document.contents():
-        for command in commands_of(content):
-            yield from ((form, one) for one in command.handlers)
+        for act in all_acts(content):
+            for command in run_commands(act.steps) if isinstance(act, CommandRun) else ():
+                yield from ((form, one) for one in command.handlers)
 
 
 def own_contents(item: Item) -> list[Sequence[Act]]:
     """The content of an item without its handlers."""
-    return [part.content for part in own_holders(item)]
+    if isinstance(item, Block):
+        return [item.content]
+    return [part.content for part in item.filled] if isinstance(item, Field | Subdialog) else []
 
 
 def contents_of(part: Item | Handler) -> list[Sequence[Act]]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 
-from prima.interpreter.acts import Declare, Exit, Foreach, Goto, Handler, Script
+from prima.interpreter.acts import CommandTemplate as Command
+from prima.interpreter.acts import Declare, Exit, Foreach, Goto, Handler, Script, run_commands
 from prima.interpreter.elements import (
     Acts,
     Document,
@@ -15,6 +16,7 @@ from prima.interpreter.elements import (
     Link,
     Subdialog,
     all_items,
+    runs_of,
 )
 from prima.interpreter.events import handlers_of
 from prima.script.known import Known, NameScope
@@ -67,7 +69,7 @@ class Facts:
     @cached_property
     def handlers(self) -> list[Handler]:
         """All handlers of the document."""
-        return list(handlers_of(self.document))
+        return list(handlers_of(self.document, self.acts))
 
     # Names
 
@@ -145,3 +147,9 @@ def setup_names(setup: Iterable[Declare | Script]) -> set[str]:
     for act in setup:
         names |= {act.name} if isinstance(act, Declare) else script_names(act.code.code).declared
     return names
+
+
+def document_commands(document: Document) -> Iterator[Command]:
+    """Every Command of a document."""
+    for run in runs_of(document):
+        yield from run_commands(run.steps)

@@ -6,13 +6,14 @@ from collections.abc import Iterator
 
 from prima.errors import Diagnosis, Problem
 from prima.interpreter.acts import (
+    CommandRun,
     Exit,
     Goto,
     Handler,
     Return,
     Throw,
     all_acts,
-    commands_of,
+    run_commands,
 )
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Field
@@ -63,7 +64,9 @@ def _leaves(handler: Handler) -> Iterator[Problem]:
     acts = all_acts(handler.content)
     if any(isinstance(act, Goto | Exit | Return | Throw) for act in acts):
         return
-    commands = commands_of(handler.content)
+    commands = [
+        one for act in acts if isinstance(act, CommandRun) for one in run_commands(act.steps)
+    ]
     leaving = [one for one in commands if one.type in TABLE_4_2 and TABLE_4_2[one.type].leaves]
     if leaving and not any(one.type == "active-sensing-human" for one in commands):
         node = leaving[0].node
