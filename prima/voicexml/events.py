@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from prima.interpreter.selection import (
-    Candidate,
-    Takers,
-    select_handler,
-    takes,
-    taking,
-)
+from prima.interpreter.selection import Candidate, Takers, select_handler, takes, taking
 from prima.interpreter.transfers import MAX_DEPTH, GoBack, GoItem, GoOut, Thrown, thrown_of
 from prima.markup.tree import Node
 from prima.script.evaluation import Scope, ScriptError
+from prima.voicexml.document import Page
 from prima.voicexml.elements import HANDLERS, handler_names, handler_number
 from prima.voicexml.owner import MachineOwner
 from prima.voicexml.state import Context, Flow, HungUp, Unasked
@@ -39,7 +34,9 @@ class Events:
     def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
         self.engine = owner.engine
+        self._page: Page | None = None
         self._kept: Takers[Node] = Takers()
+        """Of that document alone: the handlers would keep others in memory."""
 
     def handle(self, context: Context, thrown: Thrown, depth: int = 0) -> Flow:
         """Find an event's handler and run it, or do what the platform does (5.2.4, 5.2.5)."""
@@ -106,6 +103,8 @@ class Events:
 
     def _takers(self, context: Context, thrown: Thrown) -> list[Candidate[Node]]:
         """The handlers in scope that take an event; one for all events takes VoiceXML's own alone."""
+        if context.page is not self._page:
+            self._page, self._kept = context.page, Takers()
         scopes = _scopes(context)
 
         def find() -> list[Candidate[Node]]:

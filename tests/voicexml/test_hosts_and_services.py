@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, HTTPServer
@@ -12,6 +13,7 @@ import pytest
 
 from prima import api
 from prima.errors import UsageError
+from prima.markup.tree import Node
 from tests import ROOT
 from tests.helpers.voice import Call, Online, vxml
 
@@ -54,6 +56,20 @@ def test_each_submit_is_sent_and_answered_anew() -> None:
     )  # fmt: skip
     call.answer("yes", "yes")
     assert len(call.phases("send")) == 3
+
+
+def test_documents_that_were_left_are_not_kept_for_their_handlers() -> None:
+    again = '<submit next="service:count"/>'
+    form = f"""<form><field name="x"><prompt>More?</prompt><option>yes</option>
+        <filled><throw event="again"/></filled></field><catch event="again">{again}</catch></form>"""
+    call = Online({"service:count": vxml(form)}, block(again))
+    call.answer(*["yes"] * 20)
+    assert len(call.phases("send")) == 21
+    call.session.drain_visits()
+    gc.collect()
+    forms = [one for one in gc.get_objects() if isinstance(one, Node) and one.tag == "form"]
+    there = [one for one in forms if one.source.text == vxml(form)]
+    assert 0 < len(there) <= 2, "that of now, and one that has just been left"
 
 
 def asks(word: str, then: str = "") -> str:
