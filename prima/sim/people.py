@@ -7,29 +7,21 @@ from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
 
 from prima.devices import voice
-from prima.grammar.text import fold
-from prima.interpreter.selection import takes
 from prima.messages import Heard, Inbound, Json, Narrated, Occurred, Record
 from prima.sim.happenings import Doing, When
 from prima.sim.incidents import happen
 from prima.sim.map import distance
 from prima.sim.robot import Robot
 from prima.sim.scenario import Scenario
+from prima.sim.triggers import PHASES, fires
 from prima.sim.world import World
+from prima.transcript.record import Entry
 
 KEYS = frozenset("0123456789*# ")
 """What is pressed by default."""
 KEYS_THAT_END = "#*"
 """Keys pressed to end a recording: there is no silence to wait for."""
 
-PHASES = {
-    "asked": ("listening",),
-    "said": ("listening", "end"),
-    "doing": ("start",),
-    "done": ("end",),
-    "on": ("event",),
-}
-"""The records that users wait for, by their phase."""
 OVER = ("end", "cancel", "fail")
 """The kinds of records that end a behaviour."""
 
@@ -125,7 +117,8 @@ class People:
             if phase == "start" and record.get("text"):
                 self._texts[record["behavior"].partition(".")[0]] = record["text"]
             for index, when in self._awaited.get(phase, ()):
-                if self._is(when, phase, record):
+                said = self._texts.get(str(record.get("behavior")).partition(".")[0], "")
+                if fires(when.trigger, when.what, Entry(record), said):
                     self._trigger(index, when, now)
             if phase in OVER and record.get("outcome") != "again":
                 self._texts.pop(str(record.get("behavior")).partition(".")[0], None)
@@ -139,28 +132,6 @@ class People:
             self._fired[index] = fired
             after = max(when.after.ms(self._seed, fired), 1)
             self._begin(when.doings, now + after, True, when.person, fired)
-
-    def _is(self, when: When, phase: str, record: Record) -> bool:
-        """Whether a record with one of the trigger's phases is what the user waits for."""
-        behavior = record.get("behavior") or ""
-        match when.trigger:
-            case "asked":
-                return self._holds(when, behavior)
-            case "said":
-                over = phase == "listening" or record.get("outcome") == "done"
-                return over and self._holds(when, behavior)
-            case "doing":
-                first = behavior.partition(".")[2] in ("", "1")
-                return first and record.get("command") == when.what
-            case "done":
-                over = record.get("outcome") != "again"
-                return over and record.get("command") == when.what
-            case _:
-                return takes(when.what, record["event"])
-
-    def _holds(self, when: When, behavior: str) -> bool:
-        said = self._texts.get(behavior.partition(".")[0], "")
-        return bool(said) and fold(when.what) in fold(said)
 
     # Doing ------------------------------------------------------------------------
 

@@ -9,9 +9,10 @@ from prima.errors import Place
 from prima.language.values import shown
 from prima.sim.expectations import Expectation
 from prima.sim.scenario import Scenario
+from prima.sim.triggers import fires
 from prima.testing.excerpts import around
 from prima.testing.facts import Fact, RunFacts, Window
-from prima.testing.matching import fits, most_alike, text_of, triggers, values
+from prima.testing.matching import fits, most_alike, text_of, values
 from prima.testing.sentences import event_of, expected, seconds, subject, times
 from prima.testing.tracing import StateChange
 
@@ -102,7 +103,7 @@ class ExpectationChecker:
         fired = [
             fact
             for fact in self.run.facts
-            if fact.number > window.behind and triggers(one.trigger, one.what, fact)
+            if fact.number > window.behind and fires(one.trigger, one.what, fact.record, fact.said)
         ]
         event = event_of(one)
         if len(fired) < one.count:

@@ -10,6 +10,7 @@ from prima.grammar.text import fold
 from prima.interpreter.selection import takes
 from prima.language.values import read_value, shown
 from prima.sim.expectations import Expectation
+from prima.sim.triggers import fires, holds
 from prima.testing.facts import Fact
 
 MOST_COMPARED = 500
@@ -36,9 +37,9 @@ def fits(one: Expectation, fact: Fact, whoever: bool = False, whatever: bool = F
 
 
 MATCHES: dict[str, Callable[[str, Fact], bool]] = {
-    "says": lambda word, fact: fact.phase == "start" and _holds(word, fact),
+    "says": lambda word, fact: fact.phase == "start" and holds(word, fact.said),
     "does": lambda word, fact: fact.phase == "start" and fact.record.command == word,
-    "finishes": lambda word, fact: triggers("done", word, fact),
+    "finishes": lambda word, fact: fires("done", word, fact.record, fact.said),
     "event": lambda word, fact: fact.phase == "event" and takes(word, fact.record.event),
     "logs": lambda word, fact: fact.phase == "log" and fold(word) in fold(fact.record.message),
     "sends": lambda word, fact: (
@@ -84,26 +85,6 @@ def _same(text: str, value: Any) -> bool:
                 continue
         return False
     return " ".join(text.split()) == " ".join(shown(value).split())
-
-
-def triggers(name: str, what: Any, fact: Fact) -> bool:
-    """Whether a fact fires a trigger, as in ``<when>``."""
-    record, phase = fact.record, fact.phase
-    match name:
-        case "asked":
-            return phase == "listening" and _holds(what, fact)
-        case "said":
-            done = phase == "end" and record.outcome == "done"
-            return (phase == "listening" or done) and _holds(what, fact)
-        case "doing":
-            return phase == "start" and record.command == what
-        case "done":
-            return phase == "end" and record.command == what
-    return phase == "event" and takes(what, record.event)
-
-
-def _holds(what: str, fact: Fact) -> bool:
-    return bool(fact.said) and fold(what) in fold(fact.said)
 
 
 def text_of(fact: Fact, name: str) -> str:

@@ -10,17 +10,12 @@ from pathlib import Path
 import pytest
 
 from prima import api
-from prima.sim.chance import Amount
-from prima.sim.happenings import When
-from prima.sim.people import PHASES, People
 from prima.sim.scenario import read_scenario
 from prima.testing.checking import check
 from prima.testing.facts import make_run
-from prima.testing.matching import triggers
 from prima.testing.running import Result, TestOptions, run_one
 from prima.testing.summary import format_result
 from prima.testing.tracing import StateHistory, states_of
-from prima.transcript.run import run_of
 from tests import ROOT
 from tests.helpers.here import prima
 from tests.helpers.testing import DEMOS, DESK, FIRST, outcome, write
@@ -207,29 +202,6 @@ def test_mistakes_in_expectations_are_found_before_the_run(
 def test_a_run_takes_no_notice_of_expectations(tmp_path: Path) -> None:
     plain = api.rehearse(write(tmp_path, "")).records[1:]
     assert api.rehearse(write(tmp_path, "".join(FALSE))).records[1:] == plain
-
-
-@pytest.mark.parametrize("path", DEMOS, ids=lambda path: path.stem)
-def test_triggers_are_those_of_when(path: Path) -> None:
-    records = api.rehearse(path).records
-    run = make_run(run_of(records).entries, [], StateHistory())
-    begun = [one for one in records if one["phase"] == "start"]
-    words = {("doing", one["command"]) for one in begun} | {
-        ("done", one["command"]) for one in begun
-    }
-    words |= {("on", one["event"]) for one in records if one["phase"] == "event"}
-    words |= {(name, one["text"]) for one in begun if one.get("text") for name in ("said", "asked")}
-    for name, what in sorted(words):
-        person, when = People.__new__(People), When(name, what, Amount(0), 1, 1, [])
-        person._texts = {}
-        theirs = []
-        for one in records:
-            if one["phase"] == "start" and one.get("text"):
-                person._texts[one["behavior"].partition(".")[0]] = one["text"]
-            seen = one["phase"] in PHASES[name]
-            if seen and person._is(when, one["phase"], one):
-                theirs.append(round(one["time"] * 1000))
-        assert [fact.time for fact in run.facts if triggers(name, what, fact)] == theirs, name
 
 
 @pytest.mark.parametrize("path", DEMOS[::3], ids=lambda path: path.stem)
