@@ -12,19 +12,17 @@ from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Step
 from prima.script.evaluation import Scope
 from prima.voicexml.arranging import ARRANGING, Arranged, Queued, longest_of, said_last
-from prima.voicexml.cues import MAX_CUES, MAX_NAME, break_ms, later, milliseconds, rate_of
+from prima.voicexml.cues import MAX_CUES, MAX_NAME, later
 from prima.voicexml.document import FetchError, Page, of_web
 from prima.voicexml.elements import SILENT
 from prima.voicexml.evaluating import WORD, VoiceEvaluator
 from prima.voicexml.owner import MachineOwner
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
 from prima.voicexml.settings import setting
-from prima.voicexml.speech import Speech
+from prima.voicexml.speech import Speech, read_markup
 from prima.voicexml.state import Context
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
-APART = frozenset(["p", "s", "paragraph", "sentence"])
-SENTENCE = Cue(0, "sentence")
 UNKNOWN_MS = 1000
 """The duration assumed for a recording that cannot be read and has no text (4.1.3)."""
 MAX_KNOWN = 1000
@@ -150,27 +148,14 @@ class Speaker(VoiceEvaluator):
                 speech.parts.append(text)
             case "audio":
                 self.audio(node, context, local, speech)
-            case "sub":
-                speech.parts.append(f" {node.get('alias', node.text)} ")
             case "mark":
                 self.mark_here(node, context, local, speech)
-            case "break":
-                ms = break_ms(node.get("time"), node.get("strength"), node.get("size"))
-                speech.parts += [" ", Cue(0, "pause", ms), " "] if ms else [" "]
-            case "prosody":
-                self.prosody(node, context, local, speech)
-            case tag if tag in SILENT:
-                speech.parts.append(" ")
             case "enumerate":
                 self.owner.enumeration(node, context, local, speech)
             case "foreach":
                 self.read_each(node, context, local, speech)
-            case tag if tag in APART:
-                speech.parts += [" ", SENTENCE]
-                self.read_all(node, context, local, speech)
-                speech.parts += [SENTENCE, " "]
             case _:
-                self.read_all(node, context, local, speech)
+                read_markup(node, speech, lambda: self.read_all(node, context, local, speech))
 
     def read_each(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
         """Read a ``foreach`` once for each element of its array."""
@@ -187,15 +172,6 @@ class Speaker(VoiceEvaluator):
         if not speech.silent:
             self.mark = name
             speech.parts += [Cue(0, "mark", name), " "]
-
-    def prosody(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
-        """Speech at a rate, or of a set duration, which goes before the rate (SSML 1.0, 2.2.4)."""
-        around = speech.rate
-        speech.say_at(rate_of(node.get("rate"), around))
-        opened = speech.open(milliseconds(node.get("duration")))
-        self.read_all(node, context, local, speech)
-        speech.close(opened)
-        speech.say_at(around)
 
     def audio(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
         """Read a recording: its text if it has one, else its name (4.1.3).

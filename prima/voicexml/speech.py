@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from prima.interpreter.expressions import MAX_TEXT
+from prima.markup.tree import Node
 from prima.messages import Cue
-from prima.voicexml.cues import clipped, fold
+from prima.voicexml.cues import break_ms, clipped, fold, milliseconds, rate_of
+from prima.voicexml.elements import SILENT
+
+APART = frozenset(["p", "s", "paragraph", "sentence"])
+SENTENCE = Cue(0, "sentence")
 
 
 @dataclass(slots=True)
@@ -52,3 +58,33 @@ class Speech:
         """End a set duration, unless it has been split meanwhile."""
         if opened == self.takes:
             self.parts.append(Cue(0, "end"))
+
+
+def read_markup(node: Node, speech: Speech, inner: Callable[[], None]) -> None:
+    """Read an element that needs nothing but the document (SSML 1.0); ``inner`` reads its content."""
+    match node.tag:
+        case "sub":
+            speech.parts.append(f" {node.get('alias', node.text)} ")
+        case "break":
+            ms = break_ms(node.get("time"), node.get("strength"), node.get("size"))
+            speech.parts += [" ", Cue(0, "pause", ms), " "] if ms else [" "]
+        case "prosody":
+            _prosody(node, speech, inner)
+        case tag if tag in SILENT:
+            speech.parts.append(" ")
+        case tag if tag in APART:
+            speech.parts += [" ", SENTENCE]
+            inner()
+            speech.parts += [SENTENCE, " "]
+        case _:
+            inner()
+
+
+def _prosody(node: Node, speech: Speech, inner: Callable[[], None]) -> None:
+    """Speech at a rate, or of a set duration, which goes before the rate (SSML 1.0, 2.2.4)."""
+    around = speech.rate
+    speech.say_at(rate_of(node.get("rate"), around))
+    opened = speech.open(milliseconds(node.get("duration")))
+    inner()
+    speech.close(opened)
+    speech.say_at(around)
