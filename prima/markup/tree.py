@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from itertools import islice
 
 from prima.errors import Place, Span
 
@@ -36,8 +37,8 @@ class Source:
 
     file: str
     text: str
-    tags: list[int] | None = None
-    """Where every element's start tag begins in the text, in order."""
+    tags: list[int] = field(default_factory=list)
+    """Where the elements' start tags begin in the text, in order, as far as one was asked for."""
     lines: list[int] | None = None
     """Where every line begins."""
     _attributes: tuple[int, dict[str, tuple[int, int]]] = (-1, {})
@@ -50,9 +51,11 @@ class Source:
 
     def tag(self, index: int) -> int:
         """Where the start tag of element number ``index`` begins in the text."""
-        if self.tags is None:
-            found = MARKUP.finditer(self.text)
-            self.tags = [match.start() for match in found if match["start"]]
+        known = len(self.tags)
+        if index >= known:
+            found = MARKUP.finditer(self.text, self.tags[-1] + 1 if known else 0)
+            starts = (one.start() for one in found if one["start"])
+            self.tags += islice(starts, max(index + 1 - known, known))
         return self.tags[index]
 
     @property
