@@ -36,18 +36,23 @@ BRIEF_MS, MOST_BRIEF = 50, 1_000
 """How long waits must last on average (ms), and how many more there may be."""
 
 
+Visited = Literal["document", "enter", "leave", "in", "true", "false", "heard"]
+"""What happened to an element.
+
+``document``: it is the root of a document that is there now; ``enter``: its state is active now;
+``leave``: a state was left; ``in``: it is executed; ``true`` and ``false``: its condition was;
+``heard``: the user said what it listens for."""
+
+
 class ElementVisit(NamedTuple):
     """An application came to an element of a document."""
 
     app: str
     time: int
     """The instant (ms)."""
-    what: Literal["document", "enter", "leave", "in", "true", "false", "heard"]
-    """``document``: the element is the root of one that is there now; ``enter`` and ``leave``: the
-    state ``name`` is active now; ``in``: it is executed; ``true`` and ``false``: its condition
-    was; ``heard``: the user said what it listens for."""
+    what: Visited
     node: Node | None
-    """The element; None if the application is no longer in any state."""
+    """The element; None if a state was left."""
     name: str = ""
     """The state that is active now; the path of a document."""
 
@@ -97,9 +102,9 @@ class Bounds(Generic[Evaluator]):
         self.exhausted = ""
         """Why the application may not continue."""
 
-    def note(self, node: Node, what: Literal["in", "true", "false", "heard"] = "in") -> None:
-        """Note an executed element, or its evaluated condition."""
-        self.visits.append(ElementVisit(self.name, self.now, what, node))
+    def note(self, node: Node | None, what: Visited = "in", name: str = "") -> None:
+        """Note what happened to an element."""
+        self.visits.append(ElementVisit(self.name, self.now, what, node, name))
 
     def renew(self, now: int) -> None:
         """Begin a new instant, so many ms after the run began."""

@@ -10,9 +10,10 @@ them all, by the protocols here alone.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Sized
-from typing import TYPE_CHECKING, Literal, NoReturn, Protocol
+from typing import TYPE_CHECKING, NoReturn, Protocol
 
 from prima.interpreter.acts import Act, Expression, SendOut, Text
+from prima.interpreter.bounds import Visited
 from prima.interpreter.elements import Document, Form, Item, Unit
 from prima.interpreter.frame import Content, Fiber, Frame
 from prima.interpreter.transfers import GoItem, Thrown, Transfer
@@ -130,7 +131,7 @@ class Owner(Protocol):
 
     # Bounds:
 
-    def note(self, node: Node, what: Literal["in", "true", "false", "heard"] = "in") -> None:
+    def note(self, node: Node | None, what: Visited = "in", name: str = "") -> None:
         """An element is gone through, or its condition has been evaluated."""
 
     def count_handlers(self, node: Node, handlers: Sized) -> None:

@@ -207,11 +207,7 @@ class States(App["AnyEngine | PythonEngine"]):
         """O3: end the state's content, conclude its units, give up its Commands."""
         outer = frame.caller.form if frame.caller is not None and not self.over else None
         name = outer.id if outer is not None else ""
-        self.visits.append(
-            ElementVisit(
-                self.name, self.now, "leave", outer.node if outer is not None else None, name
-            )
-        )
+        self.note(None, "leave", name)
         if frame.fibers:
             for fiber in frame.fibers:
                 self.forget(fiber)
@@ -269,8 +265,7 @@ class States(App["AnyEngine | PythonEngine"]):
     def begin(self, frame: Frame, setup: bool = True) -> tuple[Frame, Transfer] | None:
         """Start a form's own content; gives the transfer of control if it ends at once."""
         self.frame, form = frame, frame.form
-        self.visits.append(ElementVisit(self.name, self.now, "enter", form.node, form.id))
-        self.note(form.node)
+        self.note(form.node, "enter", form.id)
         if frame.form.bare and not (frame.fresh or frame.called_by):
             return None  # nothing more can happen until the next event
         self.count_step(form.node, FORM_STEPS)

@@ -63,12 +63,13 @@ def marks_of(visits: Iterable[ElementVisit]) -> ReachedElements:
     paths: dict[int, str] = {}
     """The paths of documents, by the identity of their sources."""
     for visit in visits:
-        if visit.node is None or visit.what in ("enter", "leave"):
+        if visit.node is None:
             continue
         source = visit.node.source
         if visit.what != "document":
             if id(source) in paths:
-                marks.marks[paths[id(source)]].add((visit.node.index, visit.what))
+                what = "in" if visit.what == "enter" else visit.what
+                marks.marks[paths[id(source)]].add((visit.node.index, what))
         elif id(source) not in paths and _is_file(visit):
             paths[id(source)] = visit.name
             marks.roots.setdefault(visit.name, visit.node)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 
-from prima.interpreter.bounds import ElementVisit
 from prima.interpreter.selection import Counters
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, thrown_of
 from prima.markup.tree import Node
@@ -177,13 +176,12 @@ class Machine:
                 app.note_document(page)
         named = context.page.dialogs.items()
         self.state = next((name for name, one in named if one is form), "")
-        app.visits.append(ElementVisit(app.name, app.now, "enter", form, self.state))
-        app.note(form)
+        app.note(form, "enter", self.state)
         try:
             yield from self._interpret(context, form, heard)
         finally:
             self.state = outer
-            app.visits.append(ElementVisit(app.name, app.now, "leave", None, outer))
+            app.note(None, "leave", outer)
 
     def _interpret(self, context: Context, form: Node, heard: TakenUtterance | None) -> Flow:
         """Initialise, then select, collect, process (appendix C)."""

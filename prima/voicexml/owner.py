@@ -8,9 +8,9 @@ machine, and the application that owns it by the protocols here alone.
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence, Sized
-from typing import Literal, NoReturn, Protocol
+from typing import NoReturn, Protocol
 
-from prima.interpreter.bounds import ElementVisit
+from prima.interpreter.bounds import Visited
 from prima.interpreter.transfers import Thrown
 from prima.markup.tree import Node
 from prima.messages import Action, Command, Cue, Data, Event, Json
@@ -36,8 +36,6 @@ class VoiceApplication(Protocol):
     """What the user said last, as a grammar took it."""
     actions: list[Action]
     """Its requests, for the session to carry out."""
-    visits: list[ElementVisit]
-    """The elements that it came to."""
 
     @property
     def waits(self) -> Waits:
@@ -51,7 +49,7 @@ class VoiceApplication(Protocol):
     def document(self) -> VoiceDocument:
         """What it runs."""
 
-    def note(self, node: Node, what: Literal["in", "true", "false", "heard"] = "in") -> None:
+    def note(self, node: Node | None, what: Visited = "in", name: str = "") -> None:
         """An element is gone through, or its condition has been evaluated."""
 
     def note_document(self, page: Page) -> None:
