@@ -292,6 +292,15 @@ def starts() -> list[Row]:
             rounds=MOST,
         ),
         Row(
+            "`prima validate`, 1,000 small files",
+            "s",
+            Call(processes.validate_many, ("prima", 1_000)),
+            "lxml's parse and XSD",
+            Call(processes.validate_many, ("lxml", 1_000)),
+            most=2,
+            needs="lxml",
+        ),
+        Row(
             "W5: `prima run` of the demo",
             "s",
             run,

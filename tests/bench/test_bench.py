@@ -82,6 +82,8 @@ def test_a_difference_is_that_which_was_made(change: str) -> None:
 
 def test_processes_end_well() -> None:
     assert min(processes.help_(), processes.validate(), processes.run()) > 0
+    assert processes.validate_many("prima", 3) > 0
+    assert processes.validate_many("lxml", 3) > 0
 
 
 @pytest.mark.parametrize(
