@@ -104,7 +104,7 @@ def test_documents_beside_examples_are_right() -> None:
     assert set(beside("mode")) == {"keys.grxml", "towns.gram"}
 
 
-NOTERS = {"Problem", "problem", "note", "unsupported", "refuse", "_error"}
+NOTERS = {"Problem", "problem", "unsupported", "refuse", "_error"}
 """What the package calls to tell a problem; its code is one of the first arguments."""
 
 

@@ -229,7 +229,7 @@ def test_odd_records_give_a_page_or_a_message(data: st.DataObject) -> None:
     for _ in range(data.draw(st.integers(1, 12))):
         record = data.draw(st.sampled_from(records))
         name = data.draw(
-            st.sampled_from(sorted(record.keys() - {"time", "phase", "actor"}) or ["x"])
+            st.sampled_from(sorted(record.keys() - {"time", "phase", "actor"}) or ["app"])
         )
         where = record
         if isinstance(record.get(name), dict) and record[name] and data.draw(st.booleans()):
