@@ -220,6 +220,10 @@ class _Search:
         if node.tag == "when":
             own = "at" if "at" in node.attributes else "after"
         if own == "":
+            if node.nodes:
+                inside = node.nodes[0].tag
+                why = f"It holds <{inside}> beside its text: remove that, or vary"
+                raise self.wrong(f"{why} {self.path}.{inside}.")
             return ScenarioValue(self.path, node, None)
         attribute = self.attribute(node, own or "")
         if attribute is None:

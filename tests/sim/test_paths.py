@@ -144,6 +144,14 @@ def test_a_path_that_leads_nowhere(path: str, why: str) -> None:
         find(root(), path, robot)
 
 
+def test_a_text_beside_alternatives_is_no_value() -> None:
+    text = TEXT.replace("Yes.", 'Yes.<alternative confidence="0.3">Yet.</alternative>').encode()
+    scenario = look_at_scenario("visit.xml", text)[0].node
+    with pytest.raises(UsageError, match=r"vary reply.alternative\.$"):
+        find(scenario, "reply", robot)
+    assert find(scenario, "reply.alternative", robot).written == "Yet."
+
+
 def test_an_id_comes_before_an_attribute_or_element_of_that_name() -> None:
     text = TEXT.replace('id="touch"', 'id="until"').encode()
     assert find(look_at_scenario("visit.xml", text)[0].node, "until", robot).written == "1s"
