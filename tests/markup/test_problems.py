@@ -155,6 +155,22 @@ def test_a_reaction_to_an_own_end_that_lets_others_in_is_not_endless(handlers: s
 
 
 @pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("<speak>x</speak>", 1),
+        ('<speak>x</speak><pause time="9s"/><speak>y</speak>', 1),
+        ('<par><speak>x</speak><pause time="9s"/></par>', 1),
+        ('<speak>x</speak><pause time="9s"/>', 0),
+        ('<pause time="9s"/><log>y</log><speak>x</speak>', 0),
+    ],
+)
+def test_a_form_that_goes_to_itself_lets_others_in_by_a_pause(content: str, told: int) -> None:
+    made = read(f'<form id="a"><block>{content}<goto next="#a"/></block></form>')[1]
+    assert [one.code for one in made] == ["endless"] * told
+    assert all("<pause" in one.remedy for one in made)
+
+
+@pytest.mark.parametrize(
     ("body", "code"),
     [
         ('<form id="a"/><form id="a"/>', "duplicate-id"),

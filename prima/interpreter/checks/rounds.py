@@ -6,7 +6,17 @@ from collections.abc import Iterator
 
 from prima.errors import Problem
 from prima.errors.diagnoses.behaviour import ENDLESS
-from prima.interpreter.acts import CommandRun, Exit, Foreach, Goto, If, Return, Throw, run_commands
+from prima.interpreter.acts import (
+    CommandRun,
+    CommandTemplate,
+    Exit,
+    Foreach,
+    Goto,
+    If,
+    Return,
+    Throw,
+    run_commands,
+)
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Block, Form
 
@@ -19,7 +29,7 @@ NEVER_ENDS = ENDLESS.says(
 )
 GOES_ROUND = ENDLESS.says(
     "The forms {forms} go round without asking or waiting: no other application has a turn.",
-    'Wait for an event: <send event="..." delay="10s"/> and <on event="...">.',
+    'Write <pause time="5s"/> before the goto, or wait for an event: <send event="..." delay="10s"/>.',
 )
 GOES_TO_ITSELF = ENDLESS.says(
     'The form "{forms}" goes to itself without asking or waiting: no other application has a turn.',
@@ -64,13 +74,22 @@ def _round(last: Goto, ring: list[str]) -> Problem:
 
 
 def _always(form: Form) -> Goto | None:
-    """The goto by which a form is certainly left for another, without a question or a wait."""
+    """The goto by which a form is certainly left, without a question, a wait or a last pause."""
     for item in form.items:
         if not isinstance(item, Block) or item.cond is not None or item.expr is not None:
             return None
         for act in item.content:
             if isinstance(act, If | Foreach | Throw | Exit | Return):
                 return None
+            if isinstance(act, CommandRun) and _rests(act):
+                return None
             if isinstance(act, Goto):
                 return act if isinstance(act.form, str) else None
     return None
+
+
+def _rests(run: CommandRun) -> bool:
+    """Whether it ends with a pause, beside and after which nothing of it is left (F6)."""
+    followed = {index for step in run.steps for index in step.after}
+    last = [step.what for index, step in enumerate(run.steps) if index not in followed]
+    return [isinstance(one, CommandTemplate) and one.type for one in last] == ["pause"]
