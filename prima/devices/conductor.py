@@ -76,7 +76,8 @@ class Conductor:
         self._goals = OpenGoals(self._inbound)
         self._looped: dict[str, Task] = {}
         """Feedback Commands whose loop has ended at this instant: another may follow (U2)."""
-        self._now = start
+        self._now = self._collected = start
+        """The latest report or order, and the latest call of :meth:`collect`."""
 
     def drain(self) -> list[Call]:
         """Return the calls for drivers made since the last time, in order.
@@ -220,7 +221,7 @@ class Conductor:
         """When the next report is due (ms), if known."""
         now = self._now
         tasks = self.tasks.values()
-        ends = [task.ends for task in tasks if task.ends and task.ends > now]
+        ends = [task.ends for task in tasks if task.ends and task.ends > self._collected]
         late = [goal.late(self._limits(goal.begin)) for goal in self._goals.open.values()]
         due = earliest(self.sight.due(now, visible), self.ear.due(), *ends, *late)
         if self._inbound or any(task.failed for task in tasks):
@@ -235,7 +236,7 @@ class Conductor:
             visible: whether the camera sees the user.
             where: their distance (m) and angle (degrees).
         """
-        self._now = now
+        self._now = self._collected = now
         self.end_loops()
         self._give_up_late()
         reports = list(self._inbound)

@@ -262,6 +262,24 @@ def test_a_start_waits_until_what_was_cancelled_has_stopped() -> None:
     assert desk.at(31) == [Delayed("b#1", "speaker", 30)]
 
 
+@pytest.mark.parametrize(
+    ("command", "ends"),
+    [
+        (Command("q-and-a", {"timeout": 5000}, ""), 1),
+        (Command("pause", {"time": 2000}), 2000),
+    ],
+)
+def test_an_end_is_due_though_a_report_comes_after_it(command: Command, ends: int) -> None:
+    desk = Desk()
+    (turn,) = desk.order("start", "b#1", TURN)
+    desk.order("start", "a#1", command)
+    desk.at(0)
+    desk.now = ends + 3
+    desk.report(Accepted(turn.key))  # type: ignore[union-attr]
+    assert desk.conductor.due(False) == ends
+    assert len(desk.at(ends)) == 1
+
+
 def test_a_cancelled_start_that_was_held_back_never_begins() -> None:
     desk = Desk()
     (first,) = desk.order("start", "a#1", SPEAK)

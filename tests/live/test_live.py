@@ -59,6 +59,15 @@ def test_a_run_prints_its_rows_and_writes_a_journal_that_replays(
     assert "S1" in shown.stdout
 
 
+def test_a_question_without_a_prompt_listens_at_once(tmp_path: Path) -> None:
+    (tmp_path / "listens.xml").write_text("""<prima xmlns="urn:prima:dialogue:1" version="1.0"
+  id="listens" kind="ea"><form id="a"><field name="sure" type="boolean"><prompt>Sure?</prompt>
+  <noinput><log>again</log></noinput><noinput count="2"><exit/></noinput></field></form></prima>""")
+    ran = prima("live", "--robot", ROBOT, "--ea", str(tmp_path / "listens.xml"), "--speed", "20")
+    assert ran.returncode == 0, ran.stderr
+    assert "(listens)" in ran.stdout
+
+
 def test_a_journal_replays_wherever_it_and_its_documents_are_moved(tmp_path: Path) -> None:
     before, after = tmp_path / "before", tmp_path / "after"
     before.mkdir()
