@@ -17,6 +17,8 @@ from prima.loading.voicedocuments import mappings
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from prima.sim.map import Map
+
 
 def stage(
     fas: str | Path | Iterable[str | Path],
@@ -49,9 +51,13 @@ def stage(
     demo = documents_folder()
     place = str(world or demo / "worlds" / "room.xml")
     body = str(robot or demo / "robots" / "papero.xml")
-    inside = f"{_standing(place)}{_applications(given, maps)}{_answers(says)}"
+    there = _site(place)
+    taken_up = entrances and bool(there.areas)
+    if entrances and not (taken_up or given):
+        raise UsageError(f"{place}: no <area> offers an application; name some by --fa and --ea.")
+    inside = f"{_standing(there)}{_applications(given, maps)}{_answers(says)}"
     try:
-        loaded = load_whole(path_of(STAGE), _scenario(place, body, entrances, inside))
+        loaded = load_whole(path_of(STAGE), _scenario(place, body, taken_up, inside))
     except DocumentError as error:
         own = (one.code for one in error.problems if one.place.file == STAGE)
         if "duplicate-id" in own:
@@ -104,21 +110,26 @@ def _answers(says: str | Iterable[str]) -> str:
     )
 
 
-def _standing(world: str) -> str:
-    """The robot at a world's first place, and the user a metre in front of it.
+def _site(world: str) -> Map:
+    """A world in which the robot can be.
 
     Raises:
         DocumentError: the world is wrong.
         UsageError: it cannot be read, or has no place.
     """
-    from html import escape
-    from math import cos, radians, sin
-
     from prima.sim.map import read_world
 
     there = read_world(world, read_file(world))
     if not there.places:
         raise UsageError(f"{world}: this world has no place for the robot; write a <place> in it.")
+    return there
+
+
+def _standing(there: Map) -> str:
+    """The robot at a world's first place, and the user a metre in front of it."""
+    from html import escape
+    from math import cos, radians, sin
+
     name, (x, y) = next(iter(there.places.items()))
     angle = radians(there.headings[name])
     return (

@@ -306,6 +306,18 @@ def test_what_users_say_can_be_left_out_of_the_journal(tmp_path: Path) -> None:
         assert "left out of this journal" in refused.stderr or "has ended" in refused.stderr
 
 
+def test_a_site_without_areas_is_a_map_alone(tmp_path: Path) -> None:
+    goes = HELLO.replace('<turn angle="30"/>', '<topological-move to="door"/>')
+    (tmp_path / "goes.xml").write_text(goes)
+    words = ["--robot", ROBOT, "--world", "documents/worlds/room.xml", "--speed", "50"]
+    ran = prima("live", *words, "--ea", str(tmp_path / "goes.xml"))
+    assert ran.returncode == 0, ran.stderr
+    assert "reaches door" in ran.stdout
+    ran = prima("live", *words)
+    assert (ran.returncode, ran.stdout) == (2, "")
+    assert "room.xml: no <area> offers an application; name some by --fa" in ran.stderr
+
+
 def test_an_area_of_the_site_brings_its_application(tmp_path: Path) -> None:
     world = tmp_path / "site.xml"
     (tmp_path / "hello.xml").write_text(HELLO)
