@@ -91,7 +91,8 @@ class Exploration:
         settings = ExperimentSettings(isolate=plan.isolate)
         moves = list(plan.moves) or _events(plan.scenario, settings)
         if not moves:
-            raise UsageError(f"{plan.scenario}: there is nothing to move: no <when> has a time.")
+            message = "there is nothing to move: no <when> has a time that is not drawn."
+            raise UsageError(f"{plan.scenario}: {message} Name other times: --move answer.after.")
         if len(moves) > MOST_MOVES:
             raise UsageError(f"{len(moves)} events are too many to move; name some: --move PATH.")
         self.stage = Examiner.of([plan.scenario], moves, settings)

@@ -239,6 +239,7 @@ def test_scenarios_that_cannot_be_explored() -> None:
     Path("none.xml").write_text(VISIT.replace("<when", "<!--").replace("</when>", "-->"))
     done = prima("explore", "none.xml")
     assert done.returncode == 2 and "nothing to move" in done.stderr, done.stderr
+    assert "Name other times: --move" in done.stderr
     Path("wrong.xml").write_text(VISIT.replace("<robot ", "<robbot "))
     assert prima("explore", "wrong.xml").returncode == 1
     assert "cannot be read" in prima("explore", "no.xml").stderr
