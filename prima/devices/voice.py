@@ -105,7 +105,7 @@ class SpeechTimeline:
 def timeline(
     text: str, lang: str, rates: dict[str, float], cues: tuple[Cue, ...]
 ) -> SpeechTimeline:
-    """Lay a text out in time, with its pauses, rates and set times (SSML 1.0, 2.2.3 and 2.2.4).
+    """Lay a text out in time, with its pauses, rates and set times (SSML 1.0, 3.2.3 and 3.2.4).
 
     A stretch with a set time is lengthened or shortened as a whole, including its pauses.
     """

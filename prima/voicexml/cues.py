@@ -9,11 +9,11 @@ from prima.language.values import LONGEST_MS, read_value
 from prima.messages import Cue
 
 PAUSES = {"none": 0, "x-weak": 100, "weak": 250, "medium": 500, "strong": 750, "x-strong": 1000}
-"""The duration of a break of each strength, in ms (SSML 1.0, 2.2.3)."""
+"""The duration of a break of each strength, in ms (SSML 1.0, 3.2.3)."""
 SIZES = {"none": 0, "small": 250, "medium": 500, "large": 1000}
 """The same for the sizes of VoiceXML 1.0."""
 RATES = {"x-slow": 0.5, "slow": 0.8, "medium": 1.0, "default": 1.0, "fast": 1.25, "x-fast": 2.0}
-"""Named rates, as multiples of the usual one (SSML 1.0, 2.2.4)."""
+"""Named rates, as multiples of the usual one (SSML 1.0, 3.2.4)."""
 SLOWEST, FASTEST = 0.1, 10.0
 """The slowest and fastest rate of the voice, whatever a document asks for."""
 MAX_CUES = 1000

@@ -81,7 +81,7 @@ def read_markup(node: Node, speech: Speech, inner: Callable[[], None]) -> None:
 
 
 def _prosody(node: Node, speech: Speech, inner: Callable[[], None]) -> None:
-    """Speech at a rate, or of a set duration, which goes before the rate (SSML 1.0, 2.2.4)."""
+    """Speech at a rate, or of a set duration, which goes before the rate (SSML 1.0, 3.2.4)."""
     around = speech.rate
     speech.say_at(rate_of(node.get("rate"), around))
     opened = speech.open(milliseconds(node.get("duration")))

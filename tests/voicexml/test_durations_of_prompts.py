@@ -46,7 +46,7 @@ from tests.helpers.voice import Call, vxml
         ('<prosody rate="medium">One two</prosody>', "One two", 0),
     ],
 )
-def test_pauses_are_added_to_what_the_words_take(  # SSML 1.0, 2.2.3
+def test_pauses_are_added_to_what_the_words_take(  # SSML 1.0, 3.2.3
     played: Played, markup: str, text: str, more: int
 ) -> None:
     made = played(prompt(markup))
@@ -105,7 +105,7 @@ def test_a_rate_ends_with_its_element_whatever_is_in_it(played: Played) -> None:
     assert takes(made) == [2300, 2300, 3300]
 
 
-def test_a_set_duration_goes_before_rates_and_pauses(played: Played) -> None:  # SSML 1.0, 2.2.4
+def test_a_set_duration_goes_before_rates_and_pauses(played: Played) -> None:  # SSML 1.0, 3.2.4
     made = played(
         prompt('<prosody duration="3s" rate="slow">One <break time="9s"/> two.</prosody>').replace(
             "</block>", '<prompt>One <prosody duration="3s">two</prosody></prompt></block>'

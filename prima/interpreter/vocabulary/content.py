@@ -97,6 +97,6 @@ ACTS = (
         "break",
         "A pause in what is said: the robot goes on with the same utterance after it.",
         (attribute("time", "duration", "how long", "required", low=1, high=60000),),
-        source="SSML 2.2.3",
+        source="SSML 3.2.3",
     ),
 )
