@@ -99,6 +99,9 @@ def test_a_call_with_music_can_be_ended_by_the_caller(tmp_path: Path) -> None:
         ('<prosody pitch="-2st" volume="100" range="x-low">a</prosody>', []),
         ('<voice age="x" variant="0">a</voice>', ["age", "variant"]),
         ('<voice age="0" variant="1" gender="female">a</voice>', []),
+        ("<voice>a</voice>", ["<voice>"]),
+        ("<prosody>a</prosody>", ["<prosody>"]),
+        ('<voice xml:lang="en">a</voice>', []),
     ],
 )
 def test_speech_that_no_voice_can_make_is_told(content: str, wrong: list[str]) -> None:

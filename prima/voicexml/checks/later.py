@@ -8,6 +8,7 @@ from typing import Literal
 
 from prima.errors import Hint, Problem, one_of, suggestion
 from prima.errors.diagnoses.names import BAD_EXPRESSION, NO_SUCH_FORM, NO_SUCH_NAME
+from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE
 from prima.errors.diagnoses.values import BAD_VALUE, EXCLUSIVE
 from prima.language.commands import TABLE_4_2
 from prima.markup.spans import value_span
@@ -44,6 +45,9 @@ LATER_VALUES = {
     "voice": {"age": "number", "variant": "integer"},
 }
 """Impossible keys, events that nothing throws or takes, and speech that no voice can produce."""
+NO_EFFECT = MISSING_ATTRIBUTE.says(
+    "<{tag}> without an attribute changes nothing.", "Add one, or remove the element.", "warning"
+)
 NO_DIALOG = NO_SUCH_FORM.says(
     'There is no dialog "{name}" here: this will be error.badfetch.', severity="warning"
 )
@@ -82,6 +86,8 @@ def _check_node(node: Node, lang: str) -> Iterator[Problem]:
         yield from grammar_problems(node, lang)
     if node.key == "field" and node.get("type"):
         yield from _type_problems(node)
+    if node.key in ("prosody", "voice") and not node.attributes:
+        yield NO_EFFECT.at(node.place, tag=node.tag)  # SSML 1.0, 3.2.1 and 3.2.4
     yield from check_name(node)
     yield from _value_problems(node)
     if node.namespace == PRIMA_NAMESPACE and node.tag in TABLE_4_2:
