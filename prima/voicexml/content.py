@@ -190,6 +190,14 @@ class Content(Speaker):
             self.owner.app.count_value(found[name], node)
         return found
 
+    def sent(self, node: Node, names: list[str], context: Context, local: Scope) -> dict[str, Json]:
+        """Variables as a request sends them: null as its text, undefined as None (5.3.8)."""
+        found = self.values(node, names, context, local)
+        for name in [one for one, value in found.items() if value is None]:
+            if self.engine.condition(f"{name} === null", context.scopes(local)):
+                found[name] = "null"
+        return found
+
     # Control ----------------------------------------------------------------------------
 
     def branch(self, node: Node, context: Context, local: Scope) -> Flow:
@@ -219,7 +227,7 @@ class Content(Speaker):
         """Submit values and go to the document returned, or send them and go on (5.3.8)."""
         inputs = [one.get("name") for one in form_items(context) if one.tag in INPUTS]
         names = node.get("namelist").split() if "namelist" in node.attributes else inputs
-        values = self.values(node, [name for name in names if name], context, local)
+        values = self.sent(node, [name for name in names if name], context, local)
         uri = self.word(node, "next", context, local)
         service, _, dialog = uri.removeprefix(SERVICE).partition("#")
         if not uri.startswith(SERVICE) or not dialog:
@@ -278,7 +286,8 @@ class Content(Speaker):
         """Fetch an XML document as a read-only DOM (VoiceXML 2.1, 5)."""
         if node.get("name"):
             self.check_name(node)
-        request = UriRequest(node.get("method"), self.named(node, context, local))
+        values = self.sent(node, node.get("namelist").split(), context, local)
+        request = UriRequest(node.get("method"), values)
         uri = self.resource(node, context, local)
         content = yield from fetch(self.owner, uri, node, request)
         if not node.get("name"):

@@ -151,7 +151,7 @@ class Items:
         params = self._params(context, item)
         uri = self.owner.content.word(item, "src", context, self.owner.local())
         names = item.get("namelist").split()
-        values = self.owner.content.values(item, names, context, self.owner.local())
+        values = self.owner.content.sent(item, names, context, self.owner.local())
         request = UriRequest(item.get("method"), values) if names else None
         fetched, dialog = yield from self.owner.documents.find(context, uri, item, request)
         page = fetched or context.page

@@ -92,10 +92,8 @@ class VoiceContentRunner(Protocol):
     def raised(self, node: Node, context: Context, local: Scope) -> Thrown:
         """The event that an element throws, with its message."""
 
-    def values(
-        self, node: Node, names: list[str], context: Context, local: Scope
-    ) -> dict[str, Json]:
-        """The values of variables by their names."""
+    def sent(self, node: Node, names: list[str], context: Context, local: Scope) -> dict[str, Json]:
+        """The values of variables by their names, as a request sends them."""
 
     def put(
         self, scope: Scope, name: str, node: Node, attribute: str, context: Context, local: Scope

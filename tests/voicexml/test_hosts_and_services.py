@@ -13,6 +13,7 @@ import pytest
 
 from prima import api
 from prima.errors import UsageError
+from prima.loading.web import form_request
 from prima.markup.tree import Node
 from tests import ROOT
 from tests.helpers.voice import Call, Online, vxml
@@ -42,6 +43,23 @@ def test_a_number_that_json_lacks_is_submitted_as_its_text() -> None:  # 5.3.8
     names = '<var name="x" expr="NaN"/><var name="y" expr="1/0"/>'
     call = Online({}, REFUSED + names + block(f'<submit next="{SHOP}" namelist="x y"/>'))
     assert call.phases("send")[0]["data"]["params"] == {"x": "NaN", "y": "Infinity"}
+
+
+@pytest.mark.parametrize("element", ["submit next", "data src"])
+def test_null_is_submitted_as_its_text(element: str) -> None:  # 5.3.8
+    names = '<var name="x" expr="null"/><var name="y"/><var name="z" expr="{a: null}"/>'
+    sends = f'<{element}="{SHOP}" namelist="x y z.a"/>'
+    call = Online({}, REFUSED + names + block(sends))
+    sent = call.phases("send")[0]["data"]
+    assert sent["params"] == {"x": "null", "y": None, "z.a": "null"}
+    asked = form_request(SHOP, "get", sent["params"]).full_url
+    assert asked == f"{SHOP}?x=null&y=undefined&z.a=null"
+
+
+def test_null_goes_along_with_a_subdialog_as_its_text() -> None:  # 2.3.4
+    sends = f'<subdialog src="{SHOP}" namelist="x"/>'
+    call = Online({}, REFUSED + f'<var name="x" expr="null"/><form>{sends}</form>')
+    assert call.phases("send")[0]["data"]["params"] == {"x": "null"}
 
 
 def test_each_submit_is_sent_and_answered_anew() -> None:
