@@ -116,7 +116,9 @@ class Shell:
 
     def _note_late(self, late: int) -> None:
         if self._late is not None and late > max(self.latest, self._late):
-            self._warn(f"An instant was carried out {late / 1000:g} s late.")
+            speed = self.clock.speed
+            real = "" if speed == 1 else f" ({late / speed / 1000:.2g} s of real time)"
+            self._warn(f"An instant was carried out {late / 1000:g} s late{real}.")
         self.latest = max(self.latest, late)
 
     # Drivers ----------------------------------------------------------------------------

@@ -132,7 +132,7 @@ def test_a_machine_that_stood_still_is_reported_and_the_run_goes_on(tmp_path: Pa
     running.send_signal(signal.SIGCONT)
     _, told = running.communicate(timeout=60)
     assert running.returncode == 0, told
-    assert re.search(r"An instant was carried out \d\S* s late", told)
+    assert re.search(r"An instant was carried out \d\S* s late \(\d\S* s of real time\)", told)
     assert here.prima("replay", str(journal), cwd=ROOT).returncode == 0
 
 
