@@ -5,10 +5,14 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
+from heapq import heappop, heappush
+from itertools import count
+from random import Random
 from typing import Any
 
 from prima.devices.conductor import Conductor
-from prima.devices.goals import RecordingBounds, Speaks
+from prima.devices.goals import News, RecordingBounds, Report, Speaks
 from prima.devices.loop import Loop
 from prima.devices.settings import FOREVER, DriverSettings
 from prima.errors import Place
@@ -16,6 +20,7 @@ from prima.grammar.answers import Answers
 from prima.grammar.phrases import phrases
 from prima.live.clock import Clock
 from prima.live.devices import LiveDevices
+from prima.live.driver import Driver, Tell
 from prima.live.drivers.sim import SimDriver
 from prima.live.shell import Shell
 from prima.live.visit import FOREVER_MS
@@ -50,6 +55,56 @@ class Jumping(Clock):
             self.ended()
         else:
             self.time = max(self.time, until)
+
+
+class Creeping(Jumping):
+    """A clock that also goes on between two statements, as a real one does; it wakes late.
+
+    Drivers' reports come as much later, in the order in which they were made.
+    """
+
+    def __init__(self, seed: int = 0, longest: int = 3) -> None:
+        super().__init__()
+        self._dice = Random(seed)
+        self._longest = longest
+        self._agenda: list[tuple[int, int, Callable[[], object]]] = []
+        self._serial = count()
+
+    def now(self) -> int:
+        self.time += self._dice.randint(0, self._longest)
+        return self.time
+
+    def at(self, time: int, what: Callable[[], object]) -> None:
+        """Call something at a time, by which the run is woken."""
+        heappush(self._agenda, (time, next(self._serial), what))
+
+    def delay(self, driver: Driver) -> None:
+        """Let a driver's reports come later."""
+        attach, latest = driver.attach, 0
+
+        def attached(tell: Tell, now: Callable[[], int]) -> None:
+            def later(told: Report | News) -> None:
+                nonlocal latest
+                latest = max(latest, self.time + self._dice.randint(0, self._longest))
+                self.at(latest, partial(tell, told))
+
+            attach(later, now)
+
+        driver.attach = attached  # type: ignore[method-assign, assignment]
+
+    async def wait(self, until: int | None, woken: asyncio.Event) -> None:
+        for _ in range(5):
+            await asyncio.sleep(0)
+        if woken.is_set():
+            return
+        due = FOREVER_MS if until is None else until
+        if not self._agenda or due < self._agenda[0][0]:
+            late = 0 if due >= FOREVER_MS else self._dice.randint(0, self._longest)
+            await super().wait(due + late, woken)
+            return
+        self.time = max(self.time, self._agenda[0][0])
+        while self._agenda and self._agenda[0][0] <= self.time:
+            heappop(self._agenda)[2]()
 
 
 class Outside:
@@ -200,11 +255,11 @@ def live_loop(cast: Cast, policy: str = "prima", stopping: str = "0s", start: in
     return Loop(session, devices, scenario.until)
 
 
-def carried_out(loop: Loop, start: int = 0) -> list[Record]:
+def carried_out(loop: Loop, start: int = 0, clock: Jumping | None = None) -> list[Record]:
     """The records of a run on its devices, times in s."""
     records: list[Record] = []
     loop.journal = lambda made: records.extend(made)
-    clock = Jumping(start)
+    clock = clock or Jumping(start)
     shell = Shell(loop, clock, print, None)
     clock.ended = shell.stop
     try:
