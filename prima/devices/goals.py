@@ -159,6 +159,12 @@ class Sees:
     distance: float | None = None
     angle: float | None = None
 
+    @property
+    def where(self) -> Data:
+        """Where the user is, as far as known."""
+        told = {"distance": self.distance, "angle": self.angle} if self.visible else {}
+        return {name: value for name, value in told.items() if value is not None}
+
 
 @dataclass(frozen=True, slots=True)
 class Speaks:

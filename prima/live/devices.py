@@ -157,14 +157,17 @@ class LiveDevices:
         self._loads.clear()
         if self._at is not None:
             inbound += self._entrances.cross((self._at.x, self._at.y))
-        inbound += self.conductor.collect(now, self._sees.visible, self._whereabouts())
+        inbound += self.conductor.collect(now, self._sees.visible, self._sees.where)
         self._carry_out()
         self._flooding.clear()
         news, self._news = self._news, []
         while news and not (self._stopping and _releases(news[0])):
             inbound += self._take(now, news.pop(0))
         self._news = news  # a release counts once everything has stopped
-        return [*inbound, *self._speech.cut_off(now), *self.services.collect(now)]
+        inbound += [*self._speech.cut_off(now), *self.services.collect(now)]
+        if not inbound:  # or else the session decides first whether the ear keeps listening
+            self._speech.listen_on(now)
+        return inbound
 
     def order(self, now: int, order: Order) -> None:
         """Pass an order to its recipient."""
@@ -337,12 +340,6 @@ class LiveDevices:
         if at is None:
             return {}
         return {"x": round(at.x, 3), "y": round(at.y, 3), "heading": round(at.heading, 1) % 360.0}
-
-    def _whereabouts(self) -> dict[str, float]:
-        """Where the user is, by the camera's latest report."""
-        sees = self._sees
-        told = {"distance": sees.distance, "angle": sees.angle} if sees.visible else {}
-        return {name: value for name, value in told.items() if value is not None}
 
 
 def _releases(news: News | Inbound) -> bool:

@@ -98,11 +98,12 @@ class Talker(Driver):
     ("plan", "ends", "outcome"),
     [
         ([], 4000, "silence"),
+        ([(2500, Speaks(True)), (2800, Speaks(False))], 4800, "silence"),
         ([(2500, Speaks(True)), (2800, Heard("yes"))], 2800, "answer"),
         ([(1300, Speaks(True)), (1600, Speaks(False))], 3600, "silence"),
         ([(1300, Speaks(True)), (1330, Heard("yes"))], 1330, "answer"),
     ],
-    ids=["silent", "answers", "late", "interrupts"],
+    ids=["silent", "coughs", "answers", "late", "interrupts"],
 )
 @pytest.mark.parametrize("longest", [0, 1, 5])
 def test_a_question_waits_for_whatever_is_said_meanwhile(
