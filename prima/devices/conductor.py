@@ -187,6 +187,8 @@ class Conductor:
             task.note_end(goal.begin, report)
             if self.tasks.get(task.id) is not task and not task.goals:
                 self._tell_halted(task)
+            elif task.asks:  # the user has interrupted it: now it listens
+                task.ends = self._now + 1
         elif isinstance(report, Done):
             task.data.update(report.data)
         elif isinstance(report, Stopped):

@@ -100,10 +100,11 @@ class Talker(Driver):
         ([], 4000, "silence"),
         ([(2500, Speaks(True)), (2800, Speaks(False))], 4800, "silence"),
         ([(2500, Speaks(True)), (2800, Heard("yes"))], 2800, "answer"),
+        ([(1300, Speaks(True)), (1330, Speaks(False))], 3400, "silence"),
         ([(1300, Speaks(True)), (1600, Speaks(False))], 3600, "silence"),
         ([(1300, Speaks(True)), (1330, Heard("yes"))], 1330, "answer"),
     ],
-    ids=["silent", "coughs", "answers", "late", "interrupts"],
+    ids=["silent", "coughs", "answers", "soon", "late", "interrupts"],
 )
 @pytest.mark.parametrize("longest", [0, 1, 5])
 def test_a_question_waits_for_whatever_is_said_meanwhile(
