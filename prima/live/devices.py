@@ -45,6 +45,7 @@ from prima.sim.entrances import Entrances
 T = TypeVar("T")
 MOST_NEWS = 10_000
 """How many reports drivers may make in one turn; a driver that exceeds this is given up."""
+EAR = "speech-recognition"
 SAFE_S = 5.0
 """How long a driver may take to stop everything."""
 
@@ -219,6 +220,8 @@ class LiveDevices:
             case _ if isinstance(told, Report):
                 if isinstance(told, Lost):
                     self.lost(driver)
+                    if EAR in told.devices:  # it will not report the end of an utterance
+                        self._news.append(Speaks(False))
                 if isinstance(told, Back):
                     self._failing.discard(driver)
                 self.conductor.report(now, told)

@@ -19,9 +19,10 @@ class UserSpeech:
         """Whether their utterance has taken too long and is over for the run."""
 
     def begins(self, now: int) -> None:
-        """The user begins to speak."""
-        self._began, self._cut = now, False
-        self._conductor.speech_begins(now)
+        """The user begins to speak; nothing if they are known to be speaking."""
+        if self._began is None:
+            self._began, self._cut = now, False
+            self._conductor.speech_begins(now)
 
     def ends(self) -> None:
         """The user has fallen silent."""

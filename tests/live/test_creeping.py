@@ -12,8 +12,10 @@ from prima import api
 from prima.devices.goals import (
     LISTEN,
     Accepted,
+    Back,
     Begin,
     Done,
+    Lost,
     News,
     Report,
     Speaks,
@@ -68,6 +70,7 @@ ASKS = """<prima xmlns="urn:prima:dialogue:1" version="1.0" id="asks" kind="ea">
     </field>
   </form>
 </prima>"""
+EAR = frozenset({"speech-recognition"})
 SAYS_MS, STOPS_MS = 1000, 100
 
 
@@ -100,11 +103,13 @@ class Talker(Driver):
         ([], 4000, "silence"),
         ([(2500, Speaks(True)), (2800, Speaks(False))], 4800, "silence"),
         ([(2500, Speaks(True)), (2800, Heard("yes"))], 2800, "answer"),
+        ([(2500, Speaks(True)), (2600, Speaks(True)), (2800, Speaks(False))], 4800, "silence"),
         ([(1300, Speaks(True)), (1330, Speaks(False))], 3400, "silence"),
         ([(1300, Speaks(True)), (1600, Speaks(False))], 3600, "silence"),
         ([(1300, Speaks(True)), (1330, Heard("yes"))], 1330, "answer"),
+        ([(300, Speaks(True)), (400, Lost(EAR, "gone")), (500, Back(EAR))], 4000, "silence"),
     ],
-    ids=["silent", "coughs", "answers", "soon", "late", "interrupts"],
+    ids=["silent", "coughs", "answers", "twice", "soon", "late", "interrupts", "lost"],
 )
 @pytest.mark.parametrize("longest", [0, 1, 5])
 def test_a_question_waits_for_whatever_is_said_meanwhile(
