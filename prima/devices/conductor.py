@@ -32,14 +32,12 @@ from prima.devices.profile import Profile
 from prima.devices.senses import Sensors, Sight
 from prima.devices.settings import FOREVER, DriverLimits
 from prima.devices.speech import SpeechMarks, Utterance
-from prima.devices.tasks import Goal, OpenGoals, Task
+from prima.devices.tasks import SEARCH, Goal, OpenGoals, Task, searches
 from prima.messages import Command, Data, Ended, Failed, Inbound, Json, Listening, Order
 from prima.messages.times import earliest
 
 NO_RESOURCE = "error.noresource"
 """The outcome of a question whose answer cannot be recorded (VoiceXML 2.0, 5.2.6)."""
-SEARCH = "active-sensing-human"
-"""The Command that itself reports whom it finds."""
 
 
 class Conductor:
@@ -76,6 +74,8 @@ class Conductor:
         self._goals = OpenGoals(self._inbound)
         self._looped: dict[str, Task] = {}
         """Feedback Commands whose loop has ended at this instant: another may follow (U2)."""
+        self._searched = False
+        """Whether a search has ended since: the user may have been left to it."""
         self._now = self._collected = start
         """The latest report or order, and the latest call of :meth:`collect`."""
 
@@ -160,6 +160,7 @@ class Conductor:
     def end_loops(self) -> None:
         """F5: end the feedback Commands that were not ordered to go on."""
         looped, self._looped = self._looped, {}
+        self._searched |= searches(looped.values())
         for task in looped.values():
             self._goals.cancel(self._now, task)
 
@@ -221,11 +222,10 @@ class Conductor:
 
     def due(self, visible: bool) -> int | None:
         """When the next report is due (ms), if known."""
-        now = self._now
-        tasks = self.tasks.values()
+        now, tasks = self._now, self.tasks.values()
         ends = [task.ends for task in tasks if task.ends and task.ends > self._collected]
         late = [goal.late(self._limits(goal.begin)) for goal in self._goals.open.values()]
-        due = earliest(self.sight.due(now, visible), self.ear.due(), *ends, *late)
+        due = earliest(self.sight.due(now, visible, self._searched), self.ear.due(), *ends, *late)
         if self._inbound or any(task.failed for task in tasks):
             due = earliest(due, now + 1)
         return due
@@ -240,12 +240,13 @@ class Conductor:
         """
         self._now = self._collected = now
         self.end_loops()
+        self._searched = False
         self._give_up_late()
         reports = list(self._inbound)
         self._inbound.clear()
         for task in self._in_order():
             reports += self._report(task, where)
-        searching = any(one.command.type == SEARCH for one in self.tasks.values())
+        searching = searches([*self.tasks.values(), *self._looped.values()])
         return reports + self.sight.look(now, visible, where, searching)
 
     def failures(self) -> list[Inbound]:

@@ -18,11 +18,15 @@ class Sight:
         self._found = False
         self._unseen_since: int | None = None
 
-    def due(self, now: int, visible: bool) -> int | None:
-        """When to look again even if nothing moves (ms), if ever."""
+    def due(self, now: int, visible: bool, searched: bool = False) -> int | None:
+        """When to look again even if nothing moves (ms), if ever.
+
+        ``searched``: whether a Command that itself reports the user has ended without them.
+        """
         if self._unseen_since is not None:
             return self._unseen_since + self._lost_after
-        return now + 1 if self._found and not visible else None
+        looks = searched and not self._found if visible else self._found
+        return now + 1 if looks else None
 
     def heeds(self, visible: bool) -> bool:
         """Whether looking is worthwhile: the user has come into view, or has just left it."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from prima.devices.ear import bounds_of
@@ -21,6 +21,9 @@ from prima.devices.goals import (
 from prima.devices.settings import DriverLimits
 from prima.devices.speech import Utterance
 from prima.messages import Command, Delayed, Halted, Inbound, Json, Order, Presence
+
+SEARCH = "active-sensing-human"
+"""The Command that itself reports whom it finds."""
 
 
 @dataclass(slots=True, eq=False)
@@ -130,6 +133,11 @@ class Task:
         elif self.command.text:
             data["heard"] = self.command.text.strip()
         return Halted(self.id, data)
+
+
+def searches(tasks: Iterable[Task]) -> bool:
+    """Whether any of these ABs itself reports whom it finds."""
+    return any(task.command.type == SEARCH for task in tasks)
 
 
 class OpenGoals:

@@ -6,9 +6,11 @@ from typing import Any
 
 import pytest
 
+from prima.devices.conductor import Conductor
 from prima.devices.ear import Ear
-from prima.devices.goals import RecordingBounds
+from prima.devices.goals import Begin, Done, RecordingBounds
 from prima.devices.loop import Loop
+from prima.devices.profile import Profile
 from prima.devices.senses import LOST_AFTER_MS, Sensors, Sight
 from prima.devices.speech import SpeechMarks, Utterance
 from prima.language.commands import TABLE_4_2
@@ -120,6 +122,28 @@ def test_a_search_reports_by_itself_whom_it_finds() -> None:
     found = Occurred("human.found", "robot", {"angle": 3.0, "sensed": True})
     assert sight.find({"angle": 3.0}) == found
     assert sight.look(100, True, {}) == []
+
+
+@pytest.mark.parametrize("goes_on", [True, False])
+def test_whom_the_camera_sees_before_the_search_has_found_them_is_reported_once(
+    goes_on: bool,
+) -> None:
+    profile = Profile("any", commands=dict(TABLE_4_2), loop=500)
+    conductor = Conductor(profile, dict)
+    command, devices = Command("active-sensing-human", {}), frozenset({"locomotion"})
+    conductor.order(0, Order("start", "a#1.1", command, devices, 1))
+    (goal,) = conductor.drain()
+    assert isinstance(goal, Begin)
+    assert conductor.collect(499, True, {}) == []
+    assert conductor.collect(500, True, {}) == [Ended("a#1.1", False)]
+    if goes_on:
+        conductor.order(500, Order("start", "a#1.2", command, devices, 2))
+    conductor.end_loops()
+    conductor.report(502, Done(goal.key))
+    assert conductor.due(True) == (1000 if goes_on else 503)
+    found = conductor.collect(conductor.due(True) or 0, True, {})
+    assert events(found) == ["human.found"]
+    assert events(conductor.collect(1500, True, {})) == []
 
 
 def test_sensors_tell_changes_alone() -> None:
