@@ -33,7 +33,7 @@ from prima.scheduler.policy import policy_named
 from prima.sim.devices import Cast
 from prima.sim.rehearsal import make_session
 from prima.sim.services import Services
-from tests.live.stage import Creeping, carried_out, live_loop
+from tests.live.stage import Creeping, carried_out, in_ms, live_loop
 from tests.live.test_differential import SCENARIOS, rehearsed
 
 
@@ -53,7 +53,7 @@ def test_what_a_rehearsal_gives_comes_a_little_later(path: Path) -> None:
     loop = live_loop(cast, policy, stopping="20ms")
     clock.delay(loop.devices.drivers[0])  # type: ignore[attr-defined]
     live, names = carried_out(loop, clock=clock), [doc.id for doc in cast.documents]
-    assert check(live, policy, names, calling=callers(cast.documents)) == []
+    assert check(in_ms(live), policy, names, calling=callers(cast.documents)) == []
     phases = ("listening", "fail", "device", "load", "unload")
     assert told(live, *phases) == told(rehearsed(path), *phases)
 

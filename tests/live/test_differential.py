@@ -14,7 +14,7 @@ from prima.messages import Record
 from prima.scheduler.policy import policy_named
 from prima.sim.rehearsal import Rehearsal
 from prima.transcript.lines import finished
-from tests.live.stage import Jumping, carried_out, live_loop
+from tests.live.stage import Jumping, carried_out, in_ms, live_loop
 
 SCENARIOS = sorted((Path(__file__).parents[2] / "documents" / "scenarios").glob("*.xml"))
 
@@ -49,7 +49,7 @@ def test_invariants_hold_where_devices_take_time_to_stop(path: Path) -> None:
     live = carried_out(live_loop(loaded.cast, policy, stopping="60ms"))
     documents = loaded.cast.documents
     names = [doc.id for doc in documents]
-    assert check(live, policy, names, calling=callers(documents)) == []
+    assert check(in_ms(live), policy, names, calling=callers(documents)) == []
 
 
 def test_what_begins_on_a_device_that_still_stops_is_held_back_and_told() -> None:
