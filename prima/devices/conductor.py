@@ -98,6 +98,7 @@ class Conductor:
             self._goals.calls.append(Stand())
         elif (task := self.tasks.get(order.behavior)) is not None:
             task.halting = order.verb == "interrupt"
+            self._searched |= searches([task])
             question = self.ear.questions.get(task.id)
             task.note_share(now, question.until if question else None)
             self._drop(task)

@@ -150,6 +150,12 @@ class At:
     y: float
     heading: float
 
+    @property
+    def where(self) -> dict[str, float]:
+        """It as a report tells it: to the mm, and to a tenth of a degree."""
+        heading = round(self.heading, 1) % 360.0
+        return {"x": round(self.x, 3), "y": round(self.y, 3), "heading": heading}
+
 
 @dataclass(frozen=True, slots=True)
 class Sees:

@@ -20,6 +20,7 @@ from prima.devices.goals import (
     Broke,
     Call,
     Cancel,
+    Done,
     Lost,
     News,
     Progress,
@@ -94,7 +95,11 @@ class LiveDevices:
         self.drivers = drivers
         self.services = services
         self.conductor = Conductor(
-            profile, self._where_it_is, self.limits, exclusive, max(start, 0)
+            profile,
+            lambda: self._at.where if self._at else {},
+            self.limits,
+            exclusive,
+            max(start, 0),
         )
         self.now: Callable[[], int] = lambda: 0
         """The run's clock."""
@@ -224,6 +229,8 @@ class LiveDevices:
                         self._news.append(Speaks(False))
                 if isinstance(told, Back):
                     self._failing.discard(driver)
+                if isinstance(told, Done | Stopped | Broke):
+                    self._routes.pop(told.key, None)
                 self.conductor.report(now, told)
                 self._carry_out()
             case _ if len(self._news) < MOST_NEWS:
@@ -335,14 +342,6 @@ class LiveDevices:
     def limits(self, goal: Begin) -> DriverLimits:
         """How long a goal's driver may take."""
         return limits_of(self.drivers, goal, self.profile.voices)
-
-    # Where it is -------------------------------------------------------------------------
-
-    def _where_it_is(self) -> dict[str, float]:
-        at = self._at
-        if at is None:
-            return {}
-        return {"x": round(at.x, 3), "y": round(at.y, 3), "heading": round(at.heading, 1) % 360.0}
 
 
 def _releases(news: News | Inbound) -> bool:

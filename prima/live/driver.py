@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import ClassVar
 
 from prima.devices.goals import (
@@ -35,6 +36,15 @@ from prima.messages import Data, Json, Record
 from prima.sim.map import Map
 
 Tell = Callable[[Report | News], None]
+
+
+def call_in(
+    loop: asyncio.AbstractEventLoop | None, what: Callable[..., object], *given: object
+) -> None:
+    """Call something in a run's event loop, from any thread; dropped if the run is over."""
+    if loop is not None:
+        with suppress(RuntimeError):  # the loop is closed
+            loop.call_soon_threadsafe(what, *given)
 
 
 class Unreachable(RunError):
@@ -167,9 +177,7 @@ class Driver:
 
     def post(self, report: Report | News) -> None:
         """Report to the run from another thread. After the run's end it is dropped."""
-        loop = self._loop
-        if loop is not None and not loop.is_closed():
-            loop.call_soon_threadsafe(self.tell, report)
+        call_in(self._loop, self.tell, report)
 
     def lose(self, reason: str) -> None:
         """Report a lost connection: running goals fail, and :meth:`open` is called again."""
@@ -250,6 +258,14 @@ class TaskDriver(Driver):
         """Cancel the coroutine of a goal; one that is over has already reported its end."""
         if task := self._tasks.get(key):
             task.cancel()
+
+    def lose(self, reason: str) -> None:
+        """Report a lost connection; running goals do not go on when it is back."""
+        super().lose(reason)
+        own = asyncio.current_task()
+        for task in self._tasks.values():
+            if task is not own:
+                task.cancel()
 
     async def close(self) -> None:
         """Cancel running goals, and wait for them to end."""

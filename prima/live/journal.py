@@ -93,6 +93,11 @@ class Redactor:
         return [self._without(one) for one in value] if isinstance(value, list) else value
 
 
+def _is_there(path: str) -> UsageError:
+    hint = f"Go on with --resume {path}, or name another file."
+    return UsageError(f"{path}: there is a journal already. {hint}")
+
+
 class Journal:
     """A file that grows by each instant's records.
 
@@ -109,15 +114,16 @@ class Journal:
         self.path = path
         self._sync = sync
         flags = os.O_WRONLY | os.O_APPEND
-        if kept is None and (os.path.isfile(path) or not os.path.exists(path)):
+        if kept is None and not os.path.exists(path):
             flags |= os.O_CREAT | os.O_EXCL
+        elif kept is None and os.path.isfile(path) and os.path.getsize(path):
+            raise _is_there(path)
         try:
             self._file = os.open(path, flags, 0o644)
             if kept is not None:
                 os.ftruncate(self._file, kept)
         except FileExistsError:
-            hint = f"Go on with --resume {path}, or name another file."
-            raise UsageError(f"{path}: there is a journal already. {hint}") from None
+            raise _is_there(path) from None
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise UsageError(f"{path}: cannot be written: {reason}.") from None

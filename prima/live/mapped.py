@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import math
-from functools import partial
 from typing import ClassVar, Final
 
 from prima.devices import voice
 from prima.devices.goals import LISTEN, SAY, At, Begin
 from prima.devices.settings import Does, Senses
-from prima.live.driver import Refused, TaskDriver, speaks
+from prima.live.driver import Refused, TaskDriver, call_in, speaks
 from prima.live.told import Teller
 from prima.messages import Json
 
@@ -110,8 +109,7 @@ class MappedDriver(TaskDriver):
 
     def sense_from_thread(self, senses: Senses, message: Json) -> None:
         """Take a message of the robot, from any thread."""
-        if self._loop is not None and not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(partial(self.sense, senses, message))
+        call_in(self._loop, self.sense, senses, message)
 
     def sense(self, senses: Senses, message: Json) -> None:
         """Take a message of the robot. Frequent values are reported at regular times."""

@@ -87,6 +87,7 @@ class Shell:
         loop = self.loop
         while not self._stopped:
             self._woken.clear()
+            await asyncio.sleep(0)  # drivers report first, above all after a standstill
             if not self._advance():
                 return
             due = loop.due()
@@ -152,6 +153,8 @@ class Shell:
 
     async def _close(self) -> None:
         """Make all robots safe at once, whatever still runs; then close the connections."""
+        if isinstance(self.loop.devices, LiveDevices):
+            self.loop.devices.lost = lambda _: None  # nobody is looked for any more
         tasks = list(self._tasks)
         for task in tasks:
             task.cancel()
@@ -198,6 +201,8 @@ class Shell:
                 continue
             self._lost.discard(driver)
             await self._end(driver, driver.safe)  # it was not stopped meanwhile
+            if driver in self._lost:
+                return  # once more: it is looked for again
             self._warn(f"{driver.kind}: the robot is back.")
             driver.tell(Back(driver.settings.devices))
             return

@@ -145,3 +145,6 @@ def test_what_is_wrong_is_raised_as_the_command_line_tells_it(hello: Path, tmp_p
     (tmp_path / "there.jsonl").write_text("kept\n")
     with pytest.raises(UsageError, match="there is a journal already"):
         prima.run_live(robot=ROBOT_PATH, eas=[hello], output=tmp_path / "there.jsonl")
+    (tmp_path / "there.jsonl").write_text("")  # as of a run that was stopped before its first line
+    prima.run_live(robot=ROBOT_PATH, eas=[hello], output=tmp_path / "there.jsonl", speed=50)
+    assert (tmp_path / "there.jsonl").read_text().startswith("{")

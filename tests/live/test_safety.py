@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Callable, Sequence
 
 import pytest
@@ -203,6 +204,78 @@ def test_a_lost_robot_fails_what_runs_on_it_and_is_taken_up_again(stage: Stage) 
     assert set(outcomes) == {"missing", "back"}
 
 
+def test_what_was_going_on_when_a_robot_was_lost_is_over() -> None:
+    ended: list[str] = []
+
+    async def play() -> None:
+        robot = Robot(frozenset({"wheels"}), lasts=30)
+        robot.attach(lambda _: None)
+        robot.start(Begin("a", "turn", Command("turn", {}), frozenset({"wheels"})))
+        await asyncio.sleep(0.01)
+        [goal] = robot._tasks.values()
+        goal.add_done_callback(lambda one: ended.append("cancelled" if one.cancelled() else "over"))
+        robot.lose("the link is down")
+        await asyncio.sleep(0.05)
+        assert not robot._tasks
+
+    asyncio.run(play())
+    assert ended, "it moves no robot that has come back"
+
+
+def test_a_robot_lost_again_while_it_is_made_safe_is_not_back(stage: Stage) -> None:
+    loop, (_, body) = stage(lasts=0.1)
+    safe, calls = body.safe, 0
+
+    async def lost_once_more() -> None:
+        nonlocal calls
+        calls += 1
+        if calls == 2:  # after the first time that it was found
+            body.lose("the link is down again")
+        await safe()
+
+    def begun(goal: Begin) -> None:
+        body.begun = lambda _: None
+        asyncio.get_running_loop().call_later(0.05, body.lose, "the link is down")
+
+    body.begun, body.safe = begun, lost_once_more  # type: ignore[method-assign]
+    warned: list[str] = []
+    carried_out(loop, 5, warned)
+    told = [one for one in warned if one.startswith("robot: the robot is")]
+    lost, back = "robot: the robot is lost; it is looked for.", "robot: the robot is back."
+    assert told == [lost, lost, back]
+
+
+def test_a_robot_that_is_lost_at_the_end_is_not_looked_for(stage: Stage) -> None:
+    loop, (voice, body) = stage()
+    answer_when_asked(voice)
+
+    async def lose() -> None:
+        body.lose("it is switched off")
+
+    body.safe = body.close = lose  # type: ignore[method-assign]
+    warned: list[str] = []
+    records = carried_out(loop, 3, warned)
+    assert records[-1]["outcome"] == "over" and warned == []
+
+
+def test_what_a_thread_posts_after_the_run_is_dropped() -> None:
+    robot = Robot(frozenset({"speaker"}))
+
+    async def play() -> None:
+        robot.attach(lambda _: None)
+
+    asyncio.run(play())
+    robot.post(Emergency(True))
+
+
+def test_goals_that_are_over_take_no_memory(stage: Stage) -> None:
+    loop, (voice, _) = stage()
+    answer_when_asked(voice)
+    carried_out(loop, 3)
+    assert isinstance(loop.devices, LiveDevices)
+    assert loop.devices._routes == {}
+
+
 def test_a_robot_that_no_longer_answers_its_heartbeat_is_lost(stage: Stage) -> None:
     loop, (_, body) = stage(lasts=0.5)
 
@@ -290,3 +363,10 @@ def test_a_report_that_is_late_or_of_nobody_changes_nothing(stage: Stage) -> Non
     body.begun = lambda goal: body.tell(Lost(frozenset(), "nothing is lost"))
     assert carried_out(loop)[-1]["outcome"] == "over"
     assert DriverLimits(1).over(DriverLimits(2, 3)) == DriverLimits(1, 3)
+
+
+@pytest.mark.skipif(not hasattr(time, "CLOCK_BOOTTIME"), reason="only Linux has such a clock")
+def test_the_clock_goes_on_while_the_machine_is_suspended(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock, real = Clock(), time.clock_gettime
+    monkeypatch.setattr(time, "clock_gettime", lambda one: real(one) + 3600)
+    assert clock.now() >= 3_600_000

@@ -186,4 +186,4 @@ def test_a_search_that_is_cut_short_leaves_it_to_the_camera_to_tell_whom_it_sees
         for one in rehearse(tmp_path, body, script).records
         if one.get("event") == "human.found"
     ]
-    assert found == [4.75], "at the next step of the user, who walks on"
+    assert found == [4.701], "as soon as nobody searches"

@@ -12,7 +12,7 @@ from typing import Any, Final
 from prima.devices.goals import LISTEN, Begin
 from prima.devices.settings import Does
 from prima.errors import UsageError
-from prima.live.driver import Refused, Unreachable, Unusable
+from prima.live.driver import Refused, Unreachable, Unusable, call_in
 from prima.live.mapped import MappedDriver, refuse_unmapped
 from prima.messages import Data, Json
 
@@ -120,8 +120,8 @@ class NaoqiDriver(MappedDriver):
 
     def _gone(self, session: Any, *_: object) -> None:
         """The connection has been lost; called in a thread of qi."""
-        if self._loop is not None and session is self._session and not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(self.lose, "the connection with the robot is lost")
+        if session is self._session:
+            call_in(self._loop, self.lose, "the connection with the robot is lost")
 
     def lose(self, reason: str) -> None:
         """Give up calls that have not been answered."""
@@ -259,11 +259,7 @@ class NaoqiDriver(MappedDriver):
             else:
                 future.set_result(asked.value())
 
-        def over(asked: Any) -> None:
-            if not loop.is_closed():
-                loop.call_soon_threadsafe(settle, asked)
-
-        asked.addCallback(over)
+        asked.addCallback(partial(call_in, loop, settle))
         return future
 
 

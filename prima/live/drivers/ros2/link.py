@@ -13,7 +13,7 @@ from typing import Any
 
 from prima.devices.settings import Senses
 from prima.errors import UsageError
-from prima.live.driver import Refused, Unreachable, Unusable
+from prima.live.driver import Refused, Unreachable, Unusable, call_in
 from prima.live.drivers.ros2.messages import fill, interface, paths, plain
 from prima.live.mapped import OFTEN
 from prima.live.ros import Outcome, RosDriver, RosUse, Sent
@@ -236,8 +236,7 @@ class RclpyLink:
             settle = partial(future.set_result, give())
         except BaseException as error:
             settle = partial(future.set_exception, error)
-        if not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(lambda: future.done() or settle())
+        call_in(self._loop, lambda: future.done() or settle())
 
     async def _run(self, function: Callable[[], Any]) -> Any:
         """Call something in the node's thread."""

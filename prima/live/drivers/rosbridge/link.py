@@ -10,7 +10,7 @@ from typing import Any, Final
 from urllib.parse import urlsplit
 
 from prima.devices.settings import Senses
-from prima.live.driver import Refused, Unreachable, Unusable
+from prima.live.driver import Refused, Unreachable, Unusable, call_in
 from prima.live.mapped import OFTEN
 from prima.live.ros import Outcome, RosDriver, RosUse, Sent
 from prima.messages import Json
@@ -106,8 +106,7 @@ class RosbridgeLink:
 
     def _closed(self, driver: RosDriver) -> None:
         """The connection has been closed; called in roslibpy's thread."""
-        if not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(self._lose, driver)
+        call_in(self._loop, self._lose, driver)
 
     def _lose(self, driver: RosDriver) -> None:
         reason = "the connection with the bridge is lost"
@@ -206,8 +205,7 @@ class RosbridgeLink:
     # The thread -----------------------------------------------------------------------------
 
     def _post(self, what: Callable[[], object], *_: object) -> None:
-        if not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(what)
+        call_in(self._loop, what)
 
     def _future(self) -> asyncio.Future[Any]:
         future: asyncio.Future[Any] = self._loop.create_future()

@@ -15,7 +15,7 @@ from prima.devices.profile import Profile
 from prima.devices.settings import DriverSettings
 from prima.errors import UsageError, one_of
 from prima.grammar.answers import Answers
-from prima.live.driver import Refused, TaskDriver, Unusable
+from prima.live.driver import Refused, TaskDriver, Unusable, call_in
 from prima.live.drivers.speech.segments import Segments
 from prima.live.drivers.speech.sound import CHUNK, RATE, Sound, SoundCard, beep
 from prima.messages import BEEP, Command, Cue, Data, Heard, Hypothesis
@@ -90,7 +90,8 @@ class SpeechDriver(TaskDriver):
         self._sound = self.sound()
         loop = asyncio.get_running_loop()
         self._sound.open(
-            lambda chunk: _post(loop, self._hear, chunk), lambda why: _post(loop, self.lose, why)
+            lambda chunk: call_in(loop, self._hear, chunk),
+            lambda why: call_in(loop, self.lose, why),
         )
         if self._listens is None:
             self._listens = asyncio.ensure_future(self._listen())
@@ -212,7 +213,7 @@ class SpeechDriver(TaskDriver):
         try:
             self._ears.listen_for(self._takes)
         except Exception as error:
-            _post(loop, self.lose, f"the recogniser takes no such grammar: {error}")
+            call_in(loop, self.lose, f"the recogniser takes no such grammar: {error}")
 
     @property
     def _deaf(self) -> bool:
@@ -331,12 +332,6 @@ def _number(settings: DriverSettings, name: str, low: float, high: float, usual:
         message = f'{settings.place}: {name} is "{text}".'
         raise UsageError(f"{message} Write a number from {low:g} to {high:g}.")
     return number
-
-
-def _post(loop: asyncio.AbstractEventLoop, what: Any, value: object) -> None:
-    """Call something in the event loop from any thread; ignored after the loop's end."""
-    if not loop.is_closed():
-        loop.call_soon_threadsafe(what, value)
 
 
 DRIVER = SpeechDriver
