@@ -132,7 +132,7 @@ class Observer:
         again = not record.resumed and record.behavior.partition(".")[2] not in ("", "1")
         if not again:
             self._begin(tree, record, request)
-        self._go_on(tree, not again and "speaker" in request.devices)
+        self._go_on(tree, not again and _speaks(request))
         tree.begun = True
         tree.running.add(name)
         if request.leaves:
@@ -150,7 +150,7 @@ class Observer:
 
     def _begin(self, tree: PerceivedStream, record: Entry, request: Entry) -> None:
         """A behavior begins or resumes: note its effects on others, and whether it responds."""
-        speaks = "speaker" in request.devices
+        speaks = _speaks(request)
         self._come_in(tree, speaks)
         if request.leaves:
             self._leave(tree, record.behavior)
@@ -161,22 +161,19 @@ class Observer:
             self._respond(tree)
 
     def _take_turn(self, tree: PerceivedStream, record: Entry) -> None:
-        """An application speaks: note whether it asked the question that the user answered.
-
-        A unit has the speaker from its start, but its parts speak.
-        """
-        if record.command != "iu":
-            if self._stolen.pop(tree.name, False) and record.command != "q-and-a":
-                self.found.third_turns += 1
-            for name in self._stolen:
-                other = self._trees[name]
-                self._stolen[name] = self._stolen[name] or other.app != tree.app
+        """An application speaks: note whether it asked the question that the user answered."""
+        if self._stolen.pop(tree.name, False) and record.command != "q-and-a":
+            self.found.third_turns += 1
+        for name in self._stolen:
+            other = self._trees[name]
+            self._stolen[name] = self._stolen[name] or other.app != tree.app
         self._take_up(tree, record)
 
     def _take_up(self, tree: PerceivedStream, record: Entry) -> None:
         """An application speaks: note whether it resumes its topic after others, and says so."""
         request = tree.pending.get(record.behavior.partition(".")[0], record)
-        if tree.talked_over and request.inserted != RESUMES and request.cause is None:
+        marked = request.inserted == RESUMES
+        if tree.talked_over and not marked and not _reacts(tree, request):
             self.found.wordless += 1
         tree.told, tree.talked_over = True, False
         for other in self._trees.values():
@@ -316,6 +313,19 @@ class Observer:
             return
         self._cut.add(name)
         self.found.units_cut += 1
+
+
+def _speaks(request: Entry) -> bool:
+    """Whether an AB speaks: a unit has the speaker from its start, but its parts speak."""
+    return "speaker" in request.devices and request.command != "iu"
+
+
+def _reacts(tree: PerceivedStream, request: Entry) -> bool:
+    """Whether an AB of a stream, or a unit around it, reacts to an event."""
+    around: Entry | None = request
+    while around is not None and around.cause is None:
+        around = tree.pending.get(around.unit)
+    return around is not None
 
 
 def _mean(parts: int, number: int) -> float | None:

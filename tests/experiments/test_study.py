@@ -31,6 +31,7 @@ from tests.helpers.robot import Bench, document
 from tests.helpers.stage import Stage, ask, chain, command, move, say
 
 EVENT = 7
+TILT = command("move-head", pan=30)
 
 
 def seen(stage: Stage) -> Criteria:
@@ -91,6 +92,41 @@ def test_topics_taken_up_after_others_have_spoken(
     assert seen(in_turns(policy, cause)).wordless == wordless
 
 
+def with_unit(*inside: Command, cause: int | None = None) -> Stage:
+    """The EA's two sentences, and between them a unit of the FA that owns the speaker."""
+    stage = Stage("fifo")
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.open("fa", 1, "speaker", "neck")
+    stage.at(100).end("ea#1")
+    stage.select()
+    for number, what in enumerate(inside, 2):
+        stage.request("fa", what, unit=1, cause=cause)
+        stage.select()
+        stage.at(100 * number).end(f"fa#{number}")
+    stage.close("fa", 1)
+    assert stage.select() == ["ea#2"]
+    return stage
+
+
+@pytest.mark.parametrize(("inside", "count"), [((say("Hello."),), 1), ((TILT,), 0), ((), 0)])
+def test_a_unit_speaks_only_where_something_in_it_does(
+    inside: tuple[Command, ...], count: int
+) -> None:
+    assert seen(with_unit(*inside)).wordless == count
+
+
+def test_a_unit_that_reacts_takes_up_no_topic() -> None:
+    """Its Commands carry no cause, as the whole unit is the reaction."""
+    stage = with_unit(say("Hello."))
+    records = [dict(record) for record in stage.records]
+    told = [one for one in records if one["phase"] == "request" and one["app"] == "ea"]
+    unit = {**told[1], "behavior": "ea#9", "command": "iu", "cause": EVENT}
+    told[1]["unit"] = "ea#9"
+    place = records.index(told[1])
+    assert observe([*records[:place], unit, *records[place:]]).wordless == 0
+
+
 @pytest.mark.parametrize(("policy", "wordless"), [("prima", 1), ("prima+x9", 0), ("prima+all", 0)])
 def test_x9_takes_topics_up_in_words(policy: str, wordless: int) -> None:
     path = api.documents_folder() / "scenarios" / "politeness" / "in-words.xml"
@@ -108,9 +144,6 @@ def test_what_goes_on_at_the_same_time_breaks_nothing() -> None:
     stage.at(600).end("fa#1")
     stage.select()
     assert seen(stage).broken == 0
-
-
-TILT = command("move-head", pan=30)
 
 
 def spoken_into(between: Command, cause: int | None = None) -> Stage:
