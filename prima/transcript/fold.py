@@ -184,6 +184,9 @@ class Fold:
         behavior = self.behaviors.get(name)
         if behavior is None:
             return
+        if entry.phase == "fail" and entry.rule == "U5":
+            behavior.late = True  # it ends after what runs in it
+            return
         if name in self._of:
             self._stop(self._of[name], name)
         states = {"cancel": "cancelled", "fail": "failed", "interrupt": "interrupted"}
@@ -193,7 +196,7 @@ class Fold:
                 self._fall_silent(spell, self.now)
                 spell.end, spell.paused = self.now, True
             return
-        outcome = states.get(entry.phase, entry.outcome)
+        outcome = states.get(entry.phase, "failed" if behavior.late else entry.outcome)
         behavior.state = {"end": "done", "interrupt": "waiting"}.get(entry.phase, outcome)
         self._close(behavior, outcome, entry.by)
 

@@ -61,7 +61,7 @@ class Observer:
             "start": self._start,
             "end": self._over,
             "cancel": self._end,
-            "fail": self._end,
+            "fail": self._fail,
             "stream-end": lambda record: self._forget(record.tree),
             "event": lambda record: self._event(record, record.event),
             "emergency": lambda record: self._event(
@@ -276,6 +276,11 @@ class Observer:
             if tree.name not in other.left_by:
                 other.left_by.add(tree.name)
                 self.found.left += 1
+
+    def _fail(self, record: Entry) -> None:
+        """An AB fails; a unit that has taken too long ends after what runs in it (U5)."""
+        if record.rule != "U5":
+            self._end(record)
 
     def _end(self, record: Entry, again: bool = False) -> None:
         name = record.behavior.partition(".")[0]

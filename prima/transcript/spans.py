@@ -52,6 +52,8 @@ class BehaviorSpan:
     """The spell that has not ended, or waits for its next loop."""
     broken: Saying | None = None
     """Its saying that was interrupted."""
+    late: bool = False
+    """Whether it is a unit that has taken too long (U5)."""
 
 
 @dataclass(slots=True, kw_only=True)

@@ -127,6 +127,20 @@ def test_a_unit_that_reacts_takes_up_no_topic() -> None:
     assert observe([*records[:place], unit, *records[place:]]).wordless == 0
 
 
+def test_a_unit_that_has_taken_too_long_is_cut_while_something_in_it_runs() -> None:
+    stage = Stage("none")
+    stage.open("ea", 1, "speaker", longest=50)
+    stage.select()
+    stage.request("ea", say("A long story."), unit=1)
+    stage.select()
+    stage.at(100).mediator.expire()
+    stage.request("fa", say("Hello."))
+    stage.select()
+    assert [one["behavior"] for one in stage.phases("fail")] == ["ea#1"]
+    assert [one["behavior"] for one in stage.phases("collision")] == ["ea#1"]
+    assert seen(stage).units_cut == 1
+
+
 @pytest.mark.parametrize(("policy", "wordless"), [("prima", 1), ("prima+x9", 0), ("prima+all", 0)])
 def test_x9_takes_topics_up_in_words(policy: str, wordless: int) -> None:
     path = api.documents_folder() / "scenarios" / "politeness" / "in-words.xml"

@@ -55,6 +55,21 @@ def test_units_name_their_parts_and_do_not_occupy_devices() -> None:
     assert all("unit" not in text for _, _, text in of(found, "device: speaker"))
 
 
+def test_a_unit_that_has_taken_too_long_lasts_as_long_as_something_in_it() -> None:
+    late = {**end(1.0, "a#1", "iu"), "phase": "fail", "rule": "U5", "event": "error.unit.timeout"}
+    found = made(
+        [
+            start(0.0, "a#1", "iu"),
+            start(0.0, "a#2", text="A long story.", unit="a#1"),
+            late,
+            end(3.0, "a#2", outcome="done"),
+            end(3.0, "a#1", "iu", outcome="done"),
+        ]
+    )
+    (unit,) = next(tier for tier in found.tiers if tier.kind == "units").marks
+    assert (unit.start, unit.end, unit.about["outcome"]) == (0, 3000, "failed")
+
+
 def test_what_gives_way_is_told_as_far_as_it_was_heard() -> None:
     run = api.rehearse(SCENARIOS / "situations" / "s07.xml", "prima+all")
     says = of(made(run.records), "museum: says")
