@@ -11,7 +11,7 @@ from heapq import merge
 from typing import IO, Any
 
 from prima.errors.visible import escaped
-from prima.exports.timeline import COLUMNS, Interval, Timeline, clean, unused
+from prima.exports.timeline import COLUMNS, TierPart, Timeline, clean, unused
 from prima.messages import Json, Record
 from prima.transcript.record import model
 
@@ -70,7 +70,7 @@ def write(timeline: Timeline, records: Iterable[Record], version: str, out: IO[b
     }
     channels["/records"] = writer.register_channel("/records", "json", schemas["prima.Record"])
     sequences = dict.fromkeys(channels, 0)
-    marks = (_mark_messages(topic, marks) for topic, marks in topics)
+    marks = (_mark_messages(topic, part) for topic, part in topics)
     for time, _, topic, data in merge(*marks, _record_messages(records)):
         writer.add_message(channels[topic], time * MS, data, time * MS, sequences[topic])
         sequences[topic] += 1
@@ -90,24 +90,29 @@ def record_schema() -> dict[str, Json]:
     return {"type": "object", "title": "prima.Record", "properties": properties}
 
 
-def _topics(timeline: Timeline) -> list[tuple[str, list[Interval]]]:
-    """The topic of each part of a tier, such as ``/navigate/says``, with its marks."""
+def _topics(timeline: Timeline) -> list[tuple[str, TierPart]]:
+    """The topic of each part of a tier, such as ``/navigate/says``."""
     names = {"/records"}
     return [
-        (unused("/" + part.name.replace(": ", "/").replace(" ", "_"), names), part.marks)
+        (unused("/" + part.name.replace(": ", "/").replace(" ", "_"), names), part)
         for part in timeline.parts()
     ]
 
 
-def _mark_messages(topic: str, marks: list[Interval]) -> Iterator[Message]:
-    """A message at the start of each mark, and one at its end unless the next begins then."""
+def _mark_messages(topic: str, part: TierPart) -> Iterator[Message]:
+    """A message at the start of each mark, and one at its end unless the next begins then.
+
+    An interval of no duration is over after 1 ms: else it would last until the next one.
+    """
+    marks = part.marks
     for number, mark in enumerate(marks):
         times: dict[str, Json] = {"start": mark.start / 1000, "end": mark.end / 1000}
         told = {"text": mark.text, "active": True, **times, **mark.about}
         yield (mark.start, 1, topic, _dumps(told))
-        follows = number + 1 < len(marks) and marks[number + 1].start <= mark.end
-        if mark.end > mark.start and not follows:
-            yield (mark.end, 0, topic, _dumps({"text": "", "active": False, **times}))
+        end = max(mark.end, mark.start + 1)
+        follows = number + 1 < len(marks) and marks[number + 1].start <= end
+        if not part.tier.points and not follows:
+            yield (end, 0, topic, _dumps({"text": "", "active": False, **times}))
 
 
 def _record_messages(records: Iterable[Record]) -> Iterator[Message]:

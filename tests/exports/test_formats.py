@@ -81,6 +81,19 @@ def test_mcap_holds_the_runs_head(demo: api.Transcript) -> None:
     assert {"/records", "/navigate/says", "/device/speaker", "/floor_holder"} <= topics
 
 
+def test_mcap_ends_an_interval_of_no_duration() -> None:
+    """A reaction in the instant of its event would else last until the next one."""
+    event = {"time": 1.0, "phase": "event", "actor": "user", "event": "touch.head", "serial": 1}
+    records = [event, start(1.0, "a#1", cause=1, text="Yes?"), end(2.0, "a#1", outcome="done")]
+    transcript = api.Transcript(records, "t.jsonl")
+    reader = make_reader(io.BytesIO(exported(transcript, "mcap")))
+    told = [
+        (one.log_time, json.loads(one.data)) for _, _, one in reader.iter_messages("/reactions")
+    ]
+    found = [(time // 1_000_000, one["active"]) for time, one in told]
+    assert found == [(1000, True), (1001, False)]
+
+
 def test_mcap_schemas_give_each_field_one_type(demo: api.Transcript) -> None:
     """Foxglove reads no alternatives, and refuses the channel."""
     summary = make_reader(io.BytesIO(exported(demo, "mcap"))).get_summary()
