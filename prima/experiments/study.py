@@ -94,7 +94,7 @@ def _distance(expected: list[Row] | None, transcript: Transcript) -> tuple[int |
         return None, None
     rows = read_table(transcript.table())
     counts = compare(expected, rows).counts
-    return counts["moved"], counts["lost"] + counts["changed"]
+    return counts["moved"], counts["lost"] + counts["joined"] + counts["changed"]
 
 
 COLUMNS = (

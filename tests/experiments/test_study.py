@@ -469,6 +469,11 @@ def test_the_command_prints_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert (result["situation"], result["broken_waiting"], result["distance"]) == ("s05", 1, 0)
 
 
+def test_a_row_of_what_resumes_may_be_missing() -> None:
+    """S04 without a mediator breaks off none of the two ways, so none of them resumes."""
+    assert {one.situation: one.missing for one in of("none")}["s04"] == 2
+
+
 def test_an_expected_table_that_is_none_is_told(tmp_path: Path) -> None:
     world = api.documents_folder() / "worlds" / "home.xml"
     robot = api.documents_folder() / "robots" / "papero.xml"
