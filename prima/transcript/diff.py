@@ -83,10 +83,10 @@ def compare(before: Sequence[Row], after: Sequence[Row]) -> Difference:
         if position not in unmoved:
             kinds[j] = Change("moved", before[i], after[j])
             continue
-        delay = after[j].time - before[i].time - shift
+        delay = round(after[j].time - before[i].time - shift, 3)
         shift += delay
         kind: Kind = "delayed" if abs(delay) >= DELAY else "same"
-        kinds[j] = Change(kind, before[i], after[j], round(delay, 3))
+        kinds[j] = Change(kind, before[i], after[j], delay)
     for i, j in changed:
         kinds[j] = Change("changed", before[i], after[j])
     for j in added:

@@ -94,6 +94,13 @@ def test_diff_tells_split_and_delayed() -> None:
     assert kinds(rows("a", "b", "c"), late) == ["same", "delayed", "same"], "only what causes it"
 
 
+def test_diff_tells_what_comes_exactly_half_a_second_later() -> None:
+    """2.3 - 1.8 is a little less."""
+    before, after = rows("a"), rows("a")
+    before[0].time, after[0].time = 1.8, 2.3
+    assert 2.3 - 1.8 < 0.5 and kinds(before, after) == ["delayed"]
+
+
 def test_diff_counts_repeated_behaviours_one_by_one() -> None:
     assert sorted(kinds(rows("a", "a", "b"), rows("a", "b", "a"))) == ["moved", "same", "same"]
 
