@@ -12,6 +12,8 @@ from prima.language.distributions import share
 DESIGNS = ("full", "random", "lhs")
 MOST_RUNS = 100_000_000
 """Maximum number of runs of a sweep."""
+MOST_SEED = 999_999_999
+"""The largest seed that `prima run` takes."""
 MOST_POINTS = 10_000_000
 """Maximum number of values of a Latin hypercube, which is made in one go."""
 
@@ -54,7 +56,13 @@ class Design:
                 raise UsageError(f"--design {kind} needs something to vary: --vary PATH=LEVELS.")
             self.count = runs
         _check_count(self.count)
-        if kind == "lhs" and self.count * len(factors) > MOST_POINTS:
+        self._check_drawn()
+
+    def _check_drawn(self) -> None:
+        """Reject seeds that no scenario has, and a hypercube that is too large."""
+        if self.kind != "full" and self.seeds + self.count - 1 > MOST_SEED:
+            raise UsageError(f"--seeds: the last run has a seed above {MOST_SEED:,}.")
+        if self.kind == "lhs" and self.count * len(self.factors) > MOST_POINTS:
             message = f"A Latin hypercube has at most {MOST_POINTS:,} values."
             raise UsageError(f"{message} Take fewer runs or factors, or --design random.")
 
@@ -62,7 +70,7 @@ class Design:
         return self.count
 
     def __iter__(self) -> Iterator[tuple[int, tuple[str, ...]]]:
-        """Seeds, from 1, and values in the order of the factors."""
+        """Seeds and values in the order of the factors."""
         return map(self.at, range(self.count))
 
     def at(self, number: int) -> tuple[int, tuple[str, ...]]:
@@ -73,7 +81,7 @@ class Design:
         lhs = self.kind == "lhs"
         shares = self._points[number] if lhs else [share(seed, one.path) for one in self.factors]
         pairs = zip(self.factors, shares, strict=True)
-        return number + 1, tuple(one.drawn(share) for one, share in pairs)
+        return seed, tuple(one.drawn(share) for one, share in pairs)
 
     def _combined(self, number: int) -> tuple[int, tuple[str, ...]]:
         """One run of all combinations: seeds change first, then the levels of the last factor."""

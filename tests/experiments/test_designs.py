@@ -42,6 +42,14 @@ def test_a_random_design_draws_all_factors_and_is_repeatable() -> None:
         assert min(counts) > 0.7 * 300 / len(counts)
 
 
+@pytest.mark.parametrize("kind", ["random", "lhs"])
+def test_the_first_seed_of_a_drawn_design_is_given(kind: str) -> None:
+    """The seed draws what the scenario leaves to chance, too: other seeds are other users."""
+    assert [seed for seed, _ in Design(kind, ALL, 1000, 3)] == [1000, 1001, 1002]
+    with pytest.raises(UsageError, match="seed above 999,999,999"):
+        Design(kind, ALL, 999_999_998, 3)
+
+
 def test_a_latin_hypercube_meets_each_slice_once() -> None:
     rows = list(Design("lhs", (DELAY, SPEED), 1, 100))
     slices = sorted(int(float(values[0]) * 10) for _, values in rows)
