@@ -24,6 +24,8 @@ LONGEST = 80
 """The number of letters of a level's or a column's name that are shown."""
 MOST_VALUE = 1e15
 """Largest value of a measure or a factor."""
+MOST_DIGITS = 17
+"""Digits that tell any two floats apart."""
 MOST_FACTORS = 10
 """Maximum number of factors in figures, tests and maps."""
 REPETITION = "seed"
@@ -79,11 +81,11 @@ class FactorColumn:
         if len(self.distinct) > most:
             edges = np.unique(np.quantile(self.values[~absent], np.linspace(0, 1, ranges + 1)))
             codes = np.searchsorted(edges[1:-1], self.values, side="right")
-            ends = [number(one) for one in edges]
+            ends = numbers(edges.tolist())
             names = [f"{low} to {high}" for low, high in pairwise(ends)]
         else:
             codes = np.searchsorted(np.array(self.distinct), self.values)
-            names = [number(one) for one in self.distinct]
+            names = numbers(self.distinct)
         codes = np.where(absent, len(names), codes).astype(np.int64)
         if self.missing:
             names.append(NOTHING)
@@ -235,14 +237,24 @@ def shown(text: str) -> str:
     return visible(text if len(text) <= LONGEST else text[:LONGEST] + "…")
 
 
-def number(value: float) -> str:
+def number(value: float, digits: int = 4) -> str:
     """A number with four digits, or with all digits before the point."""
     if value == 0 or not np.isfinite(value):
         return "0" if value == 0 else "–"
-    if abs(value) >= 1000:
+    if abs(value) >= 10 ** (digits - 1):
         return f"{value:.0f}"
-    text = f"{value:.4g}"
+    text = f"{value:.{digits}g}"
     return text if "e" in text or "." not in text else text.rstrip("0").rstrip(".")
+
+
+def numbers(values: Sequence[float]) -> list[str]:
+    """Different numbers with as many digits as it takes to tell them apart, at least four."""
+    told = [number(one) for one in values]
+    for digits in range(5, MOST_DIGITS + 1):
+        if len(set(told)) == len(values):
+            break
+        told = [number(one, digits) for one in values]
+    return told
 
 
 def probability(p: float) -> str:

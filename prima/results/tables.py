@@ -14,6 +14,7 @@ from prima.results.data import (
     MeasureColumn,
     OrderRow,
     number,
+    numbers,
     probability,
     shown,
 )
@@ -111,8 +112,8 @@ def _levels(factor: FactorColumn) -> str:
     distinct = factor.distinct
     if factor.numeric:
         if len(distinct) > 8:
-            return f"{number(distinct[0])} to {number(distinct[-1])}"
-        return ", ".join(number(one) for one in distinct) or "–"
+            return " to ".join(numbers([distinct[0], distinct[-1]]))
+        return ", ".join(numbers(distinct)) or "–"
     told = ", ".join(f"“{shown(one)}”" if one else "(nothing)" for one in distinct[:8])
     return told if len(distinct) <= 8 else f"{told}, and {len(distinct) - 8} more"
 

@@ -11,6 +11,8 @@ pytest.importorskip("scipy")
 
 import numpy as np
 
+from prima.experiments.table import Column
+from prima.results.data import FactorColumn
 from prima.results.statistics import (
     KRUSKAL_WALLIS,
     MANN_WHITNEY,
@@ -138,3 +140,23 @@ def test_many_values_have_the_normal_interval() -> None:
     low, high = interval(np.arange(float(MOST_DISTINCT)))
     assert high - low == pytest.approx(2 * half, rel=0.05), "fewer have one that is alike"
     assert not isclose((low + high) / 2, (MOST_DISTINCT - 1) / 2), "and is drawn"
+
+
+@pytest.mark.parametrize(
+    ("values", "names"),
+    [
+        ((12.5, 12.501, 12.502), ["12.5", "12.501", "12.502"]),
+        ((1000.5, 1001.5, 1000.25), ["1000.2", "1000.5", "1001.5"]),
+        ((1 / 3, 2), ["0.3333", "2"]),
+        ((0.1, 0.1 + 2**-54), ["0.1", "0.1000000000000001"]),
+    ],
+)
+def test_levels_are_told_apart(values: Sequence[float], names: list[str]) -> None:
+    factor = FactorColumn(Column("when.at", "number", "factor", ""), values)
+    assert factor.levels(12, 8).names[:3] == names
+
+
+def test_ranges_are_told_apart() -> None:
+    column = Column("when.at", "number", "factor", "")
+    names = FactorColumn(column, (1000 + np.arange(100) / 1000).tolist()).levels(12, 8).names
+    assert len(set(names)) == 8 and names[0].startswith("1000 to 1000.01")
