@@ -26,7 +26,7 @@ from prima.experiments.table import (
     read_rows,
     write_parquet,
 )
-from prima.experiments.variants import ExperimentSettings, Made, Stage
+from prima.experiments.variants import ExperimentSettings, Made, Stage, discard
 from prima.loading.writing import write_whole
 from prima.messages import Json
 from prima.pool import Died
@@ -246,6 +246,7 @@ class Output:
             rows = self.sweep.results(self.pool, there, self.folder.name)
             first = list(islice(rows, 1))  # before it replaces a table: a cluster may not answer
             if not there:
+                discard(self.folder / ORDERS)
                 write_whole(self.rows, line([one.name for one in self.sweep.columns]))
             write_whole(self.folder / PLAN, json.dumps(self.sweep.key(), indent=1) + "\n")
             described = dictionary(self.path.name, self.sweep.columns)
@@ -322,10 +323,8 @@ class Output:
         if not left:
             return
         for variant in self.sweep:
-            order = left.pop(variant.number, None)
-            if order is None:
-                continue
-            self.sweep.stage.save(folder, order, variant)
+            if (order := left.pop(variant.number, None)) is not None:
+                self.sweep.stage.save(folder, order, variant)
             if not left:
                 return
 

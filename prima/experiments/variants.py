@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
@@ -35,6 +36,8 @@ from prima.transcript.row import Row
 
 MOST_LOADED = 64
 """Maximum number of combinations of documents, worlds and robots kept loaded."""
+SAVED = re.compile(r"[0-9a-f]{12}\.(jsonl|xml|robot\.xml)")
+"""The names of files that a sweep saves for an order."""
 MOST_MESSAGE = 1_000
 """Maximum length of a run's messages (characters)."""
 
@@ -245,6 +248,17 @@ class Stage:
         for path, data in made.items():
             path.write_bytes(data)
         write_whole(folder / f"{name}.jsonl", "".join(lines))
+
+
+def discard(folder: Path) -> None:
+    """Remove what an earlier sweep has saved in a folder, by the signatures of its orders.
+
+    Raises:
+        OSError: a file cannot be removed.
+    """
+    for path in list(folder.glob("*")):
+        if SAVED.fullmatch(path.name):
+            path.unlink()
 
 
 def failed_expectations(loaded: Loaded, transcript: api.Transcript) -> list[Failure]:

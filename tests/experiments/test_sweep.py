@@ -157,6 +157,17 @@ def test_a_transcript_and_a_scenario_for_each_order() -> None:
         assert signature(rehearse(transcript.with_suffix(".xml")).rows()) == row["order"]
 
 
+def test_a_sweep_made_anew_keeps_no_transcript_of_the_one_before() -> None:
+    """Orders are alike, and times are not; what somebody else has put there stays."""
+    written("t.csv", vary={"touch": "1s|8s"})
+    Path("t/orders/notes.xml").write_text("mine")
+    out = written("t.csv", vary={"touch": "1500ms"})
+    (row,) = out.read()
+    found = sorted(one.name for one in Path("t/orders").iterdir())
+    assert found == sorted([f"{row['order']}.jsonl", f"{row['order']}.xml", "notes.xml"])
+    assert '"time":1.5,"phase":"event"' in Path(str(row["transcript"])).read_text()
+
+
 def test_the_dictionary_describes_every_column() -> None:
     out = written("t.csv", vary=TOUCH)
     fields = json.loads(Path("t/dictionary.json").read_text())["fields"]
