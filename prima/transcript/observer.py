@@ -54,8 +54,8 @@ class Observer:
         self._stolen: dict[str, bool] = {}
         """Streams with an answered question whose next word is awaited, and whether another
         application has spoken meanwhile."""
-        self._lapsed = ("", -LATE_ANSWER - 1)
-        """The application whose question was the latest to time out, and when."""
+        self._lapsed: dict[str, float] = {}
+        """When a question of each application was the latest to time out."""
         self._do: dict[str, Callable[[Entry], None]] = {
             "request": self._request,
             "start": self._start,
@@ -183,12 +183,12 @@ class Observer:
         """A behavior ends; if it is a question, note whose answer it took."""
         tree = self._of.get(record.behavior)
         if tree is not None and record.command == "q-and-a":
-            app, when = self._lapsed
             if record.outcome == "noinput":
-                self._lapsed = (tree.app, self._now)
+                self._lapsed[tree.app] = self._now
             elif record.outcome == "filled":
-                late = self._now - when <= LATE_ANSWER
-                self.found.misanswered += late and app != tree.app
+                others = [when for app, when in self._lapsed.items() if app != tree.app]
+                since = round(self._now - max(others, default=-LATE_ANSWER - 1), 3)
+                self.found.misanswered += since <= LATE_ANSWER
                 self._stolen[tree.name] = False
         self._end(record)
 
