@@ -45,16 +45,13 @@ def stage(
         UsageError: a file cannot be read, or two of the applications have one id.
     """
     given = [*zip(repeat("fa"), paths_of(fas)), *zip(repeat("ea"), paths_of(eas))]
-    others = [str(path) for path in (robot, world) if path]
-    for path in [*(path for _, path in given), *others]:
-        read_file(path)  # a missing file is a wrong option, not a wrong document
+    for path in (*(path for _, path in given), *filter(None, (robot, world))):
+        read_file(str(path))  # a missing file is a wrong option, not a wrong document
     demo = documents_folder()
     place = str(world or demo / "worlds" / "room.xml")
     body = str(robot or demo / "robots" / "papero.xml")
     there = _site(place)
-    taken_up = entrances and bool(there.areas)
-    if entrances and not (taken_up or given):
-        raise UsageError(f"{place}: no <area> offers an application; name some by --fa and --ea.")
+    taken_up = entrances and _offers(place, there, alone=not given)
     inside = f"{_standing(there)}{_applications(given, maps)}{_answers(says)}"
     try:
         loaded = load_whole(path_of(STAGE), _scenario(place, body, taken_up, inside))
@@ -65,6 +62,17 @@ def stage(
         raise
     loaded.problems = sorted(_problems(given, loaded))
     return without_ignored(loaded)
+
+
+def _offers(place: str, there: Map, alone: bool) -> bool:
+    """Whether a world's areas offer applications.
+
+    Raises:
+        UsageError: they do not, and there are no others.
+    """
+    if alone and not there.areas:
+        raise UsageError(f"{place}: no <area> offers an application; name some by --fa and --ea.")
+    return bool(there.areas)
 
 
 def _problems(given: list[tuple[str, str]], loaded: Loaded) -> Iterator[Problem]:
