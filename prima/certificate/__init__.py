@@ -12,8 +12,8 @@ from prima.checks.prices import Outline, outline
 from prima.checks.prices.bounds import busy_at_all
 from prima.devices.profile import Profile, read_robot
 from prima.errors import DocumentError, UsageError, has_errors
-from prima.interpreter.checks import check_commands, document_commands
-from prima.interpreter.elements import Document
+from prima.interpreter.checks import check_commands
+from prima.interpreter.elements import Document, document_commands
 from prima.language.commands import PATIENCE_MS
 from prima.loading import documents_folder, read_application
 from prima.loading.files import read_file

@@ -297,3 +297,9 @@ def run_commands(steps: Sequence[StepTemplate]) -> list[CommandTemplate]:
         else:
             found.append(step.what)
     return found
+
+
+def commands_of(content: Sequence[Act]) -> list[CommandTemplate]:
+    """The Commands of executable content."""
+    runs = [act for act in all_acts(content) if isinstance(act, CommandRun)]
+    return [command for run in runs for command in run_commands(run.steps)]

@@ -10,12 +10,14 @@ from prima.grammar.answers import Answers
 from prima.interpreter.acts import (
     Act,
     CommandRun,
+    CommandTemplate,
     Declare,
     Expression,
     Handler,
     Script,
     Text,
     all_acts,
+    commands_of,
 )
 from prima.interpreter.selection import Takers
 from prima.markup.tree import Node
@@ -262,3 +264,9 @@ def runs_of(document: Document) -> Iterator[CommandRun]:
     """All runs of Commands of a document, in document order."""
     for _, content, _ in document.contents():
         yield from (act for act in all_acts(content) if isinstance(act, CommandRun))
+
+
+def document_commands(document: Document) -> Iterator[CommandTemplate]:
+    """Every Command of a document, in document order."""
+    for _, content, _ in document.contents():
+        yield from commands_of(content)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from prima.errors import Hint, Problem, Span, meant, one_of, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_NAME
 from prima.grammar.text import fold
-from prima.interpreter.acts import CommandRun, CommandTemplate, Pause, Text, all_acts, run_commands
-from prima.interpreter.elements import Document, Field, all_items
+from prima.interpreter.acts import Pause, Text
+from prima.interpreter.elements import Document, Field, all_items, document_commands
 from prima.interpreter.events import event_place, handlers_of
 from prima.language.commands import WRITTEN
 from prima.markup.spans import value_span
@@ -44,7 +44,7 @@ def check_surroundings(document: Document, names: Surroundings) -> list[Problem]
     At run time they cause device errors, which a document may handle; a text is spoken anyway.
     """
     problems = list(_voices(document.node, names.voices)) if names.voices else []
-    for command in commands_of(document):
+    for command in document_commands(document):
         for name, value in command.args.items():
             if name in PLACED and isinstance(value, str):
                 problems += check_name(command.node, name, value, names)
@@ -99,17 +99,6 @@ def nearest(word: str, known: Collection[str], *spans: Span) -> Hint:
     return Hint(f"There is {one_of(known).replace(' or ', ' and ')}." if few else "")
 
 
-def commands_of(document: Document) -> list[CommandTemplate]:
-    """Every Command of a document."""
-    return [
-        command
-        for _, content, _ in document.contents()
-        for act in all_acts(content)
-        if isinstance(act, CommandRun)
-        for command in run_commands(act.steps)
-    ]
-
-
 class Sayings:
     """The texts that some applications speak, gathered once.
 
@@ -148,4 +137,6 @@ def texts_of(document: Document, asked: bool) -> list[Text]:
             if isinstance(item, Field):
                 found += [prompt.text for prompt in item.prompts]
                 found.append(tuple(part for one in item.prompts for part in (*one.text, " ")))
-    return found if asked else [*found, *(one.text for one in commands_of(document) if one.text)]
+    return (
+        found if asked else [*found, *(one.text for one in document_commands(document) if one.text)]
+    )

@@ -15,15 +15,14 @@ from prima.errors import Problem
 from prima.errors.diagnoses.behaviour import LONG_UNIT, NOT_IN_UNIT, NOW_INSIDE
 from prima.interpreter.acts import (
     Act,
-    CommandRun,
     CommandTemplate,
     Expression,
     Handler,
     Text,
     Throw,
     all_acts,
+    commands_of,
     pauses_in,
-    run_commands,
 )
 from prima.interpreter.elements import (
     Block,
@@ -180,12 +179,6 @@ def unit_problem(
 def now_inside(node: Node, prefix: str = "") -> Problem:
     """A Command wanted now after or alongside others in a unit (O2)."""
     return NOW_BEHIND_OTHERS.at(node.place, p=prefix, tag=node.tag)
-
-
-def commands_of(content: Sequence[Act]) -> list[CommandTemplate]:
-    """The Commands of executable content."""
-    runs = [act for act in all_acts(content) if isinstance(act, CommandRun)]
-    return [command for run in runs for command in run_commands(run.steps)]
 
 
 class UnitPiece:

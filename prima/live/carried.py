@@ -11,8 +11,7 @@ from prima.devices.settings import DriverLimits
 from prima.errors import Problem, few
 from prima.errors.diagnoses.names import UNSUPPORTED_COMMAND
 from prima.interpreter.acts import CommandTemplate
-from prima.interpreter.checks.facts import document_commands
-from prima.interpreter.elements import Document
+from prima.interpreter.elements import Document, document_commands
 from prima.live.driver import Driver
 from prima.messages import Command, Json
 from prima.session import AnyDocument

@@ -13,7 +13,7 @@ from prima.interpreter.acts import (
     SendOut,
     Throw,
     all_acts,
-    run_commands,
+    commands_of,
 )
 from prima.interpreter.elements import (
     Block,
@@ -39,9 +39,8 @@ def handlers_of(document: Document) -> Iterator[tuple[Form | None, Handler]]:
 def hooks_of(document: Document) -> Iterator[tuple[Form | None, Handler]]:
     """The handlers in Commands, each with the form of its Command."""
     for form, content, _ in document.contents():
-        for act in all_acts(content):
-            for command in run_commands(act.steps) if isinstance(act, CommandRun) else ():
-                yield from ((form, one) for one in command.handlers)
+        for command in commands_of(content):
+            yield from ((form, one) for one in command.handlers)
 
 
 def own_contents(item: Item) -> list[Sequence[Act]]:

@@ -11,7 +11,7 @@ from prima.errors import Problem
 from prima.interpreter.checks.arguments import given_to
 from prima.interpreter.checks.code import check_code
 from prima.interpreter.checks.commands import check_branches, check_texts, check_units
-from prima.interpreter.checks.facts import Facts, document_commands
+from prima.interpreter.checks.facts import Facts
 from prima.interpreter.checks.hints import check_hints
 from prima.interpreter.checks.questions import check_leaving, check_silence
 from prima.interpreter.checks.reachable import check_content, check_reachable
@@ -23,7 +23,7 @@ from prima.interpreter.events import KnownEvents
 from prima.interpreter.repeats import source_of, told_twice
 from prima.interpreter.rounds import endless_reactions
 
-__all__ = ["check_commands", "check_document", "document_commands", "given_to"]
+__all__ = ["check_commands", "check_document", "given_to"]
 
 CHECKS: tuple[Callable[[Facts], Iterator[Problem]], ...] = (
     check_targets,

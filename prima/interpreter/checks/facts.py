@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 
-from prima.interpreter.acts import CommandTemplate as Command
-from prima.interpreter.acts import Declare, Exit, Foreach, Goto, Handler, Script, run_commands
+from prima.interpreter.acts import Declare, Exit, Foreach, Goto, Handler, Script
 from prima.interpreter.elements import (
     Acts,
     Document,
@@ -16,7 +15,6 @@ from prima.interpreter.elements import (
     Link,
     Subdialog,
     all_items,
-    runs_of,
 )
 from prima.interpreter.events import handlers_of
 from prima.script.known import Known, NameScope
@@ -147,9 +145,3 @@ def setup_names(setup: Iterable[Declare | Script]) -> set[str]:
     for act in setup:
         names |= {act.name} if isinstance(act, Declare) else script_names(act.code.code).declared
     return names
-
-
-def document_commands(document: Document) -> Iterator[Command]:
-    """Every Command of a document."""
-    for run in runs_of(document):
-        yield from run_commands(run.steps)

@@ -8,8 +8,7 @@ from prima.errors import Problem, few, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_ARGUMENT, UNSUPPORTED_COMMAND
 from prima.interpreter.acts import CommandTemplate, GroupTemplate, run_commands
 from prima.interpreter.checks.arguments import given_to
-from prima.interpreter.checks.facts import document_commands
-from prima.interpreter.elements import Document, runs_of
+from prima.interpreter.elements import Document, document_commands, runs_of
 from prima.interpreter.elements import Unit as ItemUnit
 from prima.interpreter.events import handlers_of
 from prima.interpreter.selection import prefixes
