@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import sys
 import time
-from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -195,7 +194,7 @@ def test_a_clock_leaves_out_what_was_typed(
 
 
 POLLS = """
-import threading, time
+import sys, threading, time
 from prima.cli.terminal import _typed
 
 def edit():
@@ -207,7 +206,7 @@ threading.Thread(target=edit, daemon=True).start()
 end = time.monotonic() + 2
 while time.monotonic() < end:
     seen.add(_typed())
-print("read", len(seen) > 1)
+sys.exit(len(seen) < 2)  # a word at its end might be lost with the terminal
 """
 
 
@@ -229,7 +228,4 @@ def test_a_line_is_read_while_it_changes() -> None:
             shown += os.read(fd, 65536).decode("utf-8", "replace") if reading else ""
         except OSError:  # the process has ended
             break
-    with suppress(OSError):  # if that was noticed by writing, its last words are still there
-        shown += os.read(fd, 65536).decode("utf-8", "replace")
     assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 0, shown[-300:]
-    assert "read True" in shown
