@@ -5,6 +5,8 @@ from __future__ import annotations
 import gc
 import signal
 
+from tests.helpers.robot import close_sessions
+
 
 def pytest_configure() -> None:
     """Let Ctrl-C reach what tests start, also where a shell runs them in the background."""
@@ -16,3 +18,8 @@ def pytest_collection_finish() -> None:
     """Leave the tests themselves, 11,000, out of every search for garbage that they make."""
     gc.collect()
     gc.freeze()
+
+
+def pytest_runtest_teardown() -> None:
+    """Give back a test's processes for scripts now: only the collector would do it later."""
+    close_sessions()

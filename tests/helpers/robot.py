@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from weakref import WeakSet
+
 from prima.errors import Problem
 from prima.interpreter.elements import Document
 from prima.interpreter.reader import read_document
@@ -24,6 +26,13 @@ HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="{kind}" id="{nam
 
 CAUGHT = '<on event="error.semantic"><log expr="_event"/></on>'
 """A handler that logs the error."""
+_sessions = WeakSet[Session]()
+
+
+def close_sessions() -> None:
+    """End the processes of all sessions that a test has begun."""
+    while _sessions:
+        _sessions.pop().close()
 
 
 def xml(body: str, kind: str = "fa", name: str = "app") -> bytes:
@@ -48,6 +57,7 @@ class Bench:
     ) -> None:
         made = [document(one) if isinstance(one, str) else one for one in documents]
         self.session = Session(made, policy_named(policy), TABLE_4_2, isolate=isolate)
+        _sessions.add(self.session)
         self.now = 0
         self.records: list[Record] = []
         self.orders: list[Order] = []
