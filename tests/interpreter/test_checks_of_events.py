@@ -45,6 +45,32 @@ def test_an_event_is_known_in_its_handlers_alone(content: str, name: str, tmp_pa
 
 
 @pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        ('<assign name="event" expr="1"/>', 'Declare it: <var name="event"/>.'),
+        ('<assign name="session.user" expr="1"/>', 'Declare it: <var name="session"/>.'),
+        ('<log expr="evnt.data"/>', 'Declare it: <var name="evnt"/>.'),
+        ('<speak>A<on event="failed"><log expr="evnt.data"/></on></speak>', 'Did you mean "event"?'),
+        ('<assign name="class" expr="1"/>', "Choose another name."),
+        ('<clear namelist="class"/>', "Choose another name."),
+        ('<assign expr="1"/>', ""),
+        ('<assign name="a b" expr="1"/>', ""),
+        ('<clear namelist="a-b"/>', ""),
+    ],
+)  # fmt: skip
+def test_the_remedy_for_an_undeclared_variable_can_be_followed(
+    content: str, says: str, tmp_path: Path
+) -> None:
+    text = (
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a"><form id="m">'
+        f"<block>{content}<exit/></block></form></prima>"
+    )
+    assert [one["remedy"] for one in problems(tmp_path, text, "undeclared-variable")] == [
+        remedy for remedy in [says] if remedy
+    ]
+
+
+@pytest.mark.parametrize(
     ("code", "says"),
     [
         ("event.text", "Write event.data.text."),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from itertools import chain
 
@@ -13,15 +13,13 @@ from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Form
 from prima.markup.spans import Declarations, value_span
 from prima.markup.tree import Node
-from prima.script.globals import HANDLED
-from prima.script.known import Known, NameScope
+from prima.script.globals import HANDLED, IDENTIFIER, RESERVED
+from prima.script.known import Known
 from prima.script.names import Names, expression_names, script_names
 
 PARTS = ("name", "message", "data")
 SCOPED = ("document", "dialog", "application")
 """Scopes that may prefix the name of a variable."""
-VARIABLES = NameScope(HANDLED | {"session", "sensor"})
-"""Names that the language itself declares."""
 ABSENT = {
     "console": 'Write <log expr="..."/>.',
     "alert": 'Write <log expr="..."/>.',
@@ -32,6 +30,9 @@ ABSENT = {
 """Remedies for names that ECMAScript has in other environments."""
 
 NOT_DECLARED = UNDECLARED_VARIABLE.says('The variable "{name}" is not declared.')
+NO_VARIABLE = UNDECLARED_VARIABLE.says(
+    'No variable is named "{name}": this is a word of ECMAScript\'s own.', "Choose another name."
+)
 NO_FUNCTION = UNDECLARED_VARIABLE.says('There is no function "{name}".', "Define it in a <script>.")
 NO_EVENT_HERE = UNDECLARED_VARIABLE.says(
     'No event is handled here: "{name}" exists only in handlers.',
@@ -84,11 +85,12 @@ class Variables:
             if name in known:
                 continue
             place = place_in(expr, start)
+            meant = _meant(place, name, chain(self._given_at(expr.node), known.written()))
             if start in names.called:
-                yield self._no_function(expr, place, name, known)
+                yield NO_FUNCTION.at(place, meant, name=name)
             else:
                 bare = _is_bare(expr, name)
-                yield self._undeclared(expr.node, place, name, known, bare=bare)
+                yield self._undeclared(expr.node, place, name, meant, bare=bare)
         for name, start in names.handled.items():
             if not (name in known or id(expr.node) in self._handling):
                 yield NO_EVENT_HERE.at(place_in(expr, start), name=name)
@@ -103,6 +105,14 @@ class Variables:
         document = self.facts.document
         return bool(document.watches) or any(form.watches for form in document.forms.values())
 
+    def _given_at(self, node: Node) -> Iterator[str]:
+        """Names that the language itself declares for an element's code."""
+        yield "session"
+        if self._senses:
+            yield "sensor"
+        if id(node) in self._handling:
+            yield from HANDLED
+
     @cached_property
     def _handling(self) -> set[int]:
         """The elements of all handlers, in which the event's variables are visible."""
@@ -114,19 +124,21 @@ class Variables:
         for name, start in names.free.items():
             if name not in known:
                 place = place_in(expr, start)
-                yield IN_SCRIPT.at(place, _meant(place, name, known), name=name)
+                every = chain(self._given_at(expr.node), known.written())
+                yield IN_SCRIPT.at(place, _meant(place, name, every), name=name)
         yield from _parts_of_event(expr, names, known)
 
     def given(self) -> Iterator[Problem]:
-        """Check variables that acts assign, clear or return."""
+        """Check variables that acts assign, clear or return; what is no name is told before."""
         for form, assign in self.facts.acts.of(Assign):
             names = self.facts.known_in(form)
             head, dot, rest = assign.name.partition(".")
             name = rest.partition(".")[0] if dot and head in SCOPED else head
-            if name not in names:
+            if name not in names and IDENTIFIER.fullmatch(name):
                 at = assign.node.attribute_place("name")
                 at = at._replace(column=at.column + len(head) + 1) if name != head else at
-                yield self._undeclared(assign.node, at, name, names)
+                meant = _meant(at, name, names.written())
+                yield self._undeclared(assign.node, at, name, meant)
         listed: list[tuple[Form | None, Clear | Return]] = [
             *self.facts.acts.of(Clear),
             *self.facts.acts.of(Return),
@@ -136,32 +148,23 @@ class Variables:
 
     def _listed(self, listing: Clear | Return, known: Known) -> Iterator[Problem]:
         for name in listing.names:
-            if name not in known:
+            if name not in known and IDENTIFIER.fullmatch(name):
                 place = listing.node.attribute_place("namelist")
                 spans = value_span(listing.node, "namelist", name)
-                yield self._undeclared(listing.node, place, name, known, spans)
+                meant = _meant(place, name, known.written(), spans)
+                yield self._undeclared(listing.node, place, name, meant)
 
     @cached_property
     def _declarations(self) -> Declarations:
         return Declarations(self.facts.document.node)
 
     def _undeclared(
-        self,
-        node: Node,
-        place: Place,
-        name: str,
-        known: Known,
-        spans: Sequence[Span] = (),
-        *,
-        bare: bool = False,
+        self, node: Node, place: Place, name: str, meant: Hint, *, bare: bool = False
     ) -> Problem:
-        declare = f'Declare it: <var name="{name}"/>.'
-        hint = _meant(place, name, known, spans)
-        hint = hint or self._declarations.hint(declare, name, node)
+        if name in RESERVED:
+            return NO_VARIABLE.at(place, meant, name=name)
+        hint = meant or self._declarations.hint(f'Declare it: <var name="{name}"/>.', name, node)
         return NOT_DECLARED.at(place, _quoted(hint, name) if bare else hint, name=name)
-
-    def _no_function(self, expr: Expression, place: Place, name: str, known: Known) -> Problem:
-        return NO_FUNCTION.at(place, _meant(place, name, known), name=name)
 
 
 def _is_bare(expr: Expression, name: str) -> bool:
@@ -173,9 +176,8 @@ def _quoted(hint: Hint, name: str) -> Hint:
     return hint._replace(text=f"{hint.text} For the text itself write '{name}'.")
 
 
-def _meant(place: Place, name: str, known: Known, spans: Sequence[Span] = ()) -> Hint:
-    """The name most likely meant by an undeclared one."""
+def _meant(place: Place, name: str, every: Iterable[str], spans: Sequence[Span] = ()) -> Hint:
+    """The one of some names that was most likely meant by an undeclared one."""
     if name in ABSENT:
         return Hint(ABSENT[name])
-    every = chain(VARIABLES, known.written())
     return suggestion(name, every, *(spans or [Span.of(place, name)]))
