@@ -222,8 +222,8 @@ class Workspace:
 
     # Names ----------------------------------------------------------------------
 
-    def uses(self, path: Path, mark: Mark) -> list[FoundName]:
-        """All uses of a name, including its definition."""
+    def uses(self, path: Path, mark: Mark, *, all_scenes: bool = True) -> list[FoundName]:
+        """All uses of a name, including its definition; or those in scenarios of a document."""
         if mark.file:
             return self._elsewhere(path, mark)
         if mark.is_state:
@@ -232,29 +232,34 @@ class Workspace:
         text = self.text(path)
         own = [FoundName(path, one) for one in (text.marks if text else ()) if one.names(mark)]
         if mark.shared:
-            return own + self._shared(path, mark)
+            return own + self._shared(path, mark, all_scenes)
         if "form" in mark.kind or "rule" in mark.kind:
             own += self._from_others(path, mark)
         if "form" in mark.kind:
             own += self._expected(path, mark)
         return own
 
-    def _shared(self, path: Path, mark: Mark) -> list[FoundName]:
-        found = []
-        for other in self.related(path):
-            text = self.text(other) if other != path else None
-            for one in text.marks if text else ():
-                if one.name == mark.name and not set(one.kind).isdisjoint(mark.kind):
-                    found.append(FoundName(other, one))
-        return found
+    def _shared(self, path: Path, mark: Mark, all_scenes: bool) -> list[FoundName]:
+        """The uses in documents of a scenario with it, or with one of these that has the name."""
+        scenes = [belongs for _, belongs in self._scenes()]
+        found: list[FoundName] = []
+        seen, waiting = {path}, [path]
+        while waiting:
+            here = waiting.pop()
+            for other in set().union(*(one for one in scenes if here in one)) - seen:
+                seen.add(other)
+                text = self.text(other)
+                same = [one for one in (text.marks if text else ()) if _is_same(one, mark)]
+                found += [FoundName(other, one) for one in same]
+                waiting += [other] if same and all_scenes else []
+        return sorted(found, key=lambda one: (one.path, one.mark.start))
 
     def _elsewhere(self, path: Path, mark: Mark) -> list[FoundName]:
         """The uses of a name of another file."""
         target = self.target(path, mark.file)
         text = self.text(target) if target is not None else None
         for one in text.marks if text else ():
-            same = one.name == mark.name and not set(one.kind).isdisjoint(mark.kind)
-            if target is not None and one.defines and same:
+            if target is not None and one.defines and _is_same(one, mark):
                 return self.uses(target, one)
         return []
 
@@ -266,8 +271,7 @@ class Workspace:
             if text is None or f"#{mark.name}" not in text.text:
                 continue
             for one in text.marks:
-                same = one.name == mark.name and not set(one.kind).isdisjoint(mark.kind)
-                if one.file and same and self.target(other, one.file) == path:
+                if one.file and _is_same(one, mark) and self.target(other, one.file) == path:
                     found.append(FoundName(other, one))
         return found
 
@@ -302,7 +306,7 @@ class Workspace:
 
     def given(self, path: Path, mark: Mark) -> list[FoundName]:
         """The definitions of a name: in its scenarios, or else anywhere in the workspace."""
-        found = [one for one in self.uses(path, mark) if one.mark.defines]
+        found = [one for one in self.uses(path, mark, all_scenes=False) if one.mark.defines]
         if not found and mark.shared:
             found = [one for one in self.known(path, mark.kind) if one.mark.name == mark.name]
         return found
@@ -339,3 +343,8 @@ class Workspace:
                 if one.defines and wanted.intersection(one.kind) and private not in one.kind:
                     found.append(FoundName(path, one))
         return found
+
+
+def _is_same(one: Mark, other: Mark) -> bool:
+    """Whether two names in different documents are the same."""
+    return one.name == other.name and not set(one.kind).isdisjoint(other.kind)

@@ -106,6 +106,18 @@ def test_a_place_is_renamed_everywhere(editor: Editor) -> None:
         assert "kidode-room" not in edited(text, list(edits))
 
 
+def test_a_place_is_renamed_alike_from_wherever_it_is_used(editor: Editor) -> None:
+    changes = []
+    for name in ("worlds/office.xml", "scenarios/follow-alone.xml", "scenarios/navigate-alone.xml"):
+        text = (editor.folder / name).read_text(encoding="utf-8")
+        where = editor.at(name, text.replace('"entrance"', '"|entrance"', 1))
+        changes.append(rename(editor, where, "gate"))
+        editor.close(name)
+    assert changes[0] is not None and changes[0].changes is not None
+    assert len(changes[0].changes) > 5
+    assert changes == [changes[0]] * 3
+
+
 def test_an_application_is_renamed_in_expectations_too(editor: Editor) -> None:
     scene = (
         SCENE + '<application src="../fa/follow.xml" kind="fa"/><robot at="entrance"/>'
