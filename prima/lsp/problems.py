@@ -30,8 +30,8 @@ class Spot:
 def is_ours(page: ScannedText) -> bool:
     """Whether a text is, or will be, a document of PRIMA or VoiceXML."""
     root = page.root
-    if root is None:
-        return False
+    if root is None:  # perhaps it follows a comment or declaration that does not end
+        return any(namespace in page.text for namespace in BY_NAMESPACE)
     namespace = root.namespace
     return (
         namespace in BY_NAMESPACE

@@ -49,6 +49,13 @@ def test_good_documents_have_no_errors(editor: Editor, name: str) -> None:
     editor.close(name)
 
 
+@pytest.mark.parametrize("before", ["<!-- A robot. --\n", '<?xml version="1.0"?\n', "<![CDATA["])
+def test_what_never_ends_before_the_root_is_told(editor: Editor, before: str) -> None:
+    text = f"{before}{BEGIN}</prima>"
+    assert [one.code for one in editor.open("fa/x.xml", text)] == ["not-xml"]
+    editor.close("fa/x.xml")
+
+
 def test_a_list_of_problems_stops_in_the_editor_too(editor: Editor) -> None:
     bad = "".join(f'  <place id="p{index}" x="zero" y="0"/>\n' for index in range(1_234))
     text = f'<world xmlns="urn:prima:world:1" version="1.0" id="w">\n{bad}</world>\n'
