@@ -56,6 +56,14 @@ def test_what_never_ends_before_the_root_is_told(editor: Editor, before: str) ->
     editor.close("fa/x.xml")
 
 
+def test_a_byte_order_mark_is_no_letter_of_the_document(editor: Editor) -> None:
+    text = BEGIN.replace("kind", "kin") + '<form id="a"><block><exit/></block></form></prima>'
+    for mark in ("", "\ufeff"):
+        problems = editor.open("fa/x.xml", mark + text)
+        assert cut(mark + text, problems[0].range) == "kin"
+        editor.close("fa/x.xml")
+
+
 def test_a_list_of_problems_stops_in_the_editor_too(editor: Editor) -> None:
     bad = "".join(f'  <place id="p{index}" x="zero" y="0"/>\n' for index in range(1_234))
     text = f'<world xmlns="urn:prima:world:1" version="1.0" id="w">\n{bad}</world>\n'
