@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from prima import loading
-from prima.errors import DocumentError, Problem, UsageError, in_order
+from prima.errors import DocumentError, Problem, UsageError, in_order, nearest_word
 from prima.loading.files import GivenFiles, in_place_of_files
 from prima.lsp.scan import ScannedText
 from prima.lsp.tables import BY_NAMESPACE, BY_ROOT
@@ -30,14 +30,15 @@ class Spot:
 def is_ours(page: ScannedText) -> bool:
     """Whether a text is, or will be, a document of PRIMA or VoiceXML."""
     root = page.root
-    if root is None:  # perhaps it follows a comment or declaration that does not end
-        return any(namespace in page.text for namespace in BY_NAMESPACE)
-    namespace = root.namespace
+    known = root is not None and root.local in BY_ROOT
+    namespace = root.namespace if root is not None else ""
+    if not namespace:  # perhaps the root's tag is broken, or what is before it
+        return known or any(one in page.text for one in BY_NAMESPACE)
     return (
         namespace in BY_NAMESPACE
         or "prima" in namespace
-        or root.local in ("prima", "vxml")
-        or (not namespace and root.local in BY_ROOT)
+        or (root is not None and root.local in ("prima", "vxml"))
+        or (known and namespace.startswith("urn:") and bool(nearest_word(namespace, BY_NAMESPACE)))
     )
 
 

@@ -56,6 +56,22 @@ def test_what_never_ends_before_the_root_is_told(editor: Editor, before: str) ->
     editor.close("fa/x.xml")
 
 
+@pytest.mark.parametrize(
+    ("text", "codes"),
+    [
+        (BEGIN.removeprefix("<") + "<form/></prima>", ["not-xml"]),
+        ('<world xmlns="urn:pima:world:1" version="1.0" id="w"/>', ["wrong-namespace"]),
+        ('<robot xmlns="urn:acme:arm" name="r"/>', []),
+        ('<catalog><of name="urn:prima:dialogue"/></catalog>', []),
+    ],
+)
+def test_a_document_is_known_by_its_namespace_though_its_root_is_broken(
+    editor: Editor, text: str, codes: list[str]
+) -> None:
+    assert [one.code for one in editor.open("fa/x.xml", text)] == codes
+    editor.close("fa/x.xml")
+
+
 def test_a_byte_order_mark_is_no_letter_of_the_document(editor: Editor) -> None:
     text = BEGIN.replace("kind", "kin") + '<form id="a"><block><exit/></block></form></prima>'
     for mark in ("", "\ufeff"):
