@@ -96,7 +96,7 @@ class Conversation:
                 self.screen.tell(_unheard(text, self.game.asking))
             failures = self.game.failures
             for failure in failures[self._failures :]:
-                self.screen.tell(f"prima: {failure.rstrip(': ')}. The session goes on.")
+                self.screen.tell(f"prima: {failure.rstrip(': .')}. The session goes on.")
             self._failures = len(failures)
         self.options = self.game.options()
         self._tell_state()

@@ -134,6 +134,15 @@ def test_an_application_that_fails_is_told_and_the_session_goes_on(tmp_path: Pat
     assert paper.told[-1] in ('"ea" is not loaded. Load it with /load.',) or talk.game.over
 
 
+def test_a_failure_and_what_follows_are_two_sentences(tmp_path: Path) -> None:
+    talk, paper = start(
+        room(tmp_path, '<form id="f"><on event="touch"><speak>A.</speak></on></form>')
+    )
+    type_in(talk, "/fail speaker hangs", "/touch head", "/wait 200s")
+    told = [one for one in paper.told if "The session goes on." in one]
+    assert told and all(". The" in one and ".. The" not in one for one in told)
+
+
 def test_the_scenarios_user_is_left_out_unless_he_is_wanted() -> None:
     talk, paper = start()
     assert talk.game.scene.left_out == 2
