@@ -22,6 +22,7 @@ from prima.lsp.workspace import FoundName, Text, Workspace
 MOST = 500
 """Maximum number of proposals."""
 END_TAG = re.compile(r"</([^\s<>]*)$")
+END_TAG_AFTER = re.compile(r"[^\s<>]*>")
 WORD_BEFORE = re.compile(r"(?:(?P<of>[\w$.]+)\.)?(?P<word>(?:[^\W\d]|\$)[\w$]*)?$")
 WORD_AFTER = re.compile(r"[\w$]*")
 MEMBERS = {
@@ -99,15 +100,14 @@ class _Completion:
         if ending is not None:
             around = self.page.around(ending.start())
             if around is not None:
-                after = "" if self.page.text[self.offset : self.offset + 1] == ">" else ">"
-                yield Proposal(
-                    f"/{around.name}", "element", ending.start(1), self.offset, around.name + after
-                )
+                after = END_TAG_AFTER.match(self.page.text, self.offset)
+                start, end = ending.start(1), after.end() if after else self.offset
+                yield Proposal(f"/{around.name}", "element", start, end, f"{around.name}>")
             return
         around = self.page.around(self.offset)
         if around is not None and around.key == "script":
             yield from self._variables(around, self.page.text[around.end : self.offset])
-        elif self.typed in ("", "<"):
+        elif self.typed in ("", "<") and self.page.text[self.offset - 1 : self.offset] != "<":
             yield from self._elements(around, self.offset, self.offset, None)
 
     def _elements(

@@ -95,6 +95,17 @@ def test_proposals_bring_what_an_element_needs(editor: Editor) -> None:
     assert item.text_edit.new_text == "goto"  # the rest is there already
 
 
+@pytest.mark.parametrize("end", ["</|block>", "</bl|ock>", "</block|>", "</bl|", "</|"])
+def test_an_end_tag_is_completed_anywhere_in_its_name(editor: Editor, end: str) -> None:
+    text = BEGIN + f'<form id="a"><block><exit/>{end}</form></prima>'
+    item = editor.proposals("fa/x.xml", text)["/block"]
+    assert isinstance(item.text_edit, lsp.TextEdit)
+    assert edited(plain(text)[0], [item.text_edit]) == (
+        BEGIN + '<form id="a"><block><exit/></block></form></prima>'
+    )
+    assert editor.proposals("fa/x.xml", text.replace("|", "").replace("</", "<|/", 1)) == {}
+
+
 def test_an_editor_without_snippets_gets_none(tmp_path: Path) -> None:
     editor = Editor(tmp_path, lsp.ClientCapabilities())
     for item in editor.proposals("x.xml", BEGIN + "<form |").values():
