@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import functools
 import logging
 from pathlib import Path
@@ -100,6 +101,11 @@ class Protocol(LanguageServerProtocol):
             super().handle_message(message)
         elif method and hasattr(message, "id"):
             self.refused(message.id, error)
+
+    def _send_data(self, data: Any) -> None:
+        """Send a message, unless the editor is gone: the end of its messages ends the server."""
+        with contextlib.suppress(BrokenPipeError):
+            super()._send_data(data)
 
     def refused(self, asked: Any, error: JsonRpcException) -> JsonRpcException:
         """Answer a request, by its id (perhaps none), with an error, and return that."""

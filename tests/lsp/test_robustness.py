@@ -193,6 +193,24 @@ def test_it_ends_when_the_editor_is_gone() -> None:
     assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
 
 
+def test_an_editor_that_no_longer_listens_is_told_nothing() -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "prima", "lsp"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )  # fmt: skip
+    speak(process, BEGINNING)
+    hear(process)
+    assert process.stdin is not None and process.stdout is not None
+    process.stdout.close()
+    item = {"uri": "file:///x.xml", "languageId": "xml", "version": 1, "text": BEGIN}
+    told = {"method": lsp.TEXT_DOCUMENT_DID_OPEN, "params": {"textDocument": item}}
+    speak(process, {"jsonrpc": "2.0", **told})
+    speak(process, {**HOVER, "id": 1})
+    process.stdin.close()
+    assert process.stderr is not None
+    assert (process.stderr.read(), process.wait(SECONDS)) == (b"", 0)
+
+
 def test_what_is_no_message_does_not_end_it() -> None:
     noise = b"Content-Length: 5\r\n\r\nhello" + b"Content-Length: 2\r\n\r\n{}" + b"nonsense\r\n"
     done = subprocess.run(
