@@ -31,7 +31,7 @@ ABSENT = {
 
 NOT_DECLARED = UNDECLARED_VARIABLE.says('The variable "{name}" is not declared.')
 NO_VARIABLE = UNDECLARED_VARIABLE.says(
-    'No variable is named "{name}": this is a word of ECMAScript\'s own.', "Choose another name."
+    'No variable can be named "{name}": ECMAScript reserves this word.', "Choose another name."
 )
 NO_FUNCTION = UNDECLARED_VARIABLE.says('There is no function "{name}".', "Define it in a <script>.")
 NO_EVENT_HERE = UNDECLARED_VARIABLE.says(
