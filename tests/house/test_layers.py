@@ -317,6 +317,11 @@ def tree(name: str) -> ast.Module:
     return ast.parse(MODULES[name].read_text(encoding="utf-8"))
 
 
+def teardown_module() -> None:
+    """Free them: a million objects make each later search for garbage take long."""
+    tree.cache_clear()
+
+
 @cache
 def imported(module: str, types_too: bool = False) -> set[str]:
     """Names of modules imported anywhere in a module, inside functions as well."""
