@@ -99,13 +99,17 @@ def check_robot(chosen: Chosen, settings: LiveSettings, say: Say) -> int:
 
 
 async def _stoppable(preflight: Preflight) -> int:
-    """Carry out a check; a signal ends it and makes the robot safe."""
-    task = asyncio.ensure_future(preflight.run())
-    with heeding_signals(task.cancel):
+    """Carry out a check; a signal ends it. The robot is made safe afterwards, whatever happens."""
+    trying = asyncio.ensure_future(preflight.try_all())
+    signals: list[bool] = []
+    with heeding_signals(lambda: signals.append(trying.cancel())):
         try:
-            return await task
-        except asyncio.CancelledError:
-            return INTERRUPTED
+            await asyncio.wait([trying])
+        finally:
+            code = await preflight.end()
+    if not trying.cancelled():
+        trying.result()
+    return INTERRUPTED if signals else code
 
 
 class Preflight:
@@ -125,28 +129,29 @@ class Preflight:
         self._count = 0
         self._began = monotonic()
 
-    async def run(self) -> int:
-        """Try everything; the robot is made safe afterwards.
+    async def try_all(self) -> None:
+        """Try everything."""
+        self._say(LINE.format("", "", "driver", "accepted", "cancelled", "").rstrip())
+        await self._check_clock()
+        for driver in self._drivers:
+            if await self._opens(driver):
+                self._opened.append(driver)
+        self._tell_stops()
+        for command in self._commands():
+            await self._try(command)
+        for driver in self._opened:
+            for what, problem in (await driver.check()).items():
+                self._tell(not problem, what, problem, driver.kind)
+
+    async def end(self) -> int:
+        """Make the robot safe, and close the connections.
 
         Returns:
             an exit code: 2 if a driver is not set up, 3 if something else does not work.
         """
-        try:
-            self._say(LINE.format("", "", "driver", "accepted", "cancelled", "").rstrip())
-            await self._check_clock()
-            for driver in self._drivers:
-                if await self._opens(driver):
-                    self._opened.append(driver)
-            self._tell_stops()
-            for command in self._commands():
-                await self._try(command)
-            for driver in self._opened:
-                for what, problem in (await driver.check()).items():
-                    self._tell(not problem, what, problem, driver.kind)
-        finally:
-            for ends in ("safe", "close"):
-                ended = (self._end(one, getattr(one, ends)) for one in self._drivers)
-                await asyncio.gather(*ended)
+        for ends in ("safe", "close"):
+            ended = (self._end(one, getattr(one, ends)) for one in self._drivers)
+            await asyncio.gather(*ended)
         return 2 if self._unusable else 3 if self._wrong else 0
 
     async def _end(self, driver: Driver, end: Callable[[], Coroutine[Any, Any, None]]) -> None:

@@ -80,6 +80,14 @@ class Away(Well):
     kind = "away"
     async def open(self): raise Unreachable("it is switched off")
 
+class Slow(Well):
+    kind = "slow"
+    async def safe(self):
+        print("stopping", flush=True)
+        await asyncio.sleep(0.5)
+        await super().safe()
+    async def close(self): print("closed", file=sys.stderr)
+
 class Lacks(Well):
     kind = "lacks"
     async def open(self): raise Unusable("pip install wheels")
@@ -155,6 +163,12 @@ def test_a_signal_ends_the_check_with_a_safe_robot(tmp_path: Path) -> None:
         tmp_path, f'<driver kind="hangs" devices="neck" {LIMITS}/><driver kind="well"/>'
     )
     words = ["live", "--robot", path, "--driver", str(tmp_path / "drivers.py"), "--check"]
+    code, told = signalled("ok     connection                  well", words)
+    assert (code, "safe" in told) == (130, True), told
+
+
+def signalled(awaited: str, words: list[str]) -> tuple[int, str]:
+    """The exit code and the messages of a check that a signal ends soon after a line."""
     running = subprocess.Popen(
         [sys.executable, "-u", "-m", "prima", *words],
         cwd=ROOT,
@@ -164,12 +178,19 @@ def test_a_signal_ends_the_check_with_a_safe_robot(tmp_path: Path) -> None:
     )
     assert running.stdout is not None
     for line in running.stdout:
-        if line.startswith("ok     connection                  well"):
+        if line.startswith(awaited):
             break
     time.sleep(0.1)
     running.send_signal(signal.SIGTERM)
     _, told = running.communicate(timeout=30)
-    assert (running.returncode, "safe" in told) == (130, True), told
+    return running.returncode, told
+
+
+def test_a_signal_at_the_end_of_a_check_lets_the_robot_be_made_safe(tmp_path: Path) -> None:
+    path = document(tmp_path, '<driver kind="slow"/>')
+    words = ["live", "--robot", path, "--driver", str(tmp_path / "drivers.py"), "--check"]
+    code, told = signalled("stopping", words)
+    assert (code, told.split()) == (130, ["safe", "closed"])
 
 
 def test_ctrl_c_before_a_check_begins_says_nothing_of_coroutines(
