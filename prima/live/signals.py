@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM in a live run: they end it in its event loop and make the robot safe."""
+"""Signals that end a live run: they do so in its event loop, and the robot is made safe."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from types import FrameType
 
 BLOCKED_S = 1.0
 """How long the event loop may take to handle a signal; after that the next one aborts it."""
+NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
+"""Ctrl-C, a request to end, and a terminal that is closed."""
 
 
 @contextmanager
@@ -45,14 +47,17 @@ def heeding_signals(stop: Callable[[], object]) -> Iterator[None]:
             raise KeyboardInterrupt(_told(frame))
 
     before = {}
-    for name in (signal.SIGINT, signal.SIGTERM):
+    for name in NAMES:
+        number = getattr(signal, name, None)
+        if number is None or (name == "SIGHUP" and signal.getsignal(number) is signal.SIG_IGN):
+            continue  # not on this system; or the run is to outlive its terminal (nohup)
         with suppress(ValueError):
-            before[name] = signal.signal(name, hear)
+            before[number] = signal.signal(number, hear)
     try:
         yield
     finally:
-        for name, handler in before.items():
-            signal.signal(name, handler)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _told(frame: FrameType | None) -> str:

@@ -84,7 +84,7 @@ def test_a_journal_replays_wherever_it_and_its_documents_are_moved(tmp_path: Pat
     assert "has changed" in other.stderr or "is not the file" in other.stderr
 
 
-@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_an_interrupt_makes_the_robot_safe_and_says_how_to_go_on(
     sent: signal.Signals, tmp_path: Path
 ) -> None:

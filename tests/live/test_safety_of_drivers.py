@@ -52,7 +52,15 @@ DRIVERS = {
     "naoqi": '<does command="turn" by="ALMotion.moveTo" stop="ALMotion.stopMove"/>',
 }
 SPEAK = frozenset({"console", "speech"})
-CAUSES = ("emergency stop", "watchdog", "lost link", "internal error", "SIGINT", "SIGTERM")
+CAUSES = (
+    "emergency stop",
+    "watchdog",
+    "lost link",
+    "internal error",
+    "SIGINT",
+    "SIGTERM",
+    "SIGHUP",
+)
 
 
 def load(driver: Any) -> None:
