@@ -152,9 +152,9 @@ class Visit:
         with heeding_signals(self.stop):
             if self.stopped:
                 return
-            # Not before: once there is a journal, a signal has to end the run as it should.
-            self.loop.journal(self.missed if self.resumed else [self.head])
             try:
+                # Not before: once there is a journal, a signal has to end the run as it should.
+                self.loop.journal(self.missed if self.resumed else [self.head])
                 await shell.run()
             finally:
                 if not (shell.opened or self.resumed) and self.journal is not None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import errno
+import os
 import re
 import signal
 import threading
@@ -42,6 +44,24 @@ def test_the_example_of_the_docs_runs(tmp_path: Path, monkeypatch: pytest.Monkey
     assert visit.outcome == "over"
     assert visit.dumps() == (tmp_path / "from-python.jsonl").read_text()
     assert prima.replay(visit).dumps() == visit.dumps()
+
+
+def test_a_disk_that_is_full_at_the_start_leaves_no_journal(
+    hello: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write = os.write
+
+    def until_full(file: int, data: bytes) -> int:
+        if os.fstat(file).st_size:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return write(file, data[:500])
+
+    journal = tmp_path / "visit.jsonl"
+    with monkeypatch.context() as full, pytest.raises(RunError, match="No space left"):
+        full.setattr("os.write", until_full)
+        prima.run_live(robot=ROBOT_PATH, eas=hello, output=journal)
+    visit = prima.run_live(robot=ROBOT_PATH, eas=hello, output=journal, speed=50)
+    assert visit.outcome == "over"
 
 
 def test_it_gives_what_the_command_line_gives(tmp_path: Path) -> None:
