@@ -77,10 +77,10 @@ def whoever_reads() -> Iterator[None]:
         yield
         sys.stdout.flush()
     except BrokenPipeError as error:
-        _closed_pipe(error)
+        closed_pipe(error)
 
 
-def _closed_pipe(_error: BrokenPipeError) -> int:
+def closed_pipe(_error: BrokenPipeError) -> int:
     """Nobody reads stdout any more; Python must not flush it at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return FINE
@@ -99,7 +99,7 @@ HANDLERS: list[tuple[tuple[type[BaseException], ...], Callable[[Any], int]]] = [
     ((RunError,), _message(RUN)),
     ((click.exceptions.NoArgsIsHelpError,), _no_arguments),
     ((click.ClickException,), _usage),
-    ((BrokenPipeError,), _closed_pipe),
+    ((BrokenPipeError,), closed_pipe),
     ((OSError,), _system),
     (
         (UnicodeEncodeError,),

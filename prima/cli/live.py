@@ -32,6 +32,7 @@ from prima.cli.common import (
     why_option,
     write_for_programs,
 )
+from prima.cli.failures import closed_pipe
 from prima.cli.interrupts import leave_to_python
 from prima.cli.progress import print_records
 from prima.scheduler.policy import POLICIES, USAGE
@@ -169,7 +170,15 @@ def _run(visit: Visit, why: bool, as_json: bool) -> None:
     """Carry out a run, with its rows on stdout."""
     if as_json:
         write_for_programs()
-    sink = print_records if as_json else Rows(visit, why)
+    show = print_records if as_json else Rows(visit, why)
+
+    def sink(records: list[Record]) -> None:
+        try:
+            show(records)
+        except BrokenPipeError as error:  # nobody reads the rows any more: as after Ctrl-C
+            closed_pipe(error)
+            visit.stop()
+
     visit.run(sink, lambda text: tell(f"prima: {text}"))
     session = visit.loop.session
     for failure in session.failures:
@@ -193,13 +202,16 @@ class Rows:
         self._table = GrowingTable()
         self._table.add(visit.before)  # continued Commands keep their arguments and numbers
         self._shape = layout([doc.id for doc in visit.loaded.cast.documents], columns(), why)
-        click.echo(format_head(self._shape))
+        self._head = format_head(self._shape)
 
     def __call__(self, records: list[Record]) -> None:
         """Print what the records of an instant add."""
         from prima.transcript.lines import finished
         from prima.transcript.table import format_row
 
+        if self._head:
+            click.echo(self._head)
+            self._head = ""
         for row in self._table.add([finished(record) for record in records]):
             click.echo(clean("\n".join(format_row(row, self._shape))))
         sys.stdout.flush()

@@ -111,6 +111,26 @@ def test_an_interrupt_makes_the_robot_safe_and_says_how_to_go_on(
     assert here.prima("replay", str(journal), cwd=ROOT).returncode == 0
 
 
+@pytest.mark.parametrize("form", ["text", "json"])
+def test_a_run_whose_rows_nobody_reads_any_more_ends_as_by_ctrl_c(
+    form: str, tmp_path: Path
+) -> None:
+    (tmp_path / "waits.xml").write_text(WAITS)
+    journal = tmp_path / "visit.jsonl"
+    words = ["--robot", ROBOT, "--ea", str(tmp_path / "waits.xml"), "-o", str(journal)]
+    running = subprocess.Popen(
+        [sys.executable, "-m", "prima", "live", *words, "--format", form],
+        cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert running.stdout is not None and running.stderr is not None
+    running.stdout.readline()
+    running.stdout.close()
+    with running.stderr:
+        told = running.stderr.read()
+    assert running.wait(30) == 130
+    assert f"prima live --resume {journal}" in told
+
+
 def test_a_machine_that_stood_still_is_reported_and_the_run_goes_on(tmp_path: Path) -> None:
     journal, talk = tmp_path / "visit.jsonl", tmp_path / "talk.xml"
     speak = "<speak>Hello there.</speak>"
