@@ -18,6 +18,7 @@ from prima.errors import RunError, UsageError
 from prima.grammar.answers import Answers
 from prima.grammar.text import fold
 from prima.journal import replay_instants
+from prima.loading.writing import locked
 from prima.messages import Emergency, Inbound, Json, Narrated, Order, Record
 from prima.session import Session
 from prima.transcript.lines import check_head, finished, line, read_lines
@@ -107,7 +108,7 @@ class Journal:
         kept: the number of bytes of an older journal to keep; writing continues after them.
 
     Raises:
-        UsageError: the file already exists, or cannot be written.
+        UsageError: the file already exists, cannot be written, or a run is still writing it.
     """
 
     def __init__(self, path: str, sync: bool = False, kept: int | None = None) -> None:
@@ -120,6 +121,9 @@ class Journal:
             raise _is_there(path)
         try:
             self._file = os.open(path, flags, 0o644)
+            if os.path.isfile(path) and not locked(self._file):
+                os.close(self._file)
+                raise UsageError(f"{path}: another run is still writing it. End that one first.")
             if kept is not None:
                 os.ftruncate(self._file, kept)
         except FileExistsError:

@@ -88,7 +88,7 @@ def _beside(real: str) -> tuple[str, IO[bytes]]:
         with suppress(FileNotFoundError):
             os.unlink(part)  # of an earlier process with the same id
         stream = open(part, "xb")  # noqa: SIM115
-        if _locked(stream.fileno()) and os.path.exists(part):
+        if locked(stream.fileno()) and os.path.exists(part):
             return part, stream
         stream.close()
 
@@ -115,7 +115,7 @@ def _new_folder(folder: str) -> tuple[str, int]:
         parts = mkdtemp(prefix=PARTS, dir=folder)
         with suppress(FileNotFoundError):
             lock = os.open(os.path.join(parts, LOCK), os.O_CREAT | os.O_RDWR, 0o600)
-            if _locked(lock) and os.path.exists(os.path.join(parts, LOCK)):
+            if locked(lock) and os.path.exists(os.path.join(parts, LOCK)):
                 return parts, lock
             os.close(lock)  # another process has just taken it for a leftover
 
@@ -134,7 +134,7 @@ def _remove_if_left(path: str, is_folder: bool) -> None:
     with suppress(OSError):
         held = os.open(os.path.join(path, LOCK) if is_folder else path, os.O_RDWR)
         try:
-            if not _locked(held):
+            if not locked(held):
                 return
             if is_folder:
                 shutil.rmtree(path, ignore_errors=True)
@@ -144,7 +144,7 @@ def _remove_if_left(path: str, is_folder: bool) -> None:
             os.close(held)
 
 
-def _locked(file: int) -> bool:
+def locked(file: int) -> bool:
     """Lock an open file; gives whether it was free."""
     if fcntl is None:
         return True

@@ -305,6 +305,17 @@ def test_a_journal_is_never_written_over(tmp_path: Path) -> None:
     assert path.read_text() == "kept\n"
 
 
+def test_a_journal_that_a_run_still_writes_is_left_to_it(tmp_path: Path) -> None:
+    path = tmp_path / "visit.jsonl"
+    writing = Journal(str(path))
+    for kept in (None, 0):
+        with pytest.raises(UsageError, match="another run is still writing it"):
+            Journal(str(path), kept=kept)
+    writing.write([HEAD])
+    writing.close()
+    Journal(str(path), kept=path.stat().st_size).close()
+
+
 def test_a_full_disk_ends_the_run_with_a_clear_error() -> None:
     journal = Journal("/dev/full")
     with pytest.raises(RunError, match="No space left"):
