@@ -16,8 +16,8 @@ from prima.transcript.record import FIELDS, LONGEST, LONGEST_DAYS, lacking, mode
 if TYPE_CHECKING:
     from pydantic import BaseModel
 
-MAX_LINE = 1_000_000
-"""Maximum length of a line of a transcript."""
+MAX_LINE = 20_000_000
+"""Maximum length of a line of a transcript: more than the longest answer of a service takes."""
 INCOMPLETE = "the transcript is incomplete."
 """The end of the message of a transcript whose last line is cut off."""
 MAX_LINES, MAX_CHARACTERS, MAX_VALUES = 1_000_000, 400_000_000, 20_000_000

@@ -117,6 +117,7 @@ BODIES = {
     "/echo-utf-16": f'{{"title": "{SECRET}"}}'.encode("utf-16"),
     "/echo-name": f'{{"{SECRET}": [1]}}'.replace("-", "\\u002d").encode(),
     "/huge": b'{"title": "' + b"a" * 200_000 + b'"}',
+    "/longest": b'{"text": "' + b'\\"' * 4_900_000 + b'"}',
     "/echo": f'{{"title": "{SECRET}"}}'.encode(),
 }
 TYPES = {"/page": "text/html; charset=utf-8", "/plus": "application/vnd.books+json"}
@@ -420,6 +421,16 @@ def test_a_mediated_run_replays_without_services(
     assert (again.returncode, again.stderr) == (0, "the same, byte for byte\n")
     path.write_text(path.read_text() + "\n")
     assert prima("replay", str(journal)).returncode == 2
+
+
+def test_the_journal_of_a_very_long_answer_replays(host: Host, tmp_path: Path) -> None:
+    (tmp_path / "asks.xml").write_text(ASKS.replace("event.data.title", "'fine'"))
+    path = document(tmp_path, host, 'url="URL/longest" most="10000000" deadline="20s"/>')
+    journal = str(tmp_path / "visit.jsonl")
+    words = ["--robot", ROBOT, "--ea", str(tmp_path / "asks.xml"), "--services", str(path)]
+    ran = prima("live", *words, "-o", journal, "--until", "30s")
+    assert "It is fine." in ran.stdout, ran.stderr
+    assert prima("replay", journal).returncode == 0
 
 
 @pytest.mark.parametrize(("policy", "said"), [("prima", [0, 2, 1]), ("prima+x3", [0, 1, 2])])
