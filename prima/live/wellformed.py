@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from math import isfinite
 from numbers import Integral, Real
 from typing import Any, get_args, get_type_hints
 
 from prima.devices.goals import At, Broke, Done, Lost, News, Report, Sees, Stopped
-from prima.errors import one_of
+from prima.errors import brief, one_of
 from prima.messages import Data, Heard, Json, Narrated, Occurred, Sensed
 
 OCCURRED = frozenset(get_args(get_type_hints(Occurred)["actor"])) - {"mediator"}
@@ -17,6 +18,10 @@ NARRATED = frozenset(get_args(get_type_hints(Narrated)["actor"]))
 
 WRONG = (TypeError, ValueError, OverflowError, RecursionError)
 """The exceptions raised for something that no record can hold."""
+MOST = 1_000_000
+"""Maximum number of characters of a report's text, and of its data as JSON."""
+REASON = 4_000
+"""Characters of a reason above which its middle is left out: a library may give a whole page."""
 
 
 def well_formed(told: Report | News) -> Report | News | None:
@@ -38,9 +43,11 @@ def _report(told: Report) -> Report:
         case Stopped():
             return Stopped(told.key, _number(told.share), told.said)
         case Broke():
-            return Broke(told.key, _text(told.device), _text(told.reason), told.lacks)
+            return Broke(
+                told.key, _text(told.device), brief(_text(told.reason), REASON), told.lacks
+            )
         case Lost():
-            return Lost(told.devices, _text(told.reason))
+            return Lost(told.devices, brief(_text(told.reason), REASON))
     return told
 
 
@@ -53,13 +60,18 @@ def _news(told: News) -> News | None:
         case At():
             return told if all(map(isfinite, (told.x, told.y, told.heading))) else None
         case Heard():
-            return Heard(_text(told.text), _data(told.data), int(told.lasted))
+            data = _data(told.data)
+            if "lasted" in data:
+                raise ValueError("how long it lasted is not among its data: Heard(text, data, ms)")
+            return Heard(_short(told.text), data, int(told.lasted))
         case Occurred():
             _check_actor(told.actor, OCCURRED)
-            return Occurred(_text(told.name), told.actor, _data(told.data), told.app)
+            if (told.name, told.actor) == ("speech", "user"):
+                raise ValueError("what the user says is told by Heard(text)")
+            return Occurred(_short(told.name), told.actor, _data(told.data), told.app)
         case Narrated():
             _check_actor(told.actor, NARRATED)
-            return Narrated(told.actor, _text(told.text))
+            return Narrated(told.actor, _short(told.text))
     return told
 
 
@@ -71,7 +83,9 @@ def _check_actor(actor: str, actors: frozenset[str]) -> None:
 def _data(value: Any) -> Data:
     if not isinstance(value, dict):
         raise TypeError(f"its data must be a dict, not {type(value).__name__}")
-    return {_text(name): _plain(one) for name, one in value.items()}
+    data = {_text(name): _plain(one) for name, one in value.items()}
+    _short(json.dumps(data))
+    return data
 
 
 def _text(value: Any) -> str:
@@ -79,6 +93,12 @@ def _text(value: Any) -> str:
         raise TypeError(f"its texts and names must be str, not {type(value).__name__}")
     value.encode()  # half a letter is invalid
     return value
+
+
+def _short(value: Any) -> str:
+    if len(text := _text(value)) > MOST:
+        raise ValueError(f"it has more than {MOST:,} characters")
+    return text
 
 
 def _number(value: Any) -> float | None:
@@ -98,7 +118,7 @@ def _plain(value: Any) -> Json:
         case Real():
             return _number(value)
         case dict():
-            return _data(value)
+            return {_text(name): _plain(one) for name, one in value.items()}
         case list() | tuple():
             return [_plain(one) for one in value]
     raise TypeError(f"a record cannot hold {type(value).__name__}")

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from prima.devices.goals import At, Broke, Done, Lost, News, Report, Sees, Stopped
+from prima.errors import brief
 from prima.live.wellformed import WRONG, well_formed
 from prima.messages import Emergency, Heard, Narrated, Occurred, Sensed
 from tests.helpers import command
@@ -33,6 +34,7 @@ CYCLE.append(CYCLE)
         (Done("a#1", {"x": nan}), Done("a#1", {"x": None})),
         (Heard("Yes.", {"confidence": 0.5}, 300), Heard("Yes.", {"confidence": 0.5}, 300)),
         (Broke("a#1", "neck", "hot"), Broke("a#1", "neck", "hot")),
+        (Broke("a#1", "neck", "x" * 9_000_000), Broke("a#1", "neck", brief("x" * 5_000, 4_000))),
         (Stopped("a#1", 0.5), Stopped("a#1", 0.5)),
         (Stopped("a#1", nan, 3), Stopped("a#1", None, 3)),
         (Lost(frozenset({"neck"}), "gone"), Lost(frozenset({"neck"}), "gone")),
@@ -62,6 +64,10 @@ def test_a_measurement_that_is_no_number_says_nothing(told: Any, held: Any) -> N
         Narrated("robot", "It waits."),  # type: ignore[arg-type]
         Done("a#1", 5),  # type: ignore[arg-type]
         Broke("a#1", "neck", None),  # type: ignore[arg-type]
+        Heard("Yes.", {"lasted": 1.5}),
+        Heard("x" * 2_000_000),
+        Occurred("speech", "user"),
+        Occurred("touch.head", "user", {"image": [255] * 500_000}),
     ],
 )
 def test_what_no_record_can_hold_is_refused(told: Report | News) -> None:
@@ -116,6 +122,8 @@ def test_the_journal_of_a_driver_that_measures_nothing_replays(what: str, tmp_pa
         ("return 5", "what the driver tells is wrong (Done): its data must be a dict, not int"),
         ('self.tell(Heard("\\ud800"))', "what the driver tells is wrong (Heard): 'utf-8' codec"),
         ('self.tell(Sensed({"a": object()}))', "wrong (Sensed): a record cannot hold object"),
+        ('self.tell(Occurred("speech", "user"))', "what the user says is told by Heard(text)"),
+        ('return {"map": "x" * 2_000_000}', "wrong (Done): it has more than 1,000,000 characters"),
         ("sys.exit(4)", "the driver has failed: SystemExit: 4"),
     ],
 )
