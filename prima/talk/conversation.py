@@ -204,7 +204,7 @@ class Conversation:
         self.game.unheard()
         self._told = ""
         self.options = self.game.options()
-        rows = self.game.table.rows
+        rows = self.game.rows
         row = f", after row {rows[-1].number}" if rows else ""
         self.screen.show(f"Back at {seconds(self.game.clock)}{row}.")
 
@@ -215,7 +215,7 @@ class Conversation:
     # Questions ------------------------------------------------------------------------
 
     def _why(self, rest: str) -> None:
-        rows = self.game.table.rows
+        rows = self.game.rows
         if not rows:
             raise UsageError("There is no row yet.")
         if rest and not (rest.isascii() and rest.isdigit() and int(rest[:9]) < len(rows)):

@@ -91,7 +91,8 @@ class Game:
     def _begin(self) -> None:
         """Start the run from its beginning, with the lines so far."""
         self.rehearsal = Rehearsal(self.cast, self._chosen, None, self._web)
-        self.table = GrowingTable()
+        self._table = GrowingTable()
+        self.rows: list[Row] = []
         self.records: list[Record] = []
         """All records so far, times in seconds."""
         self.clock = 0
@@ -171,7 +172,9 @@ class Game:
             self._sink(records)
         done = [finished(record) for record in records]
         self.records += done
-        return self.table.add(done)
+        rows = self._table.add(done)
+        self.rows += rows
+        return rows
 
     def run(self, until: int) -> Iterator[list[Row]]:
         """Let time pass until then; yield rows as they come."""
@@ -274,9 +277,9 @@ class Game:
             yield self.advance(due) or []
 
     def _last_row(self) -> str:
-        if not self.table.rows:
+        if not self.rows:
             return "before the first row"
-        row = self.table.rows[-1]
+        row = self.rows[-1]
         what = " ".join(filter(None, (row.app, row.what)))
         return f"after row {row.number}, {row.time:.2f} s: {what[:200]}"
 

@@ -59,13 +59,14 @@ def _rows(held: Iterable[Entry], asked: dict[str, Entry], handled: set[int]) -> 
 class GrowingTable:
     """The table of a run in progress: rows are made as records come.
 
-    It does not wait for later records. A unit's rows begin with ``+`` and continue with a
+    It does not wait for later records, and keeps no rows, as a run may go on for months. A unit's rows begin with ``+`` and continue with a
     bar, as its last row is not known yet. What the camera sees has a row once an application
     reacts to it.
     """
 
     def __init__(self) -> None:
-        self.rows: list[Row] = []
+        self._count = 0
+        """The number of rows so far."""
         self._asked: dict[str, Entry] = {}
         self._handled: set[int] = set()
         self._ignored: dict[int, Entry] = {}
@@ -77,37 +78,37 @@ class GrowingTable:
     def add(self, records: Iterable[Record]) -> list[Row]:
         """Add the records of an instant, times in seconds; return their rows."""
         held = [Entry(record) for record in records]
-        before = len(self.rows)
         for record in held:
             if record.cause:
                 self._handled.add(record.cause)
             if record.phase == "request":
-                self._asked[record.behavior] = record
+                self._asked[record.behavior] = record.only(ASKED)
         reacted = [self._ignored.pop(one) for one in sorted(self._handled & self._ignored.keys())]
-        for record in (*reacted, *held):
-            self._add(record)
-        return self.rows[before:]
+        rows = [row for record in (*reacted, *held) if (row := self._row(record)) is not None]
+        for row in rows:
+            row.number = self._count
+            self._count += 1
+        return rows
 
-    def _add(self, record: Entry) -> None:
+    def _row(self, record: Entry) -> Row | None:
         if record.phase == "event" and record.actor == "robot" and record.serial is not None:
             if record.serial not in self._handled:
                 self._ignored[record.serial] = record
         elif record.phase == "collision":
             pair = (base(record.behavior), base(record.by))
             if pair in self._collided:
-                return
+                return None
             self._collided.add(pair)
         row = row_of(record, self._asked, self._handled)
         if row is not None:
-            row.number = len(self.rows)
             if row.unit and row.unit not in self._units:
                 self._units.add(row.unit)
                 row.bracket = "+"
             elif self._units:
                 row.bracket = "|"
-            self.rows.append(row)
         if record.phase in ("end", "cancel", "fail", "interrupt"):
             self._units.discard(record.behavior)
+        return row
 
 
 def _bracket(rows: list[Row], ends: dict[str, float]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -53,7 +54,7 @@ def test_going_back_in_time_lets_the_user_come_between(tmp_path: Path) -> None:
     talk, paper = start()
     assert '"Here we are."' in paper.what
     type_in(talk, "/back 5s", "/touch head", "Never mind.")
-    rows = [(row.time, row.what) for row in talk.game.table.rows]
+    rows = [(row.time, row.what) for row in talk.game.rows]
     assert (5.0, "touches the robot's head") in rows
     assert "resumes Topological Move (to kidode-room)" in [what for _, what in rows]
 
@@ -80,10 +81,10 @@ def test_undo_takes_the_last_line_back_and_nothing_else() -> None:
 def test_a_step_is_a_row(tmp_path: Path) -> None:
     talk, _ = start()
     talk.line("/back 0s")
-    before = len(talk.game.table.rows)
+    before = len(talk.game.rows)
     talk.line("/step")
-    assert talk.game.table.rows[before].what == "Topological Move (to kidode-room)"
-    assert len(talk.game.table.rows) == before + 1
+    assert talk.game.rows[before].what == "Topological Move (to kidode-room)"
+    assert len(talk.game.rows) == before + 1
 
 
 def test_waiting_stops_time_exactly(tmp_path: Path) -> None:
@@ -110,7 +111,7 @@ def test_several_doings_on_a_line_happen_in_sequence() -> None:
     assert "no time" in paper.told[-1] or paper.told  # what follows a time is a command
     type_in(talk, "/touch head /wait 4s /say Never mind. /wait 1s")
     assert [one.name for one in talk.game.lines[0].doings] == ["touch", "wait", "say"]
-    said = next(row for row in talk.game.table.rows if row.kind == "speech")
+    said = next(row for row in talk.game.rows if row.kind == "speech")
     assert talk.game.clock == round(said.time * 1000) + 1000
 
 
@@ -166,10 +167,20 @@ def test_rows_that_come_one_by_one_are_those_of_the_table(scenario: Path) -> Non
     instants: dict[float, list[Record]] = {}
     for record in made.records:
         instants.setdefault(record["time"], []).append(record)
-    for records in instants.values():
-        growing.add(records)
-    assert [row.key for row in growing.rows] == [row.key for row in made.rows()]
-    assert [row.number for row in growing.rows] == list(range(len(growing.rows)))
+    rows = [row for records in instants.values() for row in growing.add(records)]
+    assert [row.key for row in rows] == [row.key for row in made.rows()]
+    assert [row.number for row in rows] == list(range(len(rows)))
+
+
+def test_a_table_that_grows_for_months_keeps_no_rows() -> None:
+    note: Record = {"time": 1.0, "phase": "note", "actor": "environment", "text": "It rains."}
+    growing = GrowingTable()
+    tracemalloc.start()
+    try:
+        assert sum(len(growing.add([dict(note)])) for _ in range(2_000)) == 2_000
+        assert tracemalloc.get_traced_memory()[0] < 100_000
+    finally:
+        tracemalloc.stop()
 
 
 def test_what_the_camera_saw_has_its_row_when_somebody_minds() -> None:

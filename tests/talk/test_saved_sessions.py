@@ -98,10 +98,10 @@ def test_a_saved_session_can_be_taken_up_again(tmp_path: Path) -> None:
     path = tmp_path / "visit.xml"
     talk.save(str(path))
     again, _ = start(path, scripted=True)
-    assert [row.key for row in again.game.table.rows] == [row.key for row in talk.game.table.rows]
+    assert [row.key for row in again.game.rows] == [row.key for row in talk.game.rows]
     again.line("Never mind.")
-    assert again.game.table.rows[-1].what == "Topological Move" or '"Never mind."' in [
-        row.what for row in again.game.table.rows
+    assert again.game.rows[-1].what == "Topological Move" or '"Never mind."' in [
+        row.what for row in again.game.rows
     ]
 
 
