@@ -220,6 +220,9 @@ def _senses(reader: Reader, node: Node) -> Senses:
         else:
             remedy = 'Write event="...", sensor="..." or as="heard".'
             reader.problem(node, "missing-attribute", message, "", remedy)
+    elif node.get("event") == "speech" and node.get("actor", "user") == "user":
+        message = 'The event "speech" of a user needs the words that they say.'
+        reader.problem(node, "bad-value", message, "event", 'Write as="heard" instead.')
     what = given[0] if given else "event"
     return Senses(
         node.get("as") if what == "as" else what,

@@ -10,6 +10,7 @@ import pytest
 
 from prima.devices.goals import SAY, At, Begin, Sees
 from prima.devices.profile import Profile, read_robot
+from prima.errors import DocumentError
 from prima.live.driver import Refused
 from prima.live.mapped import MappedDriver
 from prima.live.told import Teller, pose
@@ -148,6 +149,24 @@ def test_what_is_heard_comes_with_its_confidence() -> None:
     other = {"text": "guess", "confidence": 0.25}
     assert ranked == [Heard("yes", {"confidence": 0.5, "alternatives": [other]})]
     assert told('as="heard" by="/h"', ["", 0.0], []) == []
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ('event="speech"', 'needs the words that they say. Write as="heard" instead.'),
+        ('event="speech" actor="environment"', ""),
+        ('event="a" sensor="b"', "exactly one of event, sensor, as. Write a <senses> for each."),
+        ("", 'exactly one of event, sensor, as. Write event="...", sensor="..." or as="heard".'),
+    ],
+)
+def test_what_a_robot_senses_is_of_one_kind(given: str, told: str) -> None:
+    if not told:
+        assert profile(f'<senses {given} by="/s"/>').drivers[0].senses
+        return
+    with pytest.raises(DocumentError) as caught:
+        profile(f'<senses {given} by="/s"/>')
+    assert told in str(caught.value) and "robot.xml:4" in str(caught.value)
 
 
 def test_a_human_and_the_emergency_stop() -> None:
