@@ -314,7 +314,7 @@ class Workspace:
     def known(self, path: Path, kinds: Iterable[str], anywhere: bool = True) -> list[FoundName]:
         """Definitions of some kinds that a document may use, each name once.
 
-        They are those of its scenarios, or else of the whole workspace.
+        They are those of its scenarios, or of the whole workspace if it is in none.
         """
         wanted = frozenset(kinds)
         text = self.text(path)
@@ -326,7 +326,7 @@ class Workspace:
         if not SHARED.isdisjoint(wanted):
             others = [one for one in self.related(path) if one != path]
             found += self._defined(others, wanted)
-            if anywhere and not found:
+            if anywhere and not (found or others):
                 found += self._defined(self.files(), wanted)
         once: dict[str, FoundName] = {}
         for one in found:

@@ -95,6 +95,22 @@ def test_states_are_proposed_of_the_application_that_is_named(space: Workspace) 
         assert {one.label for one in complete(space, path, offset)} == names, by
 
 
+def test_only_what_a_scenarios_own_robot_adds_is_proposed(space: Workspace) -> None:
+    path = space.folders[0] / "s.xml"
+    (space.folders[0] / "other.xml").write_text(
+        ROBOT.replace('<gesture name="bow"/>', '<adds command="hop" devices="arm"/>')
+        .replace('<does gesture="bow" by="b"/>', "")
+        .replace('id="r"', 'id="other"'),
+        encoding="utf-8",
+    )
+    for robot, offered in (("other.xml", True), ("r.xml", False)):
+        scene = SCENE.replace("r.xml", robot)
+        text, offset = plain(scene.replace("<never", '<when doing="|"/><never'))
+        space.put(path.as_uri(), text)
+        proposed = {one.label for one in complete(space, path, offset)}
+        assert "speak" in proposed and ("hop" in proposed) == offered, robot
+
+
 def test_a_tag_of_a_voicexml_document_s_own_grammar_reads_its_rules(space: Workspace) -> None:
     path = space.folders[0] / "v.vxml"
     path.write_text(
