@@ -39,7 +39,7 @@ class Turn(Channel):
 
     def _soon_over(self, ab: AB) -> bool:
         lasts = ab.feedback or ab.leaves or "speech-recognition" in ab.devices
-        return not (lasts or ab.spans or ab.inserted) and ab.cause is None
+        return not (lasts or ab.spans) and ab.cause is None
 
     def _way_to(self, ab: AB) -> list[AB]:
         """An AB and all that has to end before it may start."""

@@ -40,4 +40,5 @@ def goes_before(ab: Behavior, reaction: int | None, memory: WorkingMemory) -> in
 
 
 def _soon_over(ab: Behavior) -> bool:
-    return not (ab.feedback or ab.leaves or ab.asks or ab.spans)
+    lasting = ab.feedback or ab.leaves or ab.asks or ab.spans
+    return not lasting and ab.reaction is None  # what is wanted now may be a reaction in the stream

@@ -11,7 +11,7 @@ import pytest
 
 from prima.invariants import check
 from prima.language.commands import TABLE_4_2, CommandType
-from prima.messages import Command
+from prima.messages import Command, Step
 from tests.helpers.stage import TRACK, Stage, ask, command, move, restartable, say
 
 TOUCH = 7
@@ -225,4 +225,29 @@ def test_x7_its_own_reaction_waits_as_well() -> None:
     answer(stage.at(2000), "ea#1", lambda: stage.request("ea", HEAD, say("Thank you.")))
     assert stage.select() == ["ea#3"]
     assert stage.holds("ea#2")[-1] == "X7"
+    assert check(stage.records, "prima+x7") == []
+
+
+def test_x7_a_reaction_in_the_askers_stream_is_no_response() -> None:
+    stage = Stage("prima+x7")
+    stage.request("ea", ask(), HEAD)
+    stage.select()
+    beside = [Step(replace(HEAD, now=True)), Step(say("Oh!"))]
+    stage.at(1000).request("ea", steps=beside, cause=TOUCH)
+    assert stage.select() == ["ea#3"], "it takes the place of what was to follow (O2)"
+    stage.at(1100).request("fa", say("That feels good."), cause=TOUCH + 1)
+    assert stage.select() == []
+    answer(stage.at(2000), "ea#1")
+    assert stage.select() == ["fa#1"], "it reacts to the later event"
+    assert (stage.rule("fa#1"), stage.losers("fa#1")) == ("S2b", ["ea#4"])
+    assert check(stage.records, "prima+x7") == []
+
+
+def test_x7_a_response_may_be_wanted_now() -> None:
+    stage = touched_while_asked()
+    stage.request("ea", say("Goodbye."))
+    stage.select()
+    thanks = replace(say("Thank you."), now=True)
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", thanks))
+    assert (stage.select(), stage.rule("ea#3")) == (["ea#3"], "X7")
     assert check(stage.records, "prima+x7") == []
