@@ -272,9 +272,11 @@ class Extensions(FloorRules):
 
     def close_trees(self) -> None:
         """C1, F3: once everything of the instant has been processed, empty trees end."""
+        coming = False
         for tree in [tree for tree in self.trees.values() if not tree.open]:
             if self.begins.get((self.now, tree.name), -1) > self.place:
-                continue  # it is held from this instant on
+                coming = True  # it is held from this instant on, and may have the floor
+                continue
             self._ends_rightly(tree)
             del self.trees[tree.name]
             self.ended_trees.add(tree.name)
@@ -282,7 +284,7 @@ class Extensions(FloorRules):
                 self.floor.remove(tree)
                 self.turned.append((tree.name, "returned", "F3"))
         held = [tree for tree in self.trees.values() if tree.until is not None]
-        if held and not self.floor:
+        if held and not (self.floor or coming):
             self.give_floor(max(held, key=lambda tree: tree.held), "X3")
 
 

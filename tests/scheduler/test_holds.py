@@ -220,3 +220,16 @@ def test_x3_of_several_held_streams_the_latest_has_the_floor_that_another_gives_
     stage.select()
     assert stage.floor == ["eb:1"]
     assert check(stage.records, "prima+x3") == []
+
+
+def test_x3_of_streams_held_in_one_instant_the_latest_has_the_floor() -> None:
+    stage = Stage("prima+x3")
+    stage.request("fa", say(), hold=5000)
+    stage.request("ea", command("move-head", pan=30), hold=5000)
+    assert stage.select() == ["fa#1", "ea#1"]
+    stage.at(1000).end("fa#1")
+    stage.end("ea#1")
+    assert stage.select() == []
+    held = [record["tree"] for record in stage.phases("held")]
+    assert len(held) == 2 and stage.floor == held[1:]
+    assert check(stage.records, "prima+x3") == []
