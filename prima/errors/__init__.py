@@ -67,6 +67,9 @@ class DocumentError(PrimaError):
         self.problems = sorted(problems)
         super().__init__("\n".join(map(str, listed(self.problems))))
 
+    def __reduce__(self) -> tuple[type[DocumentError], tuple[list[Problem]]]:
+        return type(self), (self.problems,)  # the message is no argument
+
 
 class UsageError(PrimaError):
     """The caller asked for something that does not exist or is impossible."""

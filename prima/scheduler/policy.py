@@ -170,6 +170,9 @@ class UnknownPolicy(UsageError):
         self.word = word
         super().__init__(f"{wrong} {self.remedy}")
 
+    def __reduce__(self) -> tuple[type[UnknownPolicy], tuple[str, ...]]:
+        return type(self), (self.wrong, self.meant, self.remedy, self.word)
+
 
 def policy_named(text: str) -> Policy:
     """Give the policy for ``prima``, ``fifo``, ``fair``, ``fixed``, ``fixed:APP`` or ``none``.

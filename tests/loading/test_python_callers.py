@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -74,3 +75,15 @@ def test_one_path_is_not_its_letters() -> None:
 def test_a_name_that_no_file_can_have(tmp_path: Path) -> None:
     with pytest.raises(prima.UsageError, match="is not a file's name"):
         prima.read(f"{tmp_path}/a\0b")
+
+
+@pytest.mark.parametrize(
+    "wrong", [lambda: prima.load(SCENARIO), lambda: prima.rehearse(SCENARIO, policy="prma")]
+)
+def test_what_one_process_raises_another_one_reads(wrong: Callable[[], object]) -> None:
+    with pytest.raises((prima.DocumentError, prima.UsageError)) as caught:
+        wrong()
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert type(again) is caught.type
+    assert str(again) == str(caught.value)
+    assert vars(again) == vars(caught.value)
