@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import ClassVar
 
 from prima.messages import Record
 from prima.transcript.criteria import Criteria, ReactionDelay
@@ -56,27 +57,12 @@ class Observer:
         application has spoken meanwhile."""
         self._lapsed: dict[str, float] = {}
         """When a question of each application was the latest to time out."""
-        self._do: dict[str, Callable[[Entry], None]] = {
-            "request": self._request,
-            "start": self._start,
-            "end": self._over,
-            "cancel": self._end,
-            "fail": self._fail,
-            "stream-end": lambda record: self._forget(record.tree),
-            "event": lambda record: self._event(record, record.event),
-            "emergency": lambda record: self._event(
-                record, f"emergency.{'stop' if record.outcome == 'pressed' else 'release'}"
-            ),
-            "send": self._send,
-            "collision": self._collide,
-            "interrupt": self._interrupt,
-        }
 
     def add(self, record: Entry) -> None:
         """Add one record."""
         self._now = record.time
-        if do := self._do.get(record.phase):
-            do(record)
+        if do := self._DO.get(record.phase):
+            do(self, record)
 
     def _send(self, record: Entry) -> None:
         talking = any(tree.begun for tree in self._trees.values() if tree.app == record.app)
@@ -318,6 +304,22 @@ class Observer:
             return
         self._cut.add(name)
         self.found.units_cut += 1
+
+    _DO: ClassVar[dict[str, Callable[[Observer, Entry], None]]] = {
+        "request": _request,
+        "start": _start,
+        "end": _over,
+        "cancel": _end,
+        "fail": _fail,
+        "stream-end": lambda self, record: self._forget(record.tree),
+        "event": lambda self, record: self._event(record, record.event),
+        "emergency": lambda self, record: self._event(
+            record, f"emergency.{'stop' if record.outcome == 'pressed' else 'release'}"
+        ),
+        "send": _send,
+        "collision": _collide,
+        "interrupt": _interrupt,
+    }
 
 
 def _speaks(request: Entry) -> bool:

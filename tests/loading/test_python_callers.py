@@ -77,6 +77,14 @@ def test_a_name_that_no_file_can_have(tmp_path: Path) -> None:
         prima.read(f"{tmp_path}/a\0b")
 
 
+def test_what_one_process_has_made_another_one_reads() -> None:
+    made = prima.rehearse(SCENARIO, isolate="none", visits=True, entries=True)
+    made.run()
+    again = pickle.loads(pickle.dumps(made))
+    assert (again.dumps(), len(again.visits)) == (made.dumps(), len(made.visits))
+    assert (again.table(), again.summary()) == (made.table(), made.summary())
+
+
 @pytest.mark.parametrize(
     "wrong", [lambda: prima.load(SCENARIO), lambda: prima.rehearse(SCENARIO, policy="prma")]
 )
