@@ -8,7 +8,7 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from prima.api.transcripts import Transcript, rows_of
+from prima.api.transcripts import Transcript
 from prima.errors import UsageError
 from prima.loading import Loaded, load_scenario, seeded
 from prima.loading.heads import chosen_policy, run_record
@@ -70,6 +70,7 @@ def rehearse(
     from prima.transcript.lines import finished, line
     from prima.transcript.measures import Measure
     from prima.transcript.record import Entry
+    from prima.transcript.rows import make_rows
 
     check_numbers(bound=bound)
     check_numbers(0, patience=patience, seed=seed)
@@ -102,7 +103,7 @@ def rehearse(
                 made.visits += rehearsal.visits
 
     if rows:
-        made.made = rows_of(made.name, told())
+        made.made = make_rows(told())
     else:
         deque(told(), maxlen=0)
     made.failures = list(rehearsal.session.failures)

@@ -95,3 +95,13 @@ def test_what_one_process_raises_another_one_reads(wrong: Callable[[], object]) 
     assert type(again) is caught.type
     assert str(again) == str(caught.value)
     assert vars(again) == vars(caught.value)
+
+
+@pytest.mark.parametrize("rows", [False, True])
+@pytest.mark.parametrize("kind", [ValueError, KeyError, TypeError, KeyboardInterrupt])
+def test_what_a_sink_raises_is_raised(kind: type[BaseException], rows: bool) -> None:
+    def sink(_line: str) -> None:
+        raise kind("full")
+
+    with pytest.raises(kind, match="full"):
+        prima.rehearse(SCENARIO, sink=sink, rows=rows, isolate="none")
