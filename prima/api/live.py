@@ -139,7 +139,8 @@ def run_live(
         tuple(paths_of(fas)), tuple(paths_of(eas)), tuple(maps), name(services),
     )  # fmt: skip
     check_numbers(bound=bound)
-    check_numbers(0, patience=patience, until=until, late=late)
+    check_numbers(0, until=until, late=late)
+    check_numbers(0, LONGEST_MS, patience=patience)
     if not 0 < speed <= FASTEST:
         raise UsageError(f"The speed is {speed:g}: write a number above 0, up to {FASTEST:g}.")
     web = fetcher(hosts, len(chosen.fas) + len(chosen.eas) + 1)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from prima.api.transcripts import Transcript
 from prima.errors import UsageError
+from prima.language.values import LONGEST_MS
 from prima.loading import Loaded, load_scenario, seeded
 from prima.loading.heads import chosen_policy, run_record
 
@@ -73,7 +74,8 @@ def rehearse(
     from prima.transcript.rows import make_rows
 
     check_numbers(bound=bound)
-    check_numbers(0, patience=patience, seed=seed)
+    check_numbers(0, seed=seed)
+    check_numbers(0, LONGEST_MS, patience=patience)
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
     loaded = seeded(loaded, seed)
     cast = loaded.cast
@@ -157,12 +159,15 @@ def fetcher(given: str | Iterable[str], applications: int) -> Web | None:
     return Hosts(hosts, applications)
 
 
-def check_numbers(least: int = 1, **given: int | None) -> None:
-    """Refuse values that are not whole numbers, or too small.
+def check_numbers(least: int = 1, most: int | None = None, /, **given: int | None) -> None:
+    """Refuse values that are not whole numbers, too small or too large.
 
     Raises:
         UsageError: one is.
     """
+    limits = f"from {least}" if most is None else f"from {least} to {most}"
     for name, number in given.items():
-        if number is not None and (type(number) is not int or number < least):
-            raise UsageError(f"{name}={number!r}: write a whole number from {least}.")
+        if number is None:
+            continue
+        if type(number) is not int or number < least or (most is not None and number > most):
+            raise UsageError(f"{name}={number!r}: write a whole number {limits}.")

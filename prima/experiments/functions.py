@@ -16,6 +16,7 @@ from prima.experiments.pools import Pool
 from prima.experiments.studyfile import Level, levels_text, question_of
 from prima.experiments.sweep import Output, Sweep
 from prima.experiments.table import arrow_table
+from prima.language.values import LONGEST_MS
 from prima.messages import Json
 from prima.script.isolated import check_isolation
 
@@ -67,7 +68,7 @@ def sweep(
         RunError: no process can be started.
     """
     check_numbers(seeds=seeds, runs=runs, workers=workers, bound=bound)
-    check_numbers(0, patience=patience)
+    check_numbers(0, LONGEST_MS, patience=patience)
     if isolate is not None:
         check_isolation(isolate)
     question = question_of(

@@ -23,7 +23,8 @@ FOLLOW, MUSEUM = DOCUMENTS / "fa" / "follow.xml", DOCUMENTS / "ea" / "museum.xml
     ("given", "told"),
     [
         ({"bound": 0}, "bound=0: write a whole number from 1."),
-        ({"patience": -1}, "patience=-1: write a whole number from 0."),
+        ({"patience": -1}, "patience=-1: write a whole number from 0 to 86400000."),
+        ({"patience": 86_400_001}, "patience=86400001: write a whole number from 0 to 86400000."),
         ({"isolate": "some"}, 'isolate="some": write all, ea or none.'),
         ({"hosts": "http://a"}, '"http://a" is not a host name'),
     ],
