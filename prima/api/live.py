@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from prima.api.rehearsing import Sink, check_numbers, fetcher
-from prima.api.transcripts import Transcript
+from prima.api.transcripts import Transcript, check_transcripts
 from prima.errors import UsageError
 from prima.language.values import LONGEST_MS
 from prima.loading import Loaded, load_scenario
@@ -42,6 +42,7 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded | None = None) 
     from prima.journal import replay_records
     from prima.transcript.lines import check_head, finished
 
+    check_transcripts(transcript)
     head = transcript.kept()[0]
     check_head(head, transcript.name)
     if head["data"].get("redacted"):

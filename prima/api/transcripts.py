@@ -112,6 +112,17 @@ class Transcript:
         return "".join(line(record) for record in made)
 
 
+def check_transcripts(*given: object) -> None:
+    """Refuse what is not a transcript, such as the path of one.
+
+    Raises:
+        UsageError: something is not.
+    """
+    for one in given:
+        if not isinstance(one, Transcript):
+            raise UsageError(f"{one!r:.80} is not a transcript: read it with prima.read.")
+
+
 def rows_of(name: str, entries: Iterable[Entry]) -> list[Row]:
     """The rows of a transcript.
 
@@ -171,9 +182,10 @@ def skim(path: str | Path) -> Transcript:
 
 def records_of(path: str | Path, cut: list[str] | None) -> Iterator[Record]:
     """A transcript's records one by one; see :func:`read`."""
-    from prima.loading.files import at_once
+    from prima.loading.files import at_once, check_name
     from prima.transcript.lines import INCOMPLETE, MAX_LINE, read_lines
 
+    check_name(path)
     count = 0
     try:
         with open(path, encoding="utf-8-sig", opener=at_once) as stream:

@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from prima.api.transcripts import Transcript, ends_early, read, records_of
+from prima.api.transcripts import Transcript, check_transcripts, ends_early, read, records_of
 from prima.errors import UsageError, did_you_mean
 from prima.messages import Record
 from prima.version import __version__
@@ -40,7 +40,12 @@ def export(
             unwritable.
     """
     from prima.exports import Exported, checked, timeline, write
+    from prima.loading.files import check_name
 
+    if not isinstance(transcript, Transcript):
+        check_name(transcript)
+    if not hasattr(output, "write"):
+        check_name(output)
     tags = checked(to, languages or {})
     held = transcript if isinstance(transcript, Transcript) else None
     if not isinstance(transcript, Transcript) and not Path(transcript).is_file():
@@ -77,9 +82,14 @@ def _output(path: Path, transcript: str) -> AbstractContextManager[IO[bytes]]:
 
 
 def diff(before: Transcript, after: Transcript) -> Difference:
-    """Compare two transcripts by behaviour."""
+    """Compare two transcripts by behaviour.
+
+    Raises:
+        UsageError: one is not a transcript, or its records were not kept.
+    """
     from prima.transcript.diff import compare
 
+    check_transcripts(before, after)
     difference = compare(before.rows(), after.rows())
     difference.before, difference.after = before.summary(), after.summary()
     return difference
@@ -107,6 +117,7 @@ def explain_row(transcript: Transcript, number: int) -> str:
     """
     from prima.transcript.why import explained
 
+    check_transcripts(transcript)
     rows = transcript.rows()
     if not rows:
         message = f"{transcript.name}: the transcript has no rows."

@@ -72,6 +72,16 @@ def path_of(path: str | Path) -> Path:
     return Path(path)
 
 
+def check_name(path: object) -> None:
+    """Refuse what names no file; a number would be a file that this process has open.
+
+    Raises:
+        UsageError: it is neither a text nor a path.
+    """
+    if not isinstance(path, str | os.PathLike):
+        raise UsageError(f"{path!r} is not a file's name.")
+
+
 def paths_of(given: str | Path | Iterable[str | Path]) -> list[str]:
     """Paths as texts; one that is given alone is one, and not its letters."""
     if isinstance(given, str) or not isinstance(given, Iterable):
@@ -103,6 +113,7 @@ def read_file(path: str | Path) -> bytes:
         DocumentError: the file is larger than any document may be.
         UsageError: it cannot be read.
     """
+    check_name(path)
     text = _open_text(path)
     if text is not None:
         if len(text) > LIMITS.bytes:

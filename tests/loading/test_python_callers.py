@@ -25,6 +25,7 @@ FOLLOW, MUSEUM = DOCUMENTS / "fa" / "follow.xml", DOCUMENTS / "ea" / "museum.xml
         ({"bound": 0}, "bound=0: write a whole number from 1."),
         ({"patience": -1}, "patience=-1: write a whole number from 0 to 86400000."),
         ({"patience": 86_400_001}, "patience=86400001: write a whole number from 0 to 86400000."),
+        ({"policy": ["prima"]}, "policy=['prima']: write the name of one policy."),
         ({"isolate": "some"}, 'isolate="some": write all, ea or none.'),
         ({"hosts": "http://a"}, '"http://a" is not a host name'),
     ],
@@ -106,3 +107,43 @@ def test_what_a_sink_raises_is_raised(kind: type[BaseException], rows: bool) -> 
 
     with pytest.raises(kind, match="full"):
         prima.rehearse(SCENARIO, sink=sink, rows=rows, isolate="none")
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda path: prima.diff(path, path),
+        lambda path: prima.replay(path, SCENARIO),
+        lambda path: prima.explain_row(path, 1),
+    ],
+)
+def test_the_path_of_a_transcript_is_not_one(use: Callable[[str], object]) -> None:
+    with pytest.raises(prima.UsageError, match="is not a transcript: read it with"):
+        use("a.jsonl")
+
+
+@pytest.mark.parametrize("given", [None, 1.5, [], b"a"])
+@pytest.mark.parametrize(
+    "use",
+    [
+        prima.load,
+        prima.load_scenario,
+        prima.read,
+        prima.rehearse,
+        lambda path: prima.export(path, "csv", "a.csv"),
+        lambda path: prima.export(prima.Transcript([]), "csv", path),
+    ],
+)
+def test_what_is_no_path_is_told(use: Callable[[Any], object], given: object) -> None:
+    with pytest.raises(prima.UsageError, match="is not a file's name"):
+        use(given)
+
+
+@pytest.mark.parametrize("use", [prima.load, prima.load_scenario, prima.read])
+def test_a_number_is_no_file_that_happens_to_be_open(
+    use: Callable[[Any], object], tmp_path: Path
+) -> None:
+    with (tmp_path / "a").open("wb") as stream:
+        with pytest.raises(prima.UsageError, match="is not a file's name"):
+            use(stream.fileno())
+        stream.write(b"still open")
