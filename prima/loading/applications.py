@@ -18,7 +18,7 @@ from prima.errors import (
 from prima.interpreter.elements import Document
 from prima.interpreter.events import near
 from prima.interpreter.reader import read_document
-from prima.loading.files import Folder, path_of, read_file
+from prima.loading.files import Folder, absolute, path_of, read_file
 from prima.loading.kinds import is_voicexml
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def read_application(
     file = path_of(path)
     page = read_page(site.name(site.uri) if site else file.name, path, data, site)
     own = name or re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "voice"
-    folder = Folder(site.folder if site else str(file.parent))
+    folder = Folder(str(absolute(site.folder if site else file.parent)))
     return VoiceDocument(
         own, kind or "ea", path, page, folder.fetch, page.root, folder.glance
     ), page.problems

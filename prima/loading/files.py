@@ -89,7 +89,7 @@ def paths_of(given: str | Path | Iterable[str | Path]) -> list[str]:
     return [str(path) for path in given]
 
 
-def _absolute(path: str | Path) -> Path:
+def absolute(path: str | Path) -> Path:
     """An absolute path without following links; relative ones start at the documents' folder."""
     files = _files.get()
     return path_of(abspath(join(files.folder if files else "", path)))
@@ -101,7 +101,7 @@ def _open_text(path: str | Path) -> bytes | None:
     if files is None:
         return None
     try:
-        return files.text(_absolute(path))
+        return files.text(absolute(path))
     except (OSError, ValueError, RuntimeError):
         return None
 
@@ -202,7 +202,7 @@ class Folder:
         parts = urlsplit(uri)
         if parts.scheme not in ("", "file"):
             raise FetchError(f"{parts.scheme}: is not fetched: no network is used")
-        root = _absolute(self.path)
+        root = absolute(self.path)
         target = path_of(normpath(root / unquote(parts.path).lstrip("/")))
         try:
             inside = target.resolve().is_relative_to(root.resolve())

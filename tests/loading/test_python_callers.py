@@ -147,3 +147,21 @@ def test_a_number_is_no_file_that_happens_to_be_open(
         with pytest.raises(prima.UsageError, match="is not a file's name"):
             use(stream.fileno())
         stream.write(b"still open")
+
+
+def test_a_loaded_scenario_finds_its_files_from_every_folder(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "tea.gram").write_text("#ABNF 1.0;\nlanguage en;\nroot $t;\n$t = tea;\n")
+    (tmp_path / "ask.vxml").write_text(
+        '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en"><form>'
+        '<field name="f"><grammar src="tea.gram" type="application/srgs"/><prompt>What?</prompt>'
+        "</field></form></vxml>"
+    )
+    monkeypatch.chdir(tmp_path)
+    loaded = prima.stage([], "ask.vxml", "Tea.")
+    made = prima.rehearse(loaded, isolate="none")
+    assert not made.failures
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    assert prima.rehearse(loaded, isolate="none").dumps() == made.dumps()
