@@ -73,3 +73,17 @@ def test_a_response_is_found_on_all_ways(tmp_path: Path, content: str, most: int
     assert reaction.responds
     others = [one for one in reaction.responds if "speaker" not in one.devices]
     assert len(others) <= most
+
+
+@pytest.mark.parametrize("calls", [1, 2])
+@pytest.mark.parametrize("content", ['<gesture name="bow"/>', '<goto next="#s"/>', ""])
+def test_a_response_is_found_where_a_subdialog_comes_back(content: str, calls: int) -> None:
+    called = "".join(f'<subdialog name="i{one}" src="#g"/>' for one in range(calls))
+    own = (
+        f'<form id="s">{called}<block><speak>There.</speak></block>'
+        f'<on event="touch">{content}</on></form>'
+        '<form id="g"><block><gesture name="bow"/><return/></block></form>'
+    )
+    document, _ = read_application("a.xml", (HEAD.format("fa", "a") + own + "</prima>").encode())
+    (reaction,) = outline(document, PROFILE).reactions
+    assert any("speaker" in one.devices for one in reaction.responds)

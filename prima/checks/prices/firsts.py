@@ -51,6 +51,8 @@ class Firsts:
         self._of_items = of_items
         self._step = step
         self._seen: set[int] = set()
+        self._returns = False
+        """Whether a subdialog may return without any, so that its caller goes on."""
         self._found: dict[int, Price] = {}
 
     def of(self, content: Sequence[Act], form: Form | None) -> list[Price]:
@@ -67,7 +69,7 @@ class Firsts:
         return list(self._found.values())
 
     def _begin(self) -> None:
-        self._seen, self._found, self.later = set(), {}, []
+        self._seen, self._found, self.later, self._returns = set(), {}, [], False
 
     def _add(self, price: Price) -> None:
         self._found.setdefault(price.node.index, price)
@@ -98,7 +100,7 @@ class Firsts:
                 self._go_through(filled.content, form)
             return True
         if isinstance(item, Subdialog):
-            return self._enter(self._document.forms.get(item.form))
+            return self._enter(self._document.forms.get(item.form)) or self._returns
         return self._go_through(item.content, form) if isinstance(item, Block) else True
 
     def _go_through(self, content: Sequence[Act], form: Form | None) -> bool:
@@ -126,6 +128,7 @@ class Firsts:
             case Goto():
                 self._goto(act, form)
             case Return():
+                self._returns = True
                 self._stay(None)
         return not isinstance(act, Goto | Return | Exit)
 
