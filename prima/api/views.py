@@ -42,14 +42,10 @@ def export(
     from prima.exports import Exported, checked, timeline, write
     from prima.loading.files import check_name
 
-    if not isinstance(transcript, Transcript):
-        check_name(transcript)
     if not hasattr(output, "write"):
         check_name(output)
     tags = checked(to, languages or {})
-    held = transcript if isinstance(transcript, Transcript) else None
-    if not isinstance(transcript, Transcript) and not Path(transcript).is_file():
-        held = read(transcript, partial=True)  # a pipe can be read only once
+    held = _in_memory(transcript)
     name = str(transcript) if held is None else held.name
     cut = [held.cut] if held and held.cut else []
 
@@ -66,6 +62,16 @@ def export(
         write(to, made, records([]), tags, __version__, output)
     early = ends_early(name, made.end / 1000) if made.head and not made.over and not cut else ""
     return Exported(len(made.tiers), made.marks, made.end / 1000, " ".join(cut), early)
+
+
+def _in_memory(transcript: Transcript | str | Path) -> Transcript | None:
+    """A transcript that is given, or comes from a pipe, which can be read only once."""
+    from prima.loading.files import check_name
+
+    if isinstance(transcript, Transcript):
+        return transcript
+    check_name(transcript)
+    return None if Path(transcript).is_file() else read(transcript, partial=True)
 
 
 def _output(path: Path, transcript: str) -> AbstractContextManager[IO[bytes]]:
