@@ -13,7 +13,7 @@ from importlib import import_module
 import click
 
 from prima.cli.common import escape_for_people, tell
-from prima.cli.failures import INTERRUPTED, exit_code
+from prima.cli.failures import INTERRUPTED, exit_code, last_words
 from prima.cli.interrupts import interruptible
 from prima.errors import did_you_mean
 from prima.version import __version__
@@ -105,4 +105,5 @@ def main() -> None:
             code = INTERRUPTED
         except (Exception, SystemExit) as error:
             code = exit_code(error)
+    last_words()
     sys.exit(code if isinstance(code, int) else 0)

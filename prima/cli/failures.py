@@ -86,6 +86,14 @@ def closed_pipe(_error: BrokenPipeError) -> int:
     return FINE
 
 
+def last_words() -> None:
+    """Write what stderr still holds; if that fails, Python must not try again at exit."""
+    try:
+        sys.stderr.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+
+
 def _system(error: OSError) -> int:
     tell(f"prima: cannot go on: {error.strerror}.")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)

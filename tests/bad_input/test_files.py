@@ -73,15 +73,17 @@ def test_what_is_no_file_is_no_scenario_of_a_folder(command: str, tmp_path: Path
     assert done.returncode == 2 and "contains no scenarios" in done.stderr
 
 
+@pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize(
     ("given", "code"),
     [(["validate", "s.xml"], 0), (["run", "nix.xml"], 2), (["validate", "nix.xml"], 2)],
 )
 def test_the_exit_code_is_right_though_nobody_can_be_told(
-    given: list[str], code: int, tmp_path: Path
+    given: list[str], code: int, unbuffered: str, tmp_path: Path
 ) -> None:
     scenario_of(tmp_path)
-    command = f'"{sys.executable}" -m prima {" ".join(given)} 2>/dev/full'
+    python = f'PYTHONUNBUFFERED={unbuffered} "{sys.executable}"'
+    command = f"{python} -m prima {' '.join(given)} 2>/dev/full"
     assert subprocess.run(command, shell=True, cwd=tmp_path, timeout=60).returncode == code
 
 
