@@ -76,5 +76,5 @@ class Lines:
         line = max(line, 1) - 1
         if line >= len(self.starts):
             return len(self.text)
-        mark = line == 0 and self.text.startswith("\ufeff")  # which is no letter of the document
+        mark = line == 0 and self.text.startswith("\ufeff")  # columns do not count it
         return min(self.starts[line] + mark + max(column, 1) - 1, self._end(line))
