@@ -250,7 +250,7 @@ class Acts:
 
 def all_items(items: Sequence[Item]) -> Sequence[Item]:
     """Form items, those inside units included, in document order."""
-    if Unit not in map(type, items):
+    if not items or Unit not in map(type, items):
         return items
     found: list[Item] = []
     for item in items:

@@ -151,6 +151,7 @@ class _Rules:
         self.known = vocabulary.attributes[key]
         self.children = vocabulary.children(key)
         self.required = [item for item in self.element.attributes if item.required]
+        self.needed = frozenset(item.name for item in self.required)
         self.values: dict[str, tuple[set[str], Callable[[str], object] | None]] = {}
         """Correct values by attribute, and the reader of other values, if others are allowed.
 
@@ -177,7 +178,7 @@ class _Rules:
                 except ValueError:
                     return False
                 right.add(text)
-        return not self.required or not self.lacking(attributes)
+        return self.needed <= attributes.keys() or not self.lacking(attributes)
 
     def lacking(self, attributes: dict[str, str]) -> list[Attribute]:
         """The missing attributes of an element with these."""
