@@ -7,7 +7,7 @@ from functools import partial
 from prima.errors import Hint, suggestion
 from prima.grammar.errors import Problems
 from prima.grammar.values import is_language
-from prima.markup.spans import attribute_span, name_spans
+from prima.markup.spans import name_spans, similar_attribute
 from prima.markup.tree import Node
 
 SRGS = "http://www.w3.org/2001/06/grammar"
@@ -27,9 +27,6 @@ ATTRIBUTES: dict[str, set[str]] = {
     "tag": set(),
 }
 """The elements of SRGS and what they may say, beside ``xml:lang`` and the like."""
-VOICEXML = {"scope", "src", "srcexpr", "type", "weight", "fetchhint", "fetchtimeout", "maxage"}
-VOICEXML |= {"maxstale", "accept"}
-"""What VoiceXML adds to <grammar> (VoiceXML 2.0 section 3.1.1.4)."""
 
 
 class GrammarChecker:
@@ -68,7 +65,7 @@ class GrammarChecker:
         for name in node.attributes:
             if name not in known and ":" not in name and not name.startswith("{"):
                 message = f"<{node.tag}> has no attribute {name}."
-                hint = suggestion(name, known, attribute_span(node, name))
+                hint = similar_attribute(node, name, known)
                 self.note(node, "unknown-attribute", message, hint, name)
         lang = node.attributes.get("xml:lang")
         if lang is not None and not is_language(lang):

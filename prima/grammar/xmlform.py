@@ -19,7 +19,7 @@ from prima.grammar.values import (
     repeat,
     sequence,
 )
-from prima.grammar.xmlcheck import EXPANSION, HEADER, SRGS, VOICEXML, GrammarChecker
+from prima.grammar.xmlcheck import EXPANSION, HEADER, SRGS, GrammarChecker
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
@@ -56,7 +56,8 @@ class _Reader(GrammarChecker):
             self.note(node, "wrong-root", f"<{node.tag}> is not a grammar of SRGS.", remedy)
             return
         self.space = node.namespace
-        self.attributes(node, VOICEXML if self.inline else {"scope"})
+        # Where it is part of a document, the document's checks know its attributes.
+        self.attributes(node, set(node.attributes) if self.inline else {"scope"})
         if not self.inline and "scope" in node.attributes:
             message = "scope has no effect in a grammar's file."
             remedy = "Write it where VoiceXML names the file."

@@ -28,7 +28,14 @@ from prima.errors.diagnoses.structure import (
 from prima.errors.diagnoses.values import BAD_VALUE
 from prima.language.values import KINDS, XML_SPACE, BadValue, outside, read_value, within
 from prima.markup.hints import TEXTS, meant_value, misplaced_remedy, text_remedy
-from prima.markup.spans import added, attribute_span, name_spans, renamed, value_span
+from prima.markup.spans import (
+    added,
+    attribute_span,
+    name_spans,
+    renamed,
+    similar_attribute,
+    value_span,
+)
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute, Instead, Vocabulary
 
@@ -270,11 +277,7 @@ def _unknown_attribute(node: Node, name: str, rules: _Rules, missing: list[Attri
     hint = _other_attribute(node, name, rules) or _missing_attribute(node, name, known, missing)
     if not hint and rules.element.text and name in TEXTS:
         hint = Hint(f"Write the text inside: <{node.tag}>...</{node.tag}>.")
-    if not hint:
-        near = nearest_word(name, known)
-        hint = meant(near, attribute_span(node, name))
-        if near in node.attributes:
-            hint = Hint(f'Remove it: there is "{near}" already.')
+    hint = hint or similar_attribute(node, name, known)
     if not hint:
         hint = Hint(f"It may have {one_of(known)}." if known else "It has no attributes.")
     place = node.attribute_place(name, value=False)

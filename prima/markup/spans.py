@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
+from collections.abc import Iterable
 
-from prima.errors import Edit, Fix, Hint, Span, replaced
+from prima.errors import Edit, Fix, Hint, Span, meant, nearest_word, replaced
 from prima.markup.limits import LIMITS
 from prima.markup.tree import MARKUP, NAME, WORD, Node
 from prima.markup.vocabulary import Attribute
@@ -54,6 +55,14 @@ def attribute_span(node: Node, attribute: str) -> Span:
     """An attribute's name."""
     first = node.source.offset(node.index, attribute)
     return node.source.span(first, first + len(attribute))
+
+
+def similar_attribute(node: Node, name: str, known: Iterable[str]) -> Hint:
+    """The hint for an unknown attribute that resembles a known one; empty if none does."""
+    near = nearest_word(name, known)
+    if near in node.attributes:
+        return Hint(f'Remove it: there is "{near}" already.')
+    return meant(near, attribute_span(node, name))
 
 
 def name_spans(node: Node) -> tuple[Span, ...]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
-from prima.errors import Hint, Problem, one_of, suggestion
+from prima.errors import Hint, Problem, one_of
 from prima.errors.diagnoses.behaviour import SHARED_DEVICE
 from prima.errors.diagnoses.reading import TOO_DEEP
 from prima.errors.diagnoses.structure import EMPTY, MISPLACED_ELEMENT, STRAY_TEXT, UNKNOWN_ATTRIBUTE
@@ -16,7 +16,7 @@ from prima.interpreter.units import LONGEST_UNIT_MS, Reached, now_inside, unit_p
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.language.commands import TABLE_4_2
 from prima.language.values import BadValue, milliseconds, read_value
-from prima.markup.spans import attribute_span
+from prima.markup.spans import similar_attribute
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Step
 from prima.voicexml.vocabulary import COMMANDS, HANDLERS, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
@@ -210,7 +210,7 @@ def check_own(node: Node, key: str, problems: list[Problem]) -> None:
             continue
         if name not in known:
             place = node.attribute_place(name, value=False)
-            hint = suggestion(name, known, attribute_span(node, name))
+            hint = similar_attribute(node, name, known)
             problems.append(NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name))
             continue
         try:

@@ -6,12 +6,12 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from prima.errors import Hint, Problem, one_of, replaced, suggestion
+from prima.errors import Hint, Problem, one_of, replaced
 from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE, UNKNOWN_ATTRIBUTE
 from prima.errors.diagnoses.values import BAD_VALUE, EXCLUSIVE
 from prima.language.values import NUMBER, read_value
 from prima.markup.hints import meant_value
-from prima.markup.spans import added, attribute_span, value_span
+from prima.markup.spans import added, similar_attribute, value_span
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Element
 from prima.voicexml.cues import is_rate
@@ -84,7 +84,7 @@ def _check_attribute(node: Node, name: str, entry: ElementEntry) -> Iterator[Pro
         if not fits(kind, text):
             yield bad_value(node, name, text, kind)
     elif name not in entry.known and not name.startswith(("xml:", "xsi:", "{")):
-        hint = suggestion(name, entry.known, attribute_span(node, name))
+        hint = similar_attribute(node, name, entry.known)
         place = node.attribute_place(name, value=False)
         yield NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
 

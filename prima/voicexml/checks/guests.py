@@ -11,7 +11,7 @@ from prima.errors.diagnoses.values import EXCLUSIVE, NOTHING_TO_SAY
 from prima.interpreter.checks import given_to
 from prima.language.arguments import excluding_arguments
 from prima.language.commands import TABLE_4_2, CommandType
-from prima.markup.spans import attribute_span, name_spans, value_span
+from prima.markup.spans import name_spans, similar_attribute, value_span
 from prima.markup.tree import Node
 from prima.voicexml.arranging import ARRANGING, check_arranged
 from prima.voicexml.vocabulary import COMMANDS, HOLDING, PRIMA_NAMESPACE, VOICEXML
@@ -59,7 +59,7 @@ def _check_arguments(node: Node) -> Iterator[Problem]:
     known = set(row.arguments) if row is not None else {"type"}
     for name in node.attributes:
         if name.removesuffix("-expr") not in known and not name.startswith(("xml:", "{")):
-            hint = suggestion(name, known, attribute_span(node, name))
+            hint = similar_attribute(node, name, known)
             place = node.attribute_place(name, value=False)
             yield NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
 
