@@ -82,7 +82,7 @@ def whoever_reads() -> Iterator[None]:
 
 def closed_pipe(_error: BrokenPipeError) -> int:
     """Nobody reads stdout any more; Python must not flush it at exit."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    _write_nowhere(sys.stdout.fileno())
     return FINE
 
 
@@ -91,12 +91,17 @@ def last_words() -> None:
     try:
         sys.stderr.flush()
     except OSError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        _write_nowhere(sys.stderr.fileno())
+
+
+def _write_nowhere(stream: int) -> None:
+    """Give up what a stream still holds, which Python would write at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream)
 
 
 def _system(error: OSError) -> int:
     tell(f"prima: cannot go on: {error.strerror}.")
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    _write_nowhere(sys.stdout.fileno())
     return USAGE
 
 
