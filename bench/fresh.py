@@ -17,7 +17,7 @@ RUN = (
 
 
 class WrongAnswer(Exception):
-    """What was measured is not the work that was asked for: there is no figure."""
+    """The process did other work than asked for, so there is no figure."""
 
 
 def check(right: bool, message: str) -> None:
@@ -31,7 +31,7 @@ def check(right: bool, message: str) -> None:
 
 
 class Figure(NamedTuple):
-    """What was measured, and what has to be said of it."""
+    """Figures, and a remark about them."""
 
     value: float
     note: str = ""
@@ -46,7 +46,7 @@ def note(text: str) -> None:
 
 
 def fresh(function: Callable[..., float], *args: Any) -> Figure:
-    """What a function gives in a new Python process.
+    """The result of a function in a new Python process.
 
     Raises:
         WrongAnswer: the process ended by an error.

@@ -42,7 +42,7 @@ PIECES = (
     "<topological-move to='lab'/>", "<gesture name='bow'/>", "<field name='f'><prompt>?</prompt></field>",
     "<subdialog name='s' src='#a'/>", "<return/>", "<option>q</option>", " order='now'", " id='a'", " cond='x'",
 )  # fmt: skip
-"""What is put in."""
+"""The values put in."""
 FILES = sorted(
     path
     for folder in ("fa", "ea", "scenarios", "worlds", "robots")
@@ -82,7 +82,7 @@ def _letters(chance: random.Random, text: str) -> str:
 
 
 def _above(one: etree._Element) -> etree._Element:
-    """The element that an element stands in."""
+    """The parent of an element."""
     above = one.getparent()
     assert above is not None
     return above
@@ -123,7 +123,7 @@ VALUES = (
 
 
 def generated(chance: random.Random) -> tuple[Path, str]:
-    """A document whose elements stand where they may, and lead anywhere."""
+    """A document whose elements are where they may be, and lead anywhere."""
     kind = chance.choice(("fa", "ea"))
     forms = "".join(f'<form id="{name}">{_form(chance)}</form>' for name in "abc")
     top = "".join(

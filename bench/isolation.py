@@ -1,4 +1,4 @@
-"""What it costs that scripts run in processes of their own: calls, and whole runs."""
+"""The cost of running scripts in separate processes: calls, and whole runs."""
 
 from __future__ import annotations
 

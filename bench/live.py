@@ -1,6 +1,6 @@
 """Live runs: how soon an order follows an event, how punctual instants are, what idling costs.
 
-``python -m bench.live`` tells all of it.
+``python -m bench.live`` prints all of it.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ RING_MS = 10_000
 
 
 class Instant(Driver):
-    """Does everything at once, and notes when it was told to."""
+    """Does everything at once, and notes the times of its orders."""
 
     kind = "instant"
 

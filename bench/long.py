@@ -1,6 +1,6 @@
 """A robot that runs for days, and the ten situations: what they cost.
 
-``python -m bench.long [HOURS]`` tells both.
+``python -m bench.long [HOURS]`` prints both.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ SEEN = {
     "I'll start following you": "was followed",
     '"event":"reply.office"': "was told to the office",
 }
-"""What each visit has to leave in the transcript."""
+"""The records that each visit has to leave in the transcript."""
 
 
 @dataclass(slots=True)

@@ -154,7 +154,7 @@ class Sismic:
 
 
 class Model:
-    """What a transitions machine works on; it has no expressions, so guards are Python."""
+    """The model of a transitions machine; it has no expressions, so guards are Python."""
 
     def __init__(self) -> None:
         self.n = 0

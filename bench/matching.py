@@ -56,9 +56,9 @@ class Way(NamedTuple):
     rules: str
     """Its rules, with {} in place of the alternatives."""
     before: str = ""
-    """What stands before the words of each alternative."""
+    """The beginning of each alternative, before its words."""
     said: str = "{}"
-    """What is said to choose one or several."""
+    """An utterance that chooses one or several."""
 
 
 WAYS = {
@@ -122,7 +122,7 @@ def answer(how: str, entries: int) -> float:
 
     held = names(entries)
     document, problems = read_document("bench.xml", document_text(how, held))
-    check(not problems, f"this is no clean document: {problems[:1]}")
+    check(not problems, f"the document has problems: {problems[:1]}")
     (form,) = document.forms.values()
     answers: Any = form.items[0]
     return _slowest(held, WAYS[how].said, answers.answers.match)
@@ -192,7 +192,7 @@ LASTS, BETWEEN = 0.4, 0.5
 
 
 def said(change: str, rows: int, second: bool) -> list[tuple[float, str]]:
-    """What is said when (s), in the first or the second of two transcripts."""
+    """The sentences and their times (s), in the first or the second of two transcripts."""
     told = [(float(i), f"This is sentence number {i}.") for i in range(rows)]
     if change == "alike":
         told = [(time, "Hello.") for time, _ in told]

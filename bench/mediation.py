@@ -20,9 +20,9 @@ MOST = 100_000
 def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
     """Decisions a second while ABs of so many applications wait.
 
-    One more application's AB runs. Each decision is the end of what runs, told to the mediator,
+    One more application's AB runs. Each decision is the end of what runs, reported to the mediator,
     and a selection with its records and orders. All Commands are requested before; the clock
-    stands still while an application whose Commands have all been done asks for new ones.
+    does not go on while an application whose Commands have all been done asks for new ones.
     """
     from prima.language.commands import TABLE_4_2
     from prima.messages import Command, Request, Step

@@ -49,7 +49,7 @@ def peer(system: str) -> float:
 def help_() -> float:
     """Seconds of ``prima --help``."""
     lasted, told = _timed(_prima("--help"))
-    check("validate" in told and "talk" in told, f"this is no help: {told}")
+    check("validate" in told and "talk" in told, f"this is not the help: {told}")
     return lasted
 
 
@@ -106,7 +106,7 @@ def _prima(*words: str) -> list[str]:
 
 
 def _timed(command: list[str]) -> tuple[float, str]:
-    """Seconds of a process that has to end well, and what it told.
+    """Seconds of a process that has to end well, and its output.
 
     It runs twice, and the second time counts: where people work, modules have been compiled and
     files have been read before.

@@ -37,17 +37,17 @@ class Row:
 
     what: str
     unit: str
-    """What our figure is: see :func:`bench.run.shown`."""
+    """The unit of our figure: see :func:`bench.run.shown`."""
     ours: Call
     beside: str = ""
     peer: Call | None = None
     least: float | None = None
-    """What our figure, divided by the peer's if there is one, has to be at least."""
+    """The least value of our figure, divided by the peer's if there is one."""
     most: float | None = None
     rounds: int | None = None
     """How often it is measured, where that is not left to the command."""
     needs: str = ""
-    """What else has to be installed: a Python package, or a peer of :mod:`bench.peers`."""
+    """A requirement: a Python package, or a peer of :mod:`bench.peers`."""
 
     def pairs(self, rounds: int) -> int:
         """How often it is measured where the command says ``rounds``; without a target less often."""
@@ -398,7 +398,7 @@ LARGE = {
     "`let` in one script": "let in one script",
     "wrong expressions": "wrong expressions",
 }
-"""What large documents are full of, and the families of :mod:`bench.large` that have it."""
+"""The contents of large documents, and their families in :mod:`bench.large`."""
 
 
 def large_ones() -> list[Row]:
@@ -428,7 +428,7 @@ def large_ones() -> list[Row]:
 
 
 def isolated() -> list[Row]:
-    """What it costs that scripts run in processes of their own."""
+    """The cost of running scripts in separate processes."""
     return [
         Row(
             "Expressions that an engine evaluates, in a process of its own",

@@ -41,7 +41,7 @@ class Measured:
 
     @property
     def results(self) -> list[float]:
-        """What the target is for: the ratio of each pair, or the figures themselves."""
+        """The values that the target is for: the ratio of each pair, or the figures themselves."""
         if self.row.peer is None:
             return [figure.value for figure in self.ours]
         return [a.value / b.value for a, b in zip(self.ours, self.peers, strict=True)]
@@ -121,7 +121,7 @@ def middle(figures: list[Figure]) -> float:
 
 
 def noted(figures: list[Figure]) -> str:
-    """What has to be said of figures, as the first of them says it."""
+    """The remark about figures: that of the first one."""
     return next((f" ({figure.note})" for figure in figures if figure.note), "")
 
 

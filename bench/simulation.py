@@ -105,7 +105,7 @@ class Quiet:
 
 
 def told(record: Record) -> str:
-    """What a record is about, where a visit's are counted."""
+    """The subject of a record, to count those of a visit."""
     if record["phase"] == "event":
         return str(record["event"])
     return f"{record['phase']} {record.get('text')}"

@@ -33,26 +33,26 @@ QUESTIONS = (
     ("coffee", "green tea", "a glass of water", "nothing, thank you"),
     ("the painting", "the sculpture", "tell me more", "go on", "stop it"),
 )
-"""What five questions take, in the manner of Figure 5.3's."""
+"""Answers to five questions, in the manner of Figure 5.3's."""
 OUTSIDE = (
     "What a lovely day.",
     "Where can I park my car?",
     "My phone is ringing.",
     "Twenty five people are coming.",
 )
-"""What nobody has asked for."""
+"""Utterances that no question takes."""
 SENTENCES = (
     "Yes. I see. I'll wait in your room.",
     "I'm Kidode, I'll be about five minutes late for my appointment.",
     "Please tell him that I am at the entrance.",
     "I would like to know when the museum closes.",
 )
-"""What is said to a question that takes any words."""
+"""Utterances for a question that takes any words."""
 
 
 @dataclass(slots=True)
 class Tally:
-    """What became of some utterances."""
+    """Counts of some utterances."""
 
     right: int = 0
     wrong: int = 0
@@ -91,7 +91,7 @@ def noisy(sound: bytes, chance: random.Random) -> bytes:
 
 
 def taken(heard: Sequence[str], phrases: Sequence[str]) -> str:
-    """What a question takes of what was heard; nothing if it takes none of it."""
+    """The part of the heard text that a question takes, or nothing."""
     known = {fold(phrase): phrase for phrase in phrases}
     return next((known[fold(one)] for one in heard if fold(one) in known), "")
 

@@ -93,7 +93,7 @@ def load(system: str, states: int) -> float:
 
 
 def refuses_what_is_wrong() -> None:
-    """Whether PRIMA checks what it loads, and knows where everything stands.
+    """Whether PRIMA checks what it loads, and knows the place of everything.
 
     Raises:
         WrongAnswer: it does not.
@@ -107,7 +107,7 @@ def refuses_what_is_wrong() -> None:
     found = [one.place for one in read_document("ring.xml", wrong.encode())[1]]
     check(
         any((place.line, place.column) == (where + 1, column + 1) for place in found),
-        f"an unknown attribute at {where + 1}:{column + 1} is told at {found}",
+        f"an unknown attribute at {where + 1}:{column + 1} is reported at {found}",
     )
 
 
@@ -120,7 +120,7 @@ def growth(largest: int) -> float:
 
 
 def second_load(states: int) -> float:
-    """What reading the same bytes again costs, as a share of the first time."""
+    """The time of reading the same bytes again, as a share of the first time."""
     from prima.interpreter.reader import read_document
 
     build("prima", 2)()
@@ -148,7 +148,7 @@ def second_load(states: int) -> float:
 
 
 def memory() -> float:
-    """Megabytes that this process has in memory now (where that is not told: at most)."""
+    """Megabytes that this process has in memory now (where the system does not say: at most)."""
     try:
         with open("/proc/self/statm", encoding="ascii") as stream:
             return int(stream.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6

@@ -67,7 +67,7 @@ INBOUND: dict[str, Callable[[Record, Record], Inbound]] = {
 
 
 WRONG = (KeyError, TypeError, ValueError, AttributeError)
-"""What a record causes whose fields are not those of its phase."""
+"""Exceptions caused by a record whose fields are not those of its phase."""
 DAMAGED = "a record lacks a field of its phase, or has another value in it than PRIMA writes."
 
 

@@ -1,1 +1,1 @@
-"""What writes parts of the documentation from the code, and what tries mutants of the code."""
+"""Tools for developers: they write parts of the documentation from the code, and try mutants."""

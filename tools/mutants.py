@@ -135,7 +135,7 @@ def digest(*files: Path) -> str:
 
 
 class Results:
-    """What earlier runs have found. A killed mutant's holds while its file stays as it is, a
+    """The results of earlier runs. A killed mutant's holds while its file stays as it is, a
     survivor's while the scheduler and its tests do."""
 
     def __init__(self, anew: bool) -> None:
@@ -144,7 +144,7 @@ class Results:
         self.found: dict[str, str] = json.loads(DONE.read_text()) if known else {}
 
     def mark(self, mutant: Mutant, survived: bool) -> str:
-        """What is kept of a result."""
+        """The part of a result that is kept."""
         return f"survived {self.whole}" if survived else f"killed {digest(ROOT / mutant.file)}"
 
     def survived(self, mutant: Mutant) -> bool | None:

@@ -159,7 +159,7 @@ def _conditions(parent: ast.AST, field: str, node: ast.AST) -> Iterator[ast.AST]
 
 
 def _variants(node: ast.AST) -> Iterator[ast.AST]:
-    """What may be put in the place of a node."""
+    """The replacements for a node."""
     if isinstance(node, ast.stmt):
         yield from _dropped(node)
         return

@@ -76,7 +76,7 @@ def base(name: str) -> str:
 
 
 def words(record: Record) -> str:
-    """What an AB says, else its Command's title."""
+    """An AB's text, else its Command's title."""
     text, row = record.get("text"), TABLE_4_2.get(record["command"])
     return str(text or (row.title if row else record["command"]))
 
@@ -278,7 +278,7 @@ def applications(records: list[Record]) -> list[str]:
 
 
 def events(records: list[Record]) -> list[Record]:
-    """What the user and the surroundings do."""
+    """Events of the user and the surroundings."""
     actors = ("user", "environment")
     return [r for r in records if r["phase"] == "event" and r["actor"] in actors]
 

@@ -1,4 +1,4 @@
-"""What is generated from the tables in code: schemas, and the tables of the documentation.
+"""Writes schemas and the tables of the documentation from the tables in the code.
 
 ``python -m tools.reference`` writes them in place; with ``--check`` it writes
 nothing, names what differs and exits with 1. It works in a checkout.
@@ -75,7 +75,7 @@ GROUPS: Groups = {
     "[Commands](#commands)": (*SPEAKING, "command"),
     "[handlers](#handlers)": HANDLERS,
 }
-"""Children of the dialogue language that stand together in the tables."""
+"""Children of the dialogue language that are listed together in the tables."""
 
 
 # Tables ----------------------------------------------------------------------
@@ -103,7 +103,7 @@ def seconds(milliseconds: float) -> str:
 
 
 def range_of(kind: str, low: float | None, high: float | None) -> str:
-    """What a number may be, in words."""
+    """The range of a number, in words."""
     shown: Callable[[float], str] = seconds if kind == "duration" else "{:g}".format
     if low is not None and high is not None:
         return f"From {shown(low)} to {shown(high)}."
@@ -122,7 +122,7 @@ def attribute_row(item: Attribute) -> tuple[str, ...]:
 
 
 def children_of(vocabulary: Vocabulary, element: Element, groups: Groups) -> str:
-    """What an element may hold, groups of elements together."""
+    """The possible content of an element, groups of elements together."""
     left = list(element.children)
     words = []
     for name, keys in groups.items():
@@ -136,7 +136,7 @@ def children_of(vocabulary: Vocabulary, element: Element, groups: Groups) -> str
 
 
 def parents_of(vocabulary: Vocabulary, element: Element, groups: Groups) -> str:
-    """In what an element may stand, groups of elements together."""
+    """The possible parents of an element, groups of elements together."""
     parents = [other for other in vocabulary.elements.values() if element.key in other.children]
     keys = [other.key for other in parents]
     words = []
@@ -149,7 +149,7 @@ def parents_of(vocabulary: Vocabulary, element: Element, groups: Groups) -> str:
 
 
 def heading(vocabulary: Vocabulary, element: Element) -> str:
-    """An element's heading; one of two elements of a name says where it stands."""
+    """An element's heading; one of two elements of a name also names its parents."""
     same = [other for other in vocabulary.elements.values() if other.tag == element.tag]
     if len(same) == 1:
         return f"`<{element.tag}>`"
@@ -215,7 +215,7 @@ def kinds() -> str:
 
 
 def limits() -> str:
-    """What a document and a run may take of the machine."""
+    """The limits of documents and runs."""
     mib = 1024 * 1024
     rows = (
         ("a file", f"{LIMITS.bytes:,} bytes", "`too-large`"),
@@ -235,7 +235,7 @@ def limits() -> str:
         (
             "the tags of one utterance",
             f"{budget.TIME_LIMIT:g} s of processor time",
-            "it is no match",
+            "it does not match",
         ),
         (
             "memory of an application's ECMAScript",
@@ -359,7 +359,7 @@ def limits() -> str:
         (
             "a line of a transcript that is read",
             f"{lines.MAX_LINE:,} characters",
-            "it is no transcript",
+            "it is refused",
         ),
         (
             "a transcript that is read",
@@ -374,7 +374,7 @@ def limits() -> str:
 def phases() -> str:
     """The phases of a transcript's records."""
     rows = ((f"`{name}`", one.meaning, one.notable) for name, one in PHASES.items())
-    return table(("phase", "what the record tells", "notable fields"), rows)
+    return table(("phase", "meaning", "notable fields"), rows)
 
 
 def fields() -> str:
@@ -455,7 +455,7 @@ def defaults() -> str:
 
 
 def _any_language(words: dict[str, str]) -> str:
-    """What is taken in any language, each once."""
+    """The answers taken in any language, each once."""
     return ", ".join(dict.fromkeys("|".join(words.values()).split("|")))
 
 
@@ -483,7 +483,7 @@ ACCEPTED = {
     ),
     "text": ("Anything said, white space folded", ("Tell him  I'll wait.",)),
 }
-"""What each built-in type takes, and utterances whose values are shown."""
+"""The answers that each built-in type takes, and utterances with their values."""
 
 
 def types() -> str:
@@ -500,7 +500,7 @@ def types() -> str:
 
 
 def interface() -> str:
-    """What the package exports: signatures and docstrings."""
+    """The package's exports: signatures and docstrings."""
     parts = []
     public = [name for name in prima.__all__ if not name.startswith("_")]
     for name in sorted(public, key=lambda name: (not _is_function(name), name.lower())):
@@ -627,7 +627,7 @@ SECTIONS: dict[str, Callable[[], str]] = {
     "examples": code_examples,
     "interface": interface,
 }
-"""What may stand between markers in the documentation, by name."""
+"""The generated parts of the documentation, by the names of their markers."""
 
 
 def fill(name: str, text: str) -> str:
@@ -650,7 +650,7 @@ def fill(name: str, text: str) -> str:
 
 
 def voicexml() -> Vocabulary:
-    """VoiceXML's elements with what an editor tells of them."""
+    """VoiceXML's elements with the descriptions of editors."""
     elements = [
         replace(
             element,
@@ -666,7 +666,7 @@ def voicexml() -> Vocabulary:
 
 
 def _guests() -> Guests:
-    """The elements of PRIMA's own language that stand in VoiceXML documents."""
+    """The elements of PRIMA's own language that VoiceXML documents may have."""
     made = [_guest(DIALOGUE.elements[key]) for key in sorted([*COMMANDS, *ARRANGING])]
     made += [replace(DIALOGUE.elements["param"], children=())]
     return Guests(DIALOGUE.namespace, f"{VOICEXML.name}-prima", tuple(made))
@@ -725,11 +725,11 @@ def outputs(root: Path) -> dict[Path, str]:
     """Every generated file of a checkout with what it should hold.
 
     Raises:
-        UsageError: this is no checkout, or a marker is wrong.
+        UsageError: the folder is not a checkout, or a marker is wrong.
     """
     schemas, docs = root / "schemas", root / "docs"
     if not docs.is_dir():
-        raise UsageError(f"{root} is no checkout: it has no docs folder.")
+        raise UsageError(f"{root} is not a checkout: it has no docs folder.")
     kinds = (*VOCABULARIES, voicexml())
     made = {schemas / f"{one.name}.xsd": make_schema(one) for one in kinds}
     made |= {schemas / f"{one.name}.rnc": make_rnc(one) for one in kinds}

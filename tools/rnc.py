@@ -60,7 +60,7 @@ def _element(vocabulary: Vocabulary, element: Element) -> str:
 
 
 def _content(vocabulary: Vocabulary, element: Element) -> list[str]:
-    """What an element may hold, if anything."""
+    """The possible content of an element, if any."""
     if element.key in vocabulary.free:
         return ["(text | element * { anything })*"]
     held = ["text"] if element.text else []

@@ -132,7 +132,7 @@ def _complex_type(vocabulary: Vocabulary, element: Element) -> list[str]:
 
 
 def _content(vocabulary: Vocabulary, element: Element) -> list[str]:
-    """What an element may hold, if anything."""
+    """The possible content of an element, if any."""
     held = [
         f'<xs:element name="{vocabulary.elements[child].tag}" type="{child}"/>'
         for child in element.children

@@ -63,7 +63,7 @@ def installed(name: str) -> bool:
 
 
 def runtime(name: str) -> str:
-    """What runs a peer, with its version."""
+    """The platform of a peer, with its version."""
     told = _run((PEERS[name].command[0], "--version")).splitlines()[0]
     return f"node {told}" if name == "xstate" else told
 
@@ -89,7 +89,7 @@ def rate(name: str, states: int, seconds: float, guards: bool = False) -> float:
 
 
 def checked(states: int, told: str) -> float:
-    """Events a second, from what a peer tells: see ``ring.mjs``.
+    """Events a second, from a peer's output: see ``ring.mjs``.
 
     Raises:
         WrongAnswer: its counter or its state is not what so many events make.

@@ -32,7 +32,7 @@ def export(
             unreadable line.
         to: the format's name, such as ``eaf``; docs/exports.md lists all.
         output: the path of the file to write, or a binary stream.
-        languages: language tags (BCP 47) by application; the empty name stands for the
+        languages: language tags (BCP 47) by application; the empty name means the
             user and all other applications.
 
     Raises:

@@ -334,7 +334,7 @@ def _by_loops(part: Price, equal: Held, floored: bool, drives: bool) -> Starving
 
 
 def _by_cycle(loop: EndlessLoop, equal: Held, floors: set[str], drives: bool) -> Starving | None:
-    """What follows itself without a wait: the active stream goes on before others (S2c)."""
+    """A loop without a wait: the active stream goes on before others (S2c)."""
     held = loop.devices & equal[loop.leaves]
     engages = loop.engages and drives
     floor = bool(loop.states & floors)

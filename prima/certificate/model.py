@@ -77,8 +77,8 @@ class Certificate:
     holds: list[tuple[Place, int]] = field(default_factory=list)
     starves: list[Starving] = field(default_factory=list)
     gaps: list[Gap] = field(default_factory=list)
-    """What is unknown from the EA's documents."""
+    """Reasons why something of the EA is unknown."""
     long: list[Price] = field(default_factory=list)
     """Parts of the EA that keep the speaker for longer than a run's patience, if unset (E6)."""
     lacks: dict[str, list[str]] = field(default_factory=dict)
-    """What the EA needs and a robot lacks, by robot; empty if nothing."""
+    """Commands of the EA that a robot cannot carry out, by robot."""

@@ -146,7 +146,7 @@ def _others(one: Certificate) -> list[str]:
 
 
 def _long(one: Certificate) -> list[str]:
-    """What lasts longer than a run's patience (E6), if anything does."""
+    """Activities longer than a run's patience (E6), if any."""
     if not one.long:
         return []
     patience = f"a run's patience, {PATIENCE_MS // 1000} s by default (E6)"

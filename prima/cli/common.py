@@ -138,7 +138,7 @@ why_option = click.option(
 )
 
 TRANSCRIPTS = ("run", "replay", "journal")
-"""What commands write that may replace a transcript."""
+"""Names of files that commands write and that may replace a transcript."""
 TRANSCRIPT = rb'{"time":[\d.]+,"phase":"run",'
 """How transcripts begin."""
 PATIENCE = "Longest time an application may keep another from the speaker; default 60s (rule E6)."
@@ -304,7 +304,7 @@ def check_output(output: str | Path, made: str, *inputs: str | Path) -> None:
 
 
 def _protected(path: Path, made: str) -> str:
-    """What a file begins as that nothing of this kind replaces; empty if it is no such file."""
+    """The kind of a file that nothing of this kind may replace, by how it begins; or empty."""
     import re
 
     from prima.loading import is_grammar

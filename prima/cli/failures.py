@@ -72,7 +72,7 @@ def _usage(error: click.ClickException) -> int:
 
 @contextmanager
 def whoever_reads() -> Iterator[None]:
-    """Print results, and go on where nobody reads them any more: the exit code still tells them."""
+    """Print results; if nobody reads them any more, go on, as the exit code still counts."""
     try:
         yield
         sys.stdout.flush()

@@ -1,4 +1,4 @@
-"""What prima talk prints."""
+"""The output of prima talk."""
 
 from __future__ import annotations
 

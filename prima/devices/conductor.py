@@ -4,7 +4,7 @@ It is sans-IO, and the same for simulated and real robots. Its caller passes in 
 and the time; it returns calls for the drivers and values for the session.
 
 A device is free once its driver has confirmed it: an order for a device that is still stopping
-is held back, and no device is ever told to do two things at once.
+is held back, and no device ever gets orders for two things at once.
 """
 
 from __future__ import annotations
@@ -232,7 +232,7 @@ class Conductor:
         return due
 
     def collect(self, now: int, visible: bool, where: Data) -> list[Inbound]:
-        """What has to be reported to the session at ``now``.
+        """The reports for the session at ``now``.
 
         Args:
             now: the time.

@@ -152,7 +152,7 @@ class At:
 
     @property
     def where(self) -> dict[str, float]:
-        """It as a report tells it: to the mm, and to a tenth of a degree."""
+        """The pose as reported: to the mm, and to a tenth of a degree."""
         heading = round(self.heading, 1) % 360.0
         return {"x": round(self.x, 3), "y": round(self.y, 3), "heading": heading}
 
@@ -184,4 +184,4 @@ class Speaks:
 
 
 News = At | Sees | Speaks | Heard | Occurred | Sensed | Emergency | Narrated
-"""What a driver may report at any time."""
+"""Reports that a driver may make at any time."""

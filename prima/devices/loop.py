@@ -38,7 +38,7 @@ class Loop:
         self.outcome = ""
         """Why the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
         self.visits: list[ElementVisit] = []
-        """What applications entered in the latest instant at which anything was decided."""
+        """The elements reached in the latest instant with a decision."""
         self._made = 0
         self._deadline = session.deadline()
         """When the session has to be stepped even if nothing happens; only a step changes this."""

@@ -84,7 +84,7 @@ def _read_parts(reader: Reader, profile: Profile) -> None:
 
 
 def _check_twice(reader: Reader) -> None:
-    """What is there twice, of which only one would count."""
+    """Duplicate entries, of which only one would count."""
     for extra in reader.root.all("camera")[1:]:
         reader.problem(extra, "duplicate-element", "There is a second <camera>.", "", "Keep one.")
     for tag, key in NAMED:

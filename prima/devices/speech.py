@@ -1,4 +1,4 @@
-"""What the robot is saying: its progress, and the marks it has passed."""
+"""The robot's speech: its progress, and the marks it has passed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Utterance:
 
     @classmethod
     def of(cls, now: int, order: Order, rates: dict[str, float]) -> Utterance | None:
-        """What the robot says from now on by an order, if anything.
+        """The speech that an order begins, if any.
 
         Args:
             now: the time (ms).

@@ -33,10 +33,10 @@ class Goal:
     begin: Begin
     task: Task
     begun: bool = False
-    """Whether the driver has been told."""
+    """Whether the driver has been ordered to begin it."""
     accepted: bool = False
     cancelled: bool = False
-    """Whether the driver was told to stop it."""
+    """Whether the driver was ordered to stop it."""
     since: int = 0
     """When the driver last received a call or reported (ms)."""
     held: tuple[int, str] | None = None
@@ -60,7 +60,7 @@ class Task:
     goals: list[Goal] = field(default_factory=list)
     """Those that have not ended."""
     said: Utterance | None = None
-    """What it says, as far as known without a report."""
+    """Its text, as far as known without a report."""
     ends: int | None = None
     """When a loop ends, a pause is over, or a question without a text has been asked."""
     asks: bool = False

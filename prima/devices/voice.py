@@ -17,7 +17,7 @@ PAUSE_MS = 300
 SENTENCE_MS = 250
 """The pause after a sentence inside an utterance."""
 STOPS = ".!?。！？"
-"""What ends a sentence."""
+"""Characters that end a sentence."""
 KANJI = 2.0
 """A kanji in Japanese is read as about two kana."""
 
@@ -55,7 +55,7 @@ def speed(lang: str, rates: dict[str, float]) -> float:
 
 
 def beginning(text: str, lang: str, share: float) -> str:
-    """What has been heard of a text after a share of its time (0 to 1), in whole words."""
+    """The words of a text that have been heard after a share of its time (0 to 1)."""
     primary = lang.lower().partition("-")[0]
     weights = [weight(letter, primary) for letter in text]
     left, said = share * sum(weights), 0
@@ -94,7 +94,7 @@ class SpeechTimeline:
     """When each mark is passed, and its name, in the text's order."""
 
     def heard(self, time: float) -> str:
-        """What has been heard of the text after a time, in whole words."""
+        """The words of the text that have been heard after a time."""
         return whole_words(self.text, sum(1 for end in self.ends if round(end) <= time))
 
     def passed(self, time: float) -> int:

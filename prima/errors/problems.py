@@ -81,7 +81,7 @@ class _Problem(NamedTuple):
     code: str
     """The name by which docs/codes.md explains it."""
     message: str
-    """What is wrong."""
+    """The problem, as a sentence."""
     remedy: str = ""
     """How to mend it."""
     fixes: tuple[Fix, ...] = ()
@@ -123,7 +123,7 @@ class Problem(_Problem):
 
     @property
     def sentence(self) -> tuple[Severity, str, str, str]:
-        """What identifies it, apart from its place."""
+        """Its identity, apart from its place."""
         return self.severity, self.code, self.message, self.remedy
 
     def get(self, name: str) -> str:

@@ -52,7 +52,7 @@ def file_digest(path: str | Path) -> str | None:
 
 
 def key_of(options: Options, job: Job) -> dict[str, Any]:
-    """What determines a run, apart from its files."""
+    """The settings that determine a run, apart from its files."""
     return {
         "prima": __version__,
         "scenario": job.scenario,

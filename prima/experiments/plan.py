@@ -37,7 +37,7 @@ class BatchRow:
     response_max: float | None = None
     transcript: str | None = None
     messages: list[str] = field(default_factory=list)
-    """What went wrong."""
+    """Problems and errors."""
     earlier: bool = False
     """Whether the run was made by an earlier batch."""
     full: bool = False

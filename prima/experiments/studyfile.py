@@ -62,7 +62,7 @@ HOW = {
     "isolate": 'write "ea", "all" or "none"',
     "vary": 'write what is varied below [vary], as touch = "0s..20s/1s"',
 }
-"""What to write, by key."""
+"""The remedy for a wrong value, by key."""
 LEVELS = 'write its levels, as "0s..20s/1s" or ["Yes.", "No."]; a path with a dot in quotes'
 
 

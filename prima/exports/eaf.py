@@ -37,7 +37,7 @@ CONSTRAINTS = {
 def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
     """The document, in pieces.
 
-    ``languages`` has the language tags of applications; the empty name stands for the user
+    ``languages`` has the language tags of applications; the empty name means the user
     and all others. Those of the transcript come second.
     """
     languages = {**({} if "" in languages else timeline.languages), **languages}

@@ -40,7 +40,7 @@ NO_RULE = NO_SUCH_RULE.says('There is no rule "{name}".')
 TEXT_BESIDE_RULES = STRAY_TEXT.says("This grammar has rules; its own text has no effect.")
 EMPTY_GRAMMAR = EMPTY_ANSWER.says("This grammar has no words.", "Write what it takes.")
 NO_RULES = Hint("Remove root: this grammar holds no <rule>.")
-"""What to do about the name of a rule where there is none."""
+"""The remedy for the name of a rule where there is none."""
 MOST_REPEATED = 999
 """The greatest number of ``repeat``."""
 BAD_REPEAT = BAD_VALUE.says("{wrong}", 'Write one such as "0-1".')

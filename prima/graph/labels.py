@@ -135,7 +135,7 @@ def _words(node: Node, depth: int = 0) -> str:
 
 
 def notes(questions: Sequence[str], said: str, goals: Sequence[str]) -> list[str]:
-    """What a state asks or says, and where its Commands lead."""
+    """A state's questions and sentences, and the targets of its Commands."""
     more = len(questions) - QUESTIONS
     return [
         *(f"asks {quoted(text)}" for text in questions[:QUESTIONS]),

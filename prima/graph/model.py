@@ -72,7 +72,7 @@ class Edge:
 
 @dataclass(slots=True)
 class Graph:
-    """A picture's content; ``told`` is a description for accessibility."""
+    """A picture's content; ``told`` is the description for screen readers."""
 
     title: str
     told: str = ""

@@ -1,4 +1,4 @@
-"""What elements of VoiceXML say, take and lead to."""
+"""Texts, inputs and targets of VoiceXML elements."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def asked(node: Node) -> str:
 
 
 def said_by(link: Node) -> list[str]:
-    """What users say to follow a link, if its grammars show it."""
+    """The utterances that follow a link, if its grammars show them."""
     words = sayings(link.all("grammar"))
     return [f"said {words}"] if words else []
 

@@ -188,13 +188,13 @@ class Interpreter(States):
         self.actions.append(Say("log", f"no match: {message}", source(node)))
 
     def listening(self) -> Sequence[Answers]:
-        """What the links of the form and the document take (V1)."""
+        """The answers that the links of the form and the document take (V1)."""
         if self.frame is None or self.over:
             return ()
         return [link.answers for link in (*self.frame.form.links, *self.document.links)]
 
     def answers(self, run: int) -> Answers | None:
-        """What the asking field takes, if a field asks."""
+        """The answers that the asking field takes, if a field asks."""
         asking = self._asking(run)
         return asking[1].answers if asking is not None else None
 
@@ -231,7 +231,7 @@ class Interpreter(States):
         return number
 
     def words(self, form: Form) -> Command | None:
-        """What the robot says first when the state's stream resumes (X9)."""
+        """The words with which the state's stream resumes (X9)."""
         if not form.words:
             return None
         place = source(form.node)

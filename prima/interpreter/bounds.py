@@ -37,7 +37,7 @@ BRIEF_MS, MOST_BRIEF = 50, 1_000
 
 
 Visited = Literal["document", "enter", "leave", "in", "true", "false", "heard"]
-"""What happened to an element.
+"""How an application came to an element.
 
 ``document``: it is the root of a document that is there now; ``enter``: its state is active now;
 ``leave``: a state was left; ``in``: it is executed; ``true`` and ``false``: its condition was;

@@ -135,7 +135,7 @@ class Form:
     hold: int | None = None
     connect: bool = False
     words: str = ""
-    """What is said when its stream resumes after others have spoken (X9)."""
+    """The words with which its stream resumes after others have spoken (X9)."""
     takers: Takers[Handler] = field(default_factory=Takers, repr=False, compare=False)
     """The handlers that take an event in it, kept by the event and the visited item."""
     bare: bool = False

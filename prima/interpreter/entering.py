@@ -1,4 +1,4 @@
-"""What a form does on entry, up to a question or a wait for events."""
+"""A form's actions on entry, up to a question or a wait for events."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ class _Entry:
     returned: set[str] = field(default_factory=set)
     leads: dict[FormTarget, None] = field(default_factory=dict)
     waiting: dict[str, list[tuple[set[str], Filled]]] | None = None
-    """What the form does with answers, by the names of the items; computed on demand."""
+    """The form's actions on answers, by the names of the items; computed on demand."""
 
     @property
     def name(self) -> FormTarget:
@@ -223,7 +223,7 @@ class Entering:
         entry.todo += [one for one in reversed(gone) if left or isinstance(one, Block)]
 
     def _answered(self, entry: _Entry, item: Item) -> Iterator[tuple[Act, ...]]:
-        """What is executed once a subdialog has returned."""
+        """The content executed once a subdialog has returned."""
         if isinstance(item, Subdialog):
             yield from (one.content for one in item.filled)
         if entry.waiting is None:
@@ -270,7 +270,7 @@ def is_left(content: Sequence[Act]) -> bool:
 
 
 def _waiting(form: Form, items: Iterable[Item]) -> dict[str, list[tuple[set[str], Filled]]]:
-    """What a form does with answers, by each item that gives one, with all that it waits for."""
+    """A form's actions on answers, by each item that gives one, with the items that it awaits."""
     inputs = {one.name for one in items if isinstance(one, Field | Subdialog)}
     found: dict[str, list[tuple[set[str], Filled]]] = defaultdict(list)
     for filled in form.filled:

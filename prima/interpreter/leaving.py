@@ -42,7 +42,7 @@ class Leaving:
         )
 
     def repeated(self, item: Item) -> tuple[Node, bool] | None:
-        """What an item says first, and repeats on another visit."""
+        """The item's first speech, if another visit repeats it, and whether it is a question."""
         cleared = self.cleared is None or item.name in self.cleared
         counts = {one.count for one in item.prompts} if isinstance(item, Field) else set[int]()
         return said_by(item) if cleared or 2 not in counts else None  # its words differ then
@@ -68,7 +68,7 @@ def brings_news(handler: Handler) -> bool:
 
 
 def said_first(form: Form) -> tuple[Node, bool] | None:
-    """What a form says first whenever it is entered, and whether that is a question."""
+    """The element of a form's first speech on each entry, and whether it is a question."""
     for item in form.items:
         if item.cond is not None or item.expr is not None:
             continue
@@ -79,7 +79,7 @@ def said_first(form: Form) -> tuple[Node, bool] | None:
 
 
 def said_by(item: Item) -> tuple[Node, bool] | None:
-    """What an item says first, and whether that is a question."""
+    """The element of an item's first speech, and whether it is a question."""
     if isinstance(item, Unit):
         return next(filter(None, map(said_by, item.items)), None)
     said = next(_asked(item) if isinstance(item, Field) else _told(item), None)

@@ -1,4 +1,4 @@
-"""What the parts of an interpreter require of the whole and of each other.
+"""Protocols: the requirements of an interpreter's parts on the whole and on each other.
 
 An interpreter of PRIMA's language is made of three parts: one runs content
 (:mod:`~prima.interpreter.content`), one visits the items of forms
@@ -99,7 +99,7 @@ class Owner(Protocol):
 
     @property
     def document(self) -> Document:
-        """What it runs."""
+        """The document that it runs."""
 
     @property
     def application(self) -> Scope:

@@ -34,7 +34,7 @@ from prima.messages import (
 )
 
 Answer: TypeAlias = Fetched | Transferred
-"""What an application awaits from outside: a resource, or the outcome of a call."""
+"""An answer that an application awaits from outside: a resource, or the outcome of a call."""
 
 
 class App(Bounds[Evaluator], ABC):
@@ -45,7 +45,7 @@ class App(Bounds[Evaluator], ABC):
         self.name = name
         self.kind = kind
         self.connection: Data = {}
-        """What is known about the user's connection (VoiceXML 5.1.4)."""
+        """The user's connection, as far as known (VoiceXML 5.1.4)."""
         self.sensors: dict[str, Json] = {}
         self.runs = count(1)
         self.units = count(1)
@@ -105,7 +105,7 @@ class App(Bounds[Evaluator], ABC):
         return None
 
     def listening(self) -> Sequence[Answers]:
-        """What its always-listening links take."""
+        """The utterances that its always-listening links take."""
         return ()
 
     def open_during(self, command: Command) -> Answers | None:
@@ -157,7 +157,7 @@ class App(Bounds[Evaluator], ABC):
 
 
 def sendable(data: Data) -> Data:
-    """What is sent, in which numbers that JSON lacks are texts as in ECMAScript, such as NaN."""
+    """The data to send; numbers that JSON lacks, such as NaN, are texts as in ECMAScript."""
     params = data.get("params")
     if not isinstance(params, dict):
         return data

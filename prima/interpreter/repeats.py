@@ -1,4 +1,4 @@
-"""What an application says twice because an event made it leave in mid-speech (O3)."""
+"""Sentences that are said twice because an event made the application leave in mid-speech (O3)."""
 
 from __future__ import annotations
 
@@ -186,7 +186,7 @@ class _Leavings:
     # Back to an item ------------------------------------------------------------------------
 
     def _to_items(self, form: Form, leaving: Leaving) -> Iterator[_Back]:
-        """What a form says twice because a handler goes to one of its items."""
+        """The speech that a form repeats because a handler goes to one of its items."""
         for way in leaving.gotos:
             self._ways.contents.left -= STEPS_OF_AN_ITEM
             if way.item is None or self._ways.contents.left < 0:
@@ -200,7 +200,7 @@ class _Leavings:
     def _said_again(
         self, form: Form, way: Goto, leaving: Leaving, certain: bool
     ) -> tuple[Node, bool] | None:
-        """What a goto to an item makes the form repeat: an item that it names, or perhaps any."""
+        """The speech that a goto to an item repeats: of the item that it names, or perhaps of any."""
         if certain:
             named = self._ways.contents.named(way, form)
             return next(filter(None, (self._again(form, one, leaving) for one in named)), None)
@@ -208,7 +208,7 @@ class _Leavings:
         return next(filter(None, (self._visited_again(one, leaving) for one in items)), None)
 
     def _again(self, form: Form, item: Item, leaving: Leaving) -> tuple[Node, bool] | None:
-        """What is said twice after a handler's goto to an item, by that item or by later ones."""
+        """The speech that a handler's goto to an item repeats, of that item or of later ones."""
         said = self._visited_again(item, leaving)
         if said is not None or not goes_by(item):
             return said
@@ -234,7 +234,7 @@ class _Leavings:
         return sorted(found, key=lambda one: one.node.index)
 
     def _visited_again(self, item: Item, leaving: Leaving) -> tuple[Node, bool] | None:
-        """What an item repeats when a handler goes to it meanwhile."""
+        """The speech that an item repeats when a handler goes to it meanwhile."""
         quiet = self._source.queues and isinstance(item, Field)
         return leaving.repeated(item) if not quiet and self._heard(item, leaving) else None
 

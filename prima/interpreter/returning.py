@@ -1,4 +1,4 @@
-"""What a subdialog says twice because a handler ends it with an event (O3).
+"""Sentences that a subdialog says twice because a handler ends it with an event (O3).
 
 The form that called it handles the event, goes on, and calls it again.
 """

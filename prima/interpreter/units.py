@@ -1,4 +1,4 @@
-"""What a unit around form items may request (rule U5).
+"""The Commands that a unit around form items may request (rule U5).
 
 An event that is thrown in a unit is handled in it, by whatever handler takes it: of the item, the
 unit, the form or the document. What such a handler asks for belongs to the unit as well. An event
@@ -236,7 +236,7 @@ class Finder:
         """Prepare to find in a document.
 
         ``thrown`` gives the events that visiting an item may throw by itself, None for one
-        whose name only a run tells; by default those of PRIMA's language.
+        whose name is known only in a run; by default those of PRIMA's language.
         """
         self._document = document
         self._thrown = thrown or thrown_by
@@ -252,7 +252,7 @@ class Finder:
         return Reach([*found.values()], any(isinstance(item, Field) for item in unit.items))
 
     def _visit(self, form: Form, unit: Unit, item: Item, found: dict[int, Reached]) -> None:
-        """What may run while an item of a unit is visited."""
+        """The content that may run while an item of a unit is visited."""
         inner = (*item.handlers, *unit.handlers)
         waiting = [*map(_Raised, self._thrown(item)), *self._by_links(form, item)]
         for content in _own(item):

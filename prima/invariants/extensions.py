@@ -1,4 +1,4 @@
-"""What the extensions may do, and no more."""
+"""Checks the limits of the extensions."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Extensions(FloorRules):
         if rule not in ("X1", "X4", "X9") or rule.lower() not in self.extensions:
             self.report(11, rule, f"{shown} by a rule that is not on")
         if before is None or before.tree is not ab.tree or before.inserted or before.unit:
-            self.report(11, rule, f"{shown} before something that it cannot stand before")
+            self.report(11, rule, f"{shown} before something that it cannot precede")
             return
         self._takes_place(ab, before)
         if rule == "X1":

@@ -10,7 +10,7 @@ A_MOMENT_LATER = 1
 
 
 class Streams(Extensions):
-    """What a request continues, and what it follows."""
+    """Checks the stream that a request continues, and the AB that it follows."""
 
     def note_window(self, record: Record) -> None:
         """C3: a window opens or closes."""

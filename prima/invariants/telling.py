@@ -29,7 +29,7 @@ class Telling(LeavingRules):
         phase = record["phase"]
         rule = ALONE.get(phase)
         if rule is not None and record.get("rule") != rule:
-            self.report(13, rule, f"a {phase} is told by {record.get('rule')}")
+            self.report(13, rule, f"a {phase} has the rule {record.get('rule')}")
         name = base(record.get("winner") or record.get("behavior") or "")
         if phase == "request":
             self.requests.setdefault(name, record)
@@ -37,7 +37,7 @@ class Telling(LeavingRules):
             self._told_as_requested(record, name)
         tree = record.get("tree")
         if tree is not None and record["app"] != tree.rpartition(":")[0]:
-            self.report(13, "C1", f"a {phase} of {tree} is told of {record['app']}")
+            self.report(13, "C1", f"a {phase} of {tree} has the application {record['app']}")
 
     def _told_as_requested(self, record: Record, name: str) -> None:
         request = self.requests[name]

@@ -74,7 +74,7 @@ class CommandType:
     now: bool = False
     arguments: Mapping[str, Argument] = field(default_factory=dict)
     effects: frozenset[str] = frozenset()
-    """What later Commands of a stream may rely on once it has ended (rule X1): :data:`EFFECTS`."""
+    """The effects on which later Commands of a stream rely once it has ended (X1): :data:`EFFECTS`."""
     motion: Literal["", "faithful", "free"] = ""
     """Faithful to its own path (a dance), or free in its path (going somewhere) (rule X5)."""
     substitute: str = ""

@@ -32,7 +32,7 @@ def route(drivers: Sequence[Driver], goal: Begin) -> Driver | None:
 
 
 def lacking(drivers: Sequence[Driver], goal: Begin) -> str:
-    """What a robot's document lacks for a goal to be carried out; empty if nothing."""
+    """The reason why the robot cannot carry out a goal, from its document; empty if it can."""
     if route(drivers, goal) is not None:
         return ""
     if goal.kind == RECORD:

@@ -113,7 +113,7 @@ class LiveDevices:
         self.listening: Callable[[], Sequence[Answers]] = tuple
         """Returns what questions and links are listening for."""
         self._taken: Sequence[Answers] = ()
-        """What the drivers were last told to listen for."""
+        """The answers for which the drivers last had to listen."""
         self._read = read
         self._loads = list(loads)
         self._entrances = entrances or Entrances([])
@@ -238,7 +238,7 @@ class LiveDevices:
             case _:
                 if driver not in self._flooding:
                     self._flooding.add(driver)
-                    driver.lose(f"it tells more than {MOST_NEWS:,} things at once")
+                    driver.lose(f"it reports more than {MOST_NEWS:,} things at once")
         self.wake()
 
     def _take(self, now: int, news: News | Inbound) -> list[Inbound]:

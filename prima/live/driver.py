@@ -170,7 +170,7 @@ class Driver:
         try:
             told = well_formed(report)
         except WRONG as error:
-            self.lose(f"what the driver tells is wrong ({type(report).__name__}): {error}")
+            self.lose(f"a report of the driver is wrong ({type(report).__name__}): {error}")
             return
         if told is not None:
             self._tell(told)

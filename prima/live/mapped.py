@@ -79,7 +79,7 @@ class MappedDriver(TaskDriver):
         if "angle" in args:
             return float(str(args["angle"]))
         if at is None:
-            raise Refused("where the robot is, is not known: no <senses as='pose'> has told it")
+            raise Refused("the robot's place is unknown: no <senses as='pose'> has reported it")
         heading = float(str(args.get("heading", at.heading)))
         if place is not None:
             heading = math.degrees(math.atan2(place.y - at.y, place.x - at.x))

@@ -7,7 +7,7 @@ from prima.messages import Heard, Inbound
 
 
 class UserSpeech:
-    """What the user is saying. Times are ms of the run."""
+    """The user's current utterance. Times are ms of the run."""
 
     def __init__(self, conductor: Conductor) -> None:
         self._conductor = conductor
@@ -31,7 +31,7 @@ class UserSpeech:
             self._conductor.ear.speech_ends()
 
     def heard(self, now: int, heard: Heard) -> list[Inbound]:
-        """What a recogniser has heard, for the session; nothing if the utterance was cut off."""
+        """The recogniser's result, for the session; None if the utterance was cut off."""
         if self._cut:
             self._cut = False
             return []

@@ -110,7 +110,7 @@ def pose(value: Json) -> At | None:
 
 
 def _heard(message: Json, value: Json) -> list[News]:
-    """What a recogniser has heard: a text, or texts with their confidence, the best first."""
+    """A recogniser's result: a text, or texts with their confidence, the best first."""
     if isinstance(value, list):
         return _ranked(value)
     text = "" if value is None else str(value).strip()
@@ -120,7 +120,7 @@ def _heard(message: Json, value: Json) -> list[News]:
 
 
 def _ranked(value: list[Json]) -> list[News]:
-    """What was heard: texts, each followed by its confidence, the best first."""
+    """The texts heard, each followed by its confidence, the best first."""
     pairs: list[dict[str, Json]] = [
         {"text": str(text).strip(), "confidence": _share(sure)}
         for text, sure in zip(value[::2], value[1::2], strict=False)

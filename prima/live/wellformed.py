@@ -67,7 +67,7 @@ def _news(told: News) -> News | None:
         case Occurred():
             _check_actor(told.actor, OCCURRED)
             if (told.name, told.actor) == ("speech", "user"):
-                raise ValueError("what the user says is told by Heard(text)")
+                raise ValueError("report the user's words by Heard(text)")
             return Occurred(_short(told.name), told.actor, _data(told.data), told.app)
         case Narrated():
             _check_actor(told.actor, NARRATED)

@@ -107,7 +107,7 @@ def _applications(given: list[tuple[str, str]], maps: Iterable[str]) -> str:
 
 
 def _answers(says: str | Iterable[str]) -> str:
-    """What the user says to the questions, one after the other."""
+    """The user's answers to the questions, one after the other."""
     from html import escape
 
     said = [says] if isinstance(says, str) else says

@@ -249,7 +249,7 @@ def read_plain(response: HTTPResponse, most: int) -> bytes:
     if (coding := response.headers.get("Content-Encoding", "identity")) != "identity":
         _refuse(f"the host sends it compressed, as {coding[:20]}")
     data: bytes = response.read(most)
-    if response.length and len(data) < most:  # the length that it had told, less what has come
+    if response.length and len(data) < most:  # the length announced, less what has come
         raise IncompleteRead(data, response.length)
     return data
 

@@ -8,7 +8,7 @@ VOICEXML_ATTRIBUTES = {
     "array": "an expression that gives the array",
     "bargein": "whether the user may answer before it ends",
     "bargeintype": "whether any speech ends it, or only what a grammar takes (hotword)",
-    "beep": "whether a tone tells that the recording begins",
+    "beep": "whether a tone announces the recording",
     "bridge": "whether the user comes back after the call",
     "charset": "the file's encoding",
     "cond": "a condition; it counts only while this is true",

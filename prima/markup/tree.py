@@ -21,7 +21,7 @@ ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*("[^"]*"|'[^']*')""")
 PIECE = re.compile(
     r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[(?P<kept>.*?)\]\]>|&[^;]*;|(?P<plain>[^<&]+)|.", re.DOTALL
 )
-"""A piece of text as written: it stands for no character, one, or several unchanged ones."""
+"""A piece of text as written: it means no character, one, or several unchanged ones."""
 
 AS_IT_IS = re.compile(r"[^<&]+\Z")
 """Text without references and markup."""

@@ -1,4 +1,4 @@
-"""What applications say."""
+"""The messages of applications."""
 
 from __future__ import annotations
 

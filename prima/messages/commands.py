@@ -54,7 +54,7 @@ class Cue:
         "sound",
     ]
     """``pause``: silence of ``value`` ms. ``sentence``: the pause that a full stop makes.
-    ``sound``: what stands before the next ``end`` is the sound ``value``, the signal ``[beep]`` or
+    ``sound``: the text before the next ``end`` is the sound ``value``, the signal ``[beep]`` or
     a recording that the device has made. ``rate``: from here on ``value`` times the usual rate. ``lasts``: what stands before its
     ``end`` takes ``value`` ms. ``mark``: a place named ``value``, to be told as passed.
     ``earlier``: marks of what the application said just before count for this question.
@@ -69,7 +69,7 @@ class Cue:
 
 @dataclass(slots=True)
 class Command:
-    """What an application requests (thesis 4.1, Table 4.1)."""
+    """An application's request (thesis 4.1, Table 4.1)."""
 
     type: str
     args: dict[str, Json] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""What comes in."""
+"""The messages that come in."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Heard:
 
     text: str
     data: Data = field(default_factory=dict)
-    """Of a recogniser that tells: ``confidence``, how sure it is of the text (0 to 1; 1 if it does
+    """From a recogniser that reports them: ``confidence``, how sure it is of the text (0 to 1; 1 if it does
     not tell), and ``alternatives``, what else it may have been, each an object with ``text`` and
     ``confidence``. Of a question with marks: ``markname``, the last one passed when the user began to speak,
     or None, and ``marktime``, the ms that were played from there on. Of a recording:

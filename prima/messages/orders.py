@@ -1,4 +1,4 @@
-"""What the mediator orders devices, and what it tells applications."""
+"""The mediator's orders to devices, and its notices to applications."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from prima.messages.commands import NO_DEVICES, Command, Data, Fate, Json, Verb
 class Order:
     """To the devices: start an AB's Command, abort it, or stop what still moves (F5).
 
-    ``interrupt`` is an abort of what will start again: the device tells how much it had done.
+    ``interrupt`` is an abort of an AB that will start again: the device reports how much it had done.
     """
 
     verb: Verb
-    """What to do."""
+    """The action."""
     behavior: str
     """The AB's name in the transcript."""
     command: Command | None = None
@@ -32,7 +32,7 @@ class Order:
     """The application."""
     data: Json = None
     """For ``send``: the service and what it is sent. For a ``start`` after an interruption: the
-    mark to go on from, as the device told it (:class:`Halted`)."""
+    mark to go on from, as the device reported it (:class:`Halted`)."""
 
     @property
     def serial(self) -> int:
@@ -44,7 +44,7 @@ class Order:
 class Notice:
     """The fate of Commands: ``ended``, ``done`` (a whole run), ``cancelled`` or ``failed``.
 
-    ``interrupted`` tells how much was done of one that will start again (X2). ``cause`` is the
+    ``interrupted`` says how much was done of one that will start again (X2). ``cause`` is the
     event that a refused request was to react to: what is asked for instead does (C5).
     """
 

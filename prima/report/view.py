@@ -74,7 +74,7 @@ def view_of(transcript: Transcript, rows: list[Row], loaded: Loaded | None) -> V
         names,
         make_lanes(run, rows),
         walk,
-        f"{scenario}, policy {_short(head.get('policy')) or 'not told'}",
+        f"{scenario}, policy {_short(head.get('policy')) or 'unknown'}",
         [(_short(name), _short(digest)) for name, digest in list(files.items())[:200]],
         transcript.cut or transcript.early,
     )

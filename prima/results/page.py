@@ -92,7 +92,7 @@ def _notes(data: Data) -> str:
 
 
 def _constant(measures: list[MeasureColumn]) -> str:
-    """What is said of measures that do not differ."""
+    """The paragraph about measures that do not differ."""
     if not measures:
         return ""
     told = ", ".join(_value(one) for one in measures)

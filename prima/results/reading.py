@@ -42,7 +42,7 @@ class Sheet:
     cells: dict[str, list[Any]]
     """By column: texts from a CSV file, values from a Parquet file."""
     plan: dict[str, Any] = field(default_factory=dict)
-    """What determined the sweep, according to the file beside it; empty if there is none."""
+    """The settings of the sweep, from the file beside it; empty if there is none."""
     cut: str = ""
     """Why the table is incomplete."""
     notes: list[str] = field(default_factory=list)

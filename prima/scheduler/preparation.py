@@ -1,4 +1,4 @@
-"""What the mediator inserts before an AB: a way back (X1), facing the user (X4), words (X9)."""
+"""ABs that the mediator inserts before others: ways back (X1), facing the user (X4), words (X9)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the mediator records, in the order of its decisions."""
+"""The mediator's records, in the order of its decisions."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ def shown_cues(cues: tuple[Cue, ...]) -> list[dict[str, Json]]:
 
 
 def _asked_by_author(ab: Behavior) -> Record:
-    """What an AB's element requests: the arguments of its Command, and its line."""
+    """The request behind an AB: the arguments of its Command, and its line."""
     of = ab.command or ab.group
     fields: Record = {}
     if (command := ab.command) is not None:

@@ -38,7 +38,7 @@ class RobotState:
 
 @dataclass(slots=True)
 class Effects:
-    """What a stream's Commands have brought about: the robot's place, direction and head angles."""
+    """The effects of a stream's Commands: the robot's place, direction and head angles."""
 
     position: tuple[float, float] | None = None
     heading: float | None = None

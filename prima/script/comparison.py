@@ -19,7 +19,7 @@ class Comparison(NamedTuple):
 
 
 def comparison(condition: str) -> Comparison | None:
-    """What ``x``, ``!x``, ``!x == true`` or ``x == 'word'`` compares; None for anything else."""
+    """The comparison in ``x``, ``!x``, ``!x == true`` or ``x == 'word'``; None for other code."""
     code = parse_bracketed(condition)
     node = None if code is None else inner(code)
     if code is None or node is None:

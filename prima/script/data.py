@@ -22,7 +22,7 @@ TAKEN = RESERVED | INHERITED | BUILT_IN | CONSTANTS | VARIABLES
 
 
 class ScriptData(NamedTuple):
-    """What a script declares."""
+    """The names that a script declares."""
 
     values: dict[str, Any]
     """Values by variable, in order."""

@@ -14,7 +14,7 @@ Scope = Any
 MAX_SCRIPT_SECONDS = 3.0
 """The total time that an application's code may take in one instant."""
 MAX_RUN_SECONDS, MAX_SHARE = 10.0, 0.02
-"""What an application's code may take in a whole run: so many seconds of processor time, plus this
+"""Limit of the time of an application's code in a run: so many seconds of processor time, plus this
 share of the time that passes in the run."""
 RESULT_LIMIT = 100_000
 """Maximum length of a value that leaves its application's scopes."""

@@ -68,7 +68,7 @@ class Applications:
         self._engines.close()
 
     def drain_visits(self) -> list[ElementVisit]:
-        """What each application entered since the last call, one application after the other."""
+        """The elements reached since the last call, one application after the other."""
         found: list[ElementVisit] = []
         for app in self.named.values():
             found += app.visits

@@ -1,4 +1,4 @@
-"""What the user says, and whose question it answers (V1), even too late (X10) or too early (X8)."""
+"""The user's words, and the questions they answer (V1), even too late (X10) or too early (X8)."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Hearing:
         """The application whose question was the latest to time out, and when it did (X10)."""
 
     def listening(self) -> list[Answers]:
-        """What the user may say: answers to a listening or interruptible question, links (V1)."""
+        """The utterances possible now: answers to a listening or interruptible question, links (V1)."""
         asked: list[Answers | None] = []
         question = self.wiring.mediator.question()
         if question is not None and question.run is not None and self._hears(question):
@@ -217,7 +217,7 @@ class Hearing:
         return taken
 
     def _conclude(self, behavior: str, data: dict[str, Json]) -> None:
-        """The answer is the question's end (C4); the devices are told to stop listening."""
+        """The answer is the question's end (C4); the devices get the order to stop listening."""
         ab = self.wiring.mediator.running(behavior)
         if ab is not None:
             self.wiring.mediator.orders.append(

@@ -94,7 +94,7 @@ class Session:
         return text
 
     def drain_visits(self) -> list[ElementVisit]:
-        """What each application entered since the last call, one application after the other."""
+        """The elements reached since the last call, one application after the other."""
         return self._apps.drain_visits()
 
     # Driving ------------------------------------------------------------------
@@ -279,7 +279,7 @@ class Session:
                 self._wiring.act(one)
 
     def listening(self) -> list[Answers]:
-        """What the user may say: answers to a listening or interruptible question, links (V1)."""
+        """The utterances possible now: answers to a listening or interruptible question, links (V1)."""
         return self._hearing.listening()
 
     def _answered(self, value: Fetched | Transferred) -> None:

@@ -74,7 +74,7 @@ class Draws:
 
     Args:
         reader: the document's reader.
-        whose: the prefix of its streams' names, which tells them from another document's.
+        whose: the prefix of its streams' names, which distinguishes them from another document's.
     """
 
     def __init__(self, reader: Reader, whose: str = "") -> None:

@@ -1,4 +1,4 @@
-"""What a scenario expects of its run (``expect``, ``never``, ``in-order``)."""
+"""A scenario's expectations of its run (``expect``, ``never``, ``in-order``)."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ class When:
 
     trigger: str
     what: Any
-    """What it waits for: words, a Command, an event; an :class:`Amount` (ms) for ``at``."""
+    """Its condition: words, a Command, an event; an :class:`Amount` (ms) for ``at``."""
     after: Amount
     times: int
     count: int
@@ -185,7 +185,7 @@ def _said(reader: Reader, node: Node) -> Doing:
 
 
 def _recognised(reader: Reader, node: Node) -> dict[str, Json]:
-    """What the recogniser reports of the user's words (:class:`prima.messages.Heard`)."""
+    """The recogniser's report of the user's words (:class:`prima.messages.Heard`)."""
     told: dict[str, Json] = {}
     sure = reader.get(node, "confidence")
     if "confidence" in node.attributes:
@@ -215,7 +215,7 @@ def check_where(reader: Reader, node: Node, name: str, what: str, needed: bool =
 
 
 def read_answer(draws: Draws, node: Node) -> When:
-    """What the user says to a question."""
+    """The user's answer to a question."""
     reader = draws.reader
     return When(
         "asked",
@@ -231,7 +231,7 @@ def read_answer(draws: Draws, node: Node) -> When:
 
 
 def read_reply(draws: Draws, node: Node) -> Reply:
-    """What a service answers, or how it fails."""
+    """A service's answer, or its failure."""
     reader, after = draws.reader, draws.amount(node, "after")
     if node.tag == "failure":
         status = reader.get(node, "status") or 0

@@ -155,7 +155,7 @@ def _in_voicexml(root: Node, names: Surroundings) -> Iterator[Problem]:
 
 
 def _sayings(cast: Cast) -> tuple[Sayings, Sayings] | None:
-    """What the applications ask, and what they say; None if known only at run time."""
+    """The applications' questions and sentences; None if known only at run time."""
     asked: list[Sequence[object]] = []
     said: list[Sequence[object]] = []
     for document in cast.documents:
@@ -267,7 +267,7 @@ def _outside(nodes: list[Node], world: Map) -> Iterator[Problem]:
     for node, (name, least, most) in product(persons, _inside(world)):
         if not least <= float(read_value("number", node.get(name))) <= most:
             message = f'{name} "{node.get(name)}" is outside the walls of the world.'
-            remedy = f"They stand from {least:g} to {most:g}."
+            remedy = f"They are between {least:g} and {most:g}."
             place = node.attribute_place(name)
             yield Problem(place, "warning", "out-of-range", message, remedy)
 

@@ -35,7 +35,7 @@ AFTERMATH_MS = 1000
 
 @dataclass(slots=True)
 class LocomotionMemory:
-    """What a locomotion Command remembers from loop to loop; forgotten when interrupted."""
+    """The memory of a locomotion Command from loop to loop; lost when it is interrupted."""
 
     path: list[Point] | None = None
     turn_left: float = 0.0

@@ -1,4 +1,4 @@
-"""What the simulated body's own sensors say."""
+"""The readings of the simulated body's own sensors."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from prima.sim.world import World
 from prima.transcript.record import Entry
 
 KEYS = frozenset("0123456789*# ")
-"""What is pressed by default."""
+"""The keys of a telephone."""
 KEYS_THAT_END = "#*"
 """Keys pressed to end a recording: there is no silence to wait for."""
 
@@ -45,7 +45,7 @@ class TriggeredScript:
     lasts: int = field(default=0, compare=False)
     """How long (ms) they speak."""
     told: dict[str, Json] = field(default_factory=dict, compare=False)
-    """What is reported of it if it is recorded."""
+    """The report if it is recorded."""
 
 
 class People:
@@ -65,9 +65,9 @@ class People:
         self._fired: dict[int, int] = {}
         self._seen: dict[int, int] = {}
         self._scripts: list[TriggeredScript] = []
-        """What is yet to be done, as a heap: the next is first."""
+        """Actions to come, as a heap: the next one is first."""
         self._playing: list[TriggeredScript] = []
-        """What is being done at this instant and is not in the heap meanwhile."""
+        """Actions of this instant, which are not in the heap meanwhile."""
         self._serial = 0
         self._texts: dict[str, str] = {}
         """The texts of the behaviours that are under way."""
@@ -177,7 +177,7 @@ class People:
         return {"person": who} if self._several else {}
 
     def _does(self, who: str, what: str) -> list[Inbound]:
-        """What somebody does, as a note for the reader."""
+        """A user's action, as a note for the reader."""
         return [Narrated("user", f"{who} {what}" if self._several else what)]
 
     def _do(self, doing: Doing, script: TriggeredScript, now: int) -> list[Inbound]:
@@ -294,5 +294,5 @@ class People:
 
 
 def _part(said: voice.SpeechTimeline, ms: int) -> str:
-    """What has been said after a time: whole words, unless not even one is finished."""
+    """The words said after a time: whole ones, unless not even one is finished."""
     return said.heard(ms) or said.text[: max(sum(1 for end in said.ends if end <= ms), 1)]

@@ -136,6 +136,6 @@ class FloorPlan:
         return groups
 
     def _sees(self, name: str, group: Sequence[str]) -> bool:
-        """Whether no wall stands between a place and one of some others."""
+        """Whether no wall is between a place and one of some others."""
         lines = ((self._places[name], self._places[other]) for other in group)
         return any(not any(crosses(line, wall) for wall, _ in self._walls) for line in lines)

@@ -90,7 +90,7 @@ class Services:
         self._web = web
         self._asked: dict[tuple[str, str], int] = {}
         self._pending: list[tuple[int, Occurred | Fetched]] = []
-        """What arrives and when, by time."""
+        """Answers to come, with their times, by time."""
         self._begun: list[tuple[int, Order, Answering]] = []
         """Pending requests to hosts: since when, and what waits for the answer."""
 

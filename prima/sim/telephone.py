@@ -24,7 +24,7 @@ class Telephone:
         self._transfers = list(transfers)
         self._made: dict[str, int] = {}
         self._pending: list[tuple[int, Transferred]] = []
-        """What is reported and when, by time."""
+        """Reports to come, with their times, by time."""
 
     def order(self, now: int, order: Order) -> None:
         """Make a call, or end one."""

@@ -23,7 +23,7 @@ class User:
     chance: Chance
     """The probability that they answer at all unless the scenario says so."""
     whens: list[When]
-    """What they do and answer, whatever the scenario says."""
+    """Their actions and answers, whatever the scenario says."""
     draws: Draws
     node: Node
 

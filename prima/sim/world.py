@@ -74,7 +74,7 @@ class World:
         self._free_until = -1.0
         """How far it will have travelled when it may be out of there."""
         self._visible: bool | None = None
-        """What the camera sees from here, as computed; None if anybody has moved since."""
+        """The camera's view from here, as computed; None if anybody has moved since."""
         self.position = at
         """Where the robot is (m)."""
         self.turn_body(radians(heading))

@@ -123,7 +123,7 @@ class Game:
         return self.rehearsal.session.failures
 
     def unheard(self) -> str:
-        """What the user said that no application took; returned once."""
+        """The user's words that no application took; returned once."""
         return self.rehearsal.session.take_unheard()
 
     @property

@@ -136,7 +136,7 @@ def comment(text: str) -> str:
 
 
 def when(at: int, xml: str) -> str:
-    """What is done at a time (ms)."""
+    """A trigger at a time (ms)."""
     return f'<when at="{seconds(at)}">{xml}</when>'
 
 

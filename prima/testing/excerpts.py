@@ -15,7 +15,7 @@ GAP = "       ..."
 
 
 def around(rows: list[Row], looked: Window | None, near: int | None) -> str:
-    """The rows of the table in a window, and around a time (ms); dots stand for omitted rows."""
+    """The rows of the table in a window, and around a time (ms); dots mark omitted rows."""
     chosen: set[int] = set()
     if looked is not None:
         chosen |= _within(rows, looked)

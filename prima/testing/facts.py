@@ -22,7 +22,7 @@ class Fact:
     request: Entry
     """The request of the Behavior, if there is one."""
     said: str = ""
-    """What the Behavior says."""
+    """The Behavior's text."""
 
 
 @dataclass(slots=True)
@@ -35,7 +35,7 @@ class Window:
     ahead: int | None = None
     """The number of the fact before which it must happen."""
     why: str = ""
-    """What opens it, as a phrase."""
+    """Its beginning, as a phrase."""
 
     def holds(self, fact: Fact) -> bool:
         """Whether a fact is in the window."""

@@ -8,7 +8,7 @@ from prima.transcript.row import describe
 
 
 def subject(one: Expectation) -> str:
-    """What is expected, as a clause."""
+    """An expectation as a clause."""
     name, word = next(iter(one.words.items()))
     if "does" in one.words:
         name, word = "does", one.words["does"]

@@ -41,7 +41,7 @@ def row(result: Result, wide: int) -> str:
 
 
 def _checked(result: Result) -> str:
-    """What was checked."""
+    """The outcome of the checks, in words."""
     if result.status == "invalid":
         return "documents have errors"
     wrong = len({(one.place.line, one.place.column) for one in result.failures})

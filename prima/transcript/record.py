@@ -56,7 +56,7 @@ class Entry:
         return Entry({name: self.__dict__[name] for name in names if name in self.__dict__})
 
     time: Annotated[float, "Seconds since the run began."]
-    phase: Annotated[str, "What the record tells."]
+    phase: Annotated[str, "The kind of the record."]
     actor: Annotated[str, "Whose doing it is.", "robot", "user", "environment", "mediator"]
     app: Annotated[str, "The application concerned."] = ""
     behavior: Annotated[str, "The AB: APP#N, or APP#N.LOOP for a loop of a feedback Command."] = ""

@@ -191,7 +191,7 @@ def _call_row(record: Entry, uri: str, outcome: str) -> Row:
 
 
 def _heard(text: str, data: Record) -> str:
-    """What the user said: who of several, and the recognizer's confidence, if known."""
+    """The user's words: who of several said them, and the recogniser's confidence, if known."""
     said = f'{data["person"]}: "{text}"' if "person" in data else f'"{text}"'
     if "confidence" not in data:
         return said

@@ -92,7 +92,7 @@ class DeviceUse(TimeSpan):
 
 @dataclass(slots=True, kw_only=True)
 class Saying(TimeSpan):
-    """What a spell says, until it listens or is over; ``heard`` if it was broken off."""
+    """A spell's speech, until it listens or is over; ``heard`` if it was broken off."""
 
     spell: Spell
     outcome: str = ""
@@ -213,7 +213,7 @@ class Run:
     events: dict[int, Entry]
     """Events by their serial numbers."""
     about: dict[str, list[tuple[int, Entry]]]
-    """What says when an AB came, by its name, with the number of each record."""
+    """Records that say when an AB came, by its name, with the number of each."""
     phases: dict[str, list[Entry]]
     criteria: Criteria
 

@@ -109,7 +109,7 @@ REASONS: dict[str, Callable[[Entry, Row, bool], Reason | None]] = {
     "resume": _resumed,
     "start": _started,
 }
-"""What a record of each phase says about a row, or about the unit around it."""
+"""Sentences about a row, or about the unit around it, by the phases of records."""
 
 
 def _selected(entry: Entry, row: Row) -> Reason:

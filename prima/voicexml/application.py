@@ -158,14 +158,14 @@ class VoiceInterpreter(App[AnyEngine]):
         return context is not None and self._machine.inputs.noted(context, text) is not None
 
     def answers(self, run: int) -> Answers | None:
-        """What can be said to the question of a run."""
+        """The answers to the question of a run."""
         context = self._machine.context
         if context is None or run != self.waits.run or self.over:
             return None
         return self._machine.inputs.words(context)
 
     def open_during(self, command: Command) -> Answers | None:
-        """What can be said to the question behind a prompt while that is being said (4.1.5)."""
+        """The answers that may interrupt a prompt, to the question behind it (4.1.5)."""
         waits = self.waits
         return self.answers(waits.run) if waits.opens(command) else None
 

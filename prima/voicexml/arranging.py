@@ -55,7 +55,7 @@ def is_unit(node: Node) -> bool:
 
 
 def parts_of(dialog: Node) -> list[Node]:
-    """What a dialog holds, in document order: each unit around form items before its contents."""
+    """A dialog's items in document order: each unit around form items before its contents."""
     found = []
     for node in dialog.nodes:
         found.append(node)
@@ -71,7 +71,7 @@ def holds(item: Node, name: str) -> bool:
 
 
 Queued = Command | Arranged
-"""What is played when a wait is reached."""
+"""Prompts and Commands that are played when a wait is reached."""
 
 
 def longest_of(unit: Node) -> int:

@@ -164,7 +164,7 @@ class Calls:
         self.app.send(call.to, data, source(call.item))
 
     def _audio(self, context: Context, call: Call) -> Command | None:
-        """What the caller hears until somebody answers."""
+        """The audio that the caller hears until somebody answers."""
         name = call.item.get("transferaudio")
         if not name or call.kind == "blind":
             return None

@@ -63,7 +63,7 @@ class Page:
         return urldefrag(self.resolve(name))[0] if name else ""
 
     def base(self, node: Node | None = None) -> str:
-        """What relative URIs are relative to, seen from the application's folder (1.5.1)."""
+        """The base of relative URIs, seen from the application's folder (1.5.1)."""
         base = self.join(self.uri, self.root.get("xml:base"))
         if node is not None and node is not self.root:
             base = self.join(base, node.get("xml:base"))

@@ -25,7 +25,7 @@ WORDS = {
         "maxspeechtimeout": "長すぎます。",
     },
 }
-"""What those handlers say first, by language; nothing in any other language."""
+"""The first words of those handlers, by language; nothing in any other language."""
 
 
 class Events:

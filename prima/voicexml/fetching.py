@@ -90,7 +90,7 @@ def fetch(
         return _weighed(owner, _file(owner, whole, node), node)
     answer = yield from _asked(owner, asked, node, request or UriRequest())
     if answer.problem:
-        lacks = asked != whole  # the folder stands for the server, which has no such file
+        lacks = asked != whole  # the folder represents the server, which has no such file
         status = answer.status or (404 if lacks and not owner.app.waits.overdue else 0)
         name = f"error.badfetch.http.{status}" if status else "error.badfetch"
         missing = "the folder has no such file; " if lacks else ""

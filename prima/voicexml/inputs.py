@@ -1,4 +1,4 @@
-"""What the user may say while an application waits: active grammars and what they take (3.1)."""
+"""The active grammars while an application waits, and the results that they give (3.1)."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Inputs:
         self._budget = Budget()
         """The budget for matching the current utterance."""
         self._active: list[Active] = []
-        """What listens in the current wait."""
+        """The grammars that listen in the current wait."""
         self._words: Answers | None = None
         """The words that it takes."""
 
@@ -69,7 +69,7 @@ class Inputs:
             raise Thrown.at(item, "error.semantic", "no grammar listens here")
 
     def words(self, context: Context) -> Answers:
-        """What can be said now, for recognisers; the same object while nothing changes."""
+        """The utterances possible now, for recognisers; the same object while nothing changes."""
         if self._words is None:
             heard = self._active if "voice" in self.modes(context) else []
             options: dict[str, Json] = {}
@@ -137,7 +137,7 @@ class Inputs:
     def _taken(
         self, context: Context, said: str, mode: str, sure: float, first: Active | None
     ) -> list[Taken]:
-        """What grammars of one scope take: of ``first``'s, or the first that takes anything."""
+        """The results of one scope's grammars: of ``first``'s, or the first that takes anything."""
         most = self.most_results(context)
         least = float(setting(context, "confidencelevel"))
         results: list[Taken] = []

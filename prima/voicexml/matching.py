@@ -44,7 +44,7 @@ class GrammarMatch:
 
     @property
     def means(self) -> str:
-        """What distinguishes it from other results."""
+        """Its identity among results."""
         return json.dumps(self.interpretation, sort_keys=True, default=str)
 
 
@@ -55,7 +55,7 @@ class Listener:
     match: Callable[[str, str, int], list[GrammarMatch]]
     """Gives at most so many matches of an utterance in a mode."""
     words: Answers = field(default_factory=Answers)
-    """What can be said to it, for recognisers."""
+    """The utterances that it takes, for recognisers."""
 
 
 Fetch = Callable[[str], bytes]

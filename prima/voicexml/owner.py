@@ -1,4 +1,4 @@
-"""What the parts of a VoiceXML interpreter require of the whole and of each other.
+"""Protocols: the requirements of a VoiceXML interpreter's parts on the whole and on each other.
 
 The machine (:mod:`~prima.voicexml.machine`) runs the Form Interpretation Algorithm. Its parts
 run content, listen, enter documents, fill items and handle events; they know each other, the
@@ -31,15 +31,15 @@ class VoiceApplication(Protocol):
     now: int
     """The instant (ms)."""
     connection: Data
-    """What is known of the user's connection (VoiceXML 5.1.4)."""
+    """The user's connection, as far as known (VoiceXML 5.1.4)."""
     heard: TakenUtterance | None
-    """What the user said last, as a grammar took it."""
+    """The user's latest utterance, as a grammar took it."""
     actions: list[Action]
     """Its requests, for the session to carry out."""
 
     @property
     def waits(self) -> Waits:
-        """What it waits for."""
+        """Its waits."""
 
     @property
     def engine(self) -> AnyEngine:
@@ -47,7 +47,7 @@ class VoiceApplication(Protocol):
 
     @property
     def document(self) -> VoiceDocument:
-        """What it runs."""
+        """The document that it runs."""
 
     def note(self, node: Node | None, what: Visited = "in", name: str = "") -> None:
         """An element is gone through, or its condition has been evaluated."""
@@ -62,7 +62,7 @@ class VoiceApplication(Protocol):
         """Bound the handlers looked at: a document may have very many."""
 
     def utterance(self) -> Budget:
-        """What matching one more utterance may take."""
+        """The budget for matching one more utterance."""
 
     def count_output(self, characters: int, node: Node) -> None:
         """Bound what comes out in one instant."""
@@ -168,7 +168,7 @@ class Recording(Protocol):
     """Fills the record items."""
 
     lengths: dict[str, int]
-    """What has been recorded, and how long it was (ms)."""
+    """The lengths of recordings (ms), by their URIs."""
 
     def check(self, context: Context, item: Node) -> None:
         """Refuse a format in which nothing can be recorded."""
@@ -252,7 +252,7 @@ class MachineOwner(Protocol):
 
     @property
     def document(self) -> VoiceDocument:
-        """What it runs."""
+        """The document that it runs."""
 
     @property
     def content(self) -> VoiceContentRunner:

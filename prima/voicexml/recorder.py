@@ -28,7 +28,7 @@ class RecordItems:
     def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
         self.lengths: dict[str, int] = {}
-        """What has been recorded, and how long it was (ms)."""
+        """The lengths of recordings (ms), by their URIs."""
 
     def keep(self, said: str, ms: float | None = None) -> int:
         """Keep an utterance as a recording; gives its duration (ms), a guess if not reported."""

@@ -19,10 +19,10 @@ CONNECTION = """session.connection = (function (held) {
   if (held.originator) held.originator = held[held.originator];
   return held;
 })(given)"""
-"""What is known about the user's connection; the rest is undefined (5.1.4)."""
+"""The user's connection, as far as known; the rest is undefined (5.1.4)."""
 TELEPHONE = """session.telephone =
   { ani: session.connection.remote.uri, dnis: session.connection.local.uri }"""
-"""What VoiceXML 1.0, and many platforms after it, had instead."""
+"""The variables of VoiceXML 1.0, and of many platforms after it."""
 
 
 class Documents:

@@ -17,7 +17,7 @@ SENTENCE = Cue(0, "sentence")
 
 @dataclass(slots=True)
 class Speech:
-    """What has been read of a prompt and not been queued yet."""
+    """The part of a prompt that has been read and not yet queued."""
 
     lang: str
     place: str

@@ -1,4 +1,4 @@
-"""What is remembered while a VoiceXML application runs, and how control leaves content."""
+"""The state of a running VoiceXML application, and the ways in which control leaves content."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SCOPES = ("session", "application", "document", "dialog", "anonymous")
 
 @dataclass(slots=True)
 class Resume:
-    """What ended a wait: the run's data, or an event from outside."""
+    """The end of a wait: the run's data, or an event from outside."""
 
     data: Data = field(default_factory=dict)
     event: Event | None = None

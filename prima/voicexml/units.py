@@ -1,6 +1,6 @@
 """Units around form items (rule U5): each unit's questions and speech are one Atomic Behavior.
 
-An event that is thrown in a unit is handled in it, wherever the handler stands. One that comes
+An event that is thrown in a unit is handled in it, wherever the handler is. One that comes
 from outside is handled in it by the handlers of its items and its own alone; any other handler
 leaves it first, as VoiceXML does one thing at a time. What is left to do in it is then another
 unit, once the form goes on.
@@ -26,7 +26,7 @@ class Units:
     def __init__(self, owner: MachineOwner) -> None:
         self.owner = owner
         self._reached: dict[int, tuple[Node, Page | None, Reach]] = {}
-        """What each unit reaches, with its document's application root at that time."""
+        """The content that each unit reaches, with its document's application root at that time."""
 
     def span(self, context: Context, unit: Node, wanted: str) -> Flow:
         """Visit the items of a unit; closes it however it is left.
@@ -92,7 +92,7 @@ class Units:
             self.owner.engine.unset(context.dialog, unit.get("name"))
 
     def _reach(self, context: Context, unit: Node) -> Reach:
-        """What may be requested in a unit, by all handlers that it can reach."""
+        """The Commands that may be requested in a unit, by all handlers that it can reach."""
         kept = self._reached.get(id(unit))
         if kept is None or kept[1] is not context.root:
             reach = Sketch(context.page, context.root).reach(unit)

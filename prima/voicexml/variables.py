@@ -1,7 +1,7 @@
 """Variables that a VoiceXML document uses and nothing declares: error.semantic when reached.
 
 In case of doubt, a name is taken for declared. Executable content has a scope of its own, in
-that of its dialog (5.1.2); what a dialog or a document declares counts from where it stands on in
+that of its dialog (5.1.2); a declaration of a dialog or a document counts from its place on in
 what is evaluated in document order, and everywhere in all else.
 """
 
@@ -32,7 +32,7 @@ ALWAYS = frozenset(
         *("Node", "DOMException"),
     ]
 )
-"""What the platform declares (5.1.2, 5.1.4, 5.1.5, 5.2.2, 2.2.4; 2.1, D)."""
+"""The platform's variables (5.1.2, 5.1.4, 5.1.5, 5.2.2, 2.2.4; 2.1, D)."""
 LISTING = frozenset(["submit", "clear", "return", "exit", "subdialog", "disconnect", "data"])
 """Elements whose namelist names variables."""
 DIALOGS = ("form", "menu")

@@ -174,7 +174,7 @@ VALUES = {
     "finalsilence": _TIME,
     "connecttimeout": _TIME,
 }
-"""What attributes may hold: keywords, a time, a rate of speech, a weight, or a whole number
+"""Kinds of attribute values: keywords, a time, a rate of speech, a weight, or a whole number
 from 1; an element's own come first."""
 EXPRESSIONS = frozenset(
     [

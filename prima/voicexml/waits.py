@@ -1,4 +1,4 @@
-"""What a VoiceXML application waits for: Commands, answers from outside, the end of a unit."""
+"""The waits of a VoiceXML application: for Commands, answers from outside, the end of a unit."""
 
 from __future__ import annotations
 

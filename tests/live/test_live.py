@@ -212,7 +212,7 @@ class Broken(Driver):
         ('<driver kind="wrong"/>', 3, "the motor is hot"),
         ('<driver kind="broken"/>', 3, "the driver broken has failed: division by zero"),
         ('<driver kind="flood" heartbeat="2s"/>', 0, ""),
-        ('<driver kind="flood" heartbeat="50s"/>', 3, "tells more than 10,000 things at once"),
+        ('<driver kind="flood" heartbeat="50s"/>', 3, "reports more than 10,000 things at once"),
         ("", 2, "has no driver"),
     ],
 )

@@ -335,7 +335,7 @@ def test_a_missing_library_is_named_with_its_remedy(monkeypatch: pytest.MonkeyPa
         ('<option name="speed" value="1"/>', 'The driver reachy has no option "speed"'),
         ('<option name="at" value="moon"/>', 'There is no place "moon", where the robot stands.'),
         ('<does gesture="nod" by="nod"/>', 'by="nod" is neither "goto" nor a recorded'),
-        ('<senses event="touch" by="/x"/>', 'by="/x" is nothing that the daemon tells'),
+        ('<senses event="touch" by="/x"/>', 'by="/x" is not an address of the daemon'),
         ('<does gesture="nod"/>', 'by="" is neither "goto" nor a recorded move, DATASET/MOVE.'),
         (
             '<does gesture="nod" by="goto"><set name="a" value="15"/></does>',

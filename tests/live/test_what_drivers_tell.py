@@ -119,10 +119,10 @@ def test_the_journal_of_a_driver_that_measures_nothing_replays(what: str, tmp_pa
 @pytest.mark.parametrize(
     ("what", "told"),
     [
-        ("return 5", "what the driver tells is wrong (Done): its data must be a dict, not int"),
-        ('self.tell(Heard("\\ud800"))', "what the driver tells is wrong (Heard): 'utf-8' codec"),
+        ("return 5", "a report of the driver is wrong (Done): its data must be a dict, not int"),
+        ('self.tell(Heard("\\ud800"))', "a report of the driver is wrong (Heard): 'utf-8' codec"),
         ('self.tell(Sensed({"a": object()}))', "wrong (Sensed): a record cannot hold object"),
-        ('self.tell(Occurred("speech", "user"))', "what the user says is told by Heard(text)"),
+        ('self.tell(Occurred("speech", "user"))', "report the user's words by Heard(text)"),
         ('return {"map": "x" * 2_000_000}', "wrong (Done): it has more than 1,000,000 characters"),
         ("sys.exit(4)", "the driver has failed: SystemExit: 4"),
     ],

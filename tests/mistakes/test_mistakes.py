@@ -243,7 +243,7 @@ def test_what_is_right_in_a_scenario_is_not_told(tmp_path: Path, content: str) -
     [
         ('<in-order><expect event="mesage"/></in-order>', 'Did you mean "message"?'),
         ('<when at="8s" after="3s"><say>Tea.</say></when>', "or a later until."),
-        ('<person x="2" y="9"/>', "They stand from -1 to 3."),
+        ('<person x="2" y="9"/>', "They are between -1 and 3."),
     ],
 )
 def test_what_is_wrong_deeper_in_a_scenario_is_told(

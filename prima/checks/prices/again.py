@@ -44,7 +44,7 @@ def _states(outline: Outline, names: Iterable[str | int]) -> Iterator[PricedStat
 
 
 class _Ways:
-    """What follows a reaction, a state or an event."""
+    """The consequences of a reaction, a state or an event."""
 
     def __init__(self, outline: Outline) -> None:
         self._outline = outline

@@ -66,7 +66,7 @@ class Gap:
 
 @dataclass(slots=True)
 class PricedState:
-    """What an application does without waiting for an event, in a form or after an event."""
+    """An application's activity, in a form or after an event, until it waits for an event."""
 
     name: str
     node: Node
@@ -129,7 +129,7 @@ class EndlessLoop:
 
 @dataclass(slots=True)
 class Outline:
-    """What is known about an application: its parts in document order, states and reactions."""
+    """An application's parts in document order, its states and its reactions."""
 
     parts: list[Price]
     states: dict[str, PricedState]

@@ -48,7 +48,7 @@ def is_foreign(name: str) -> bool:
 
 
 def thrown_by(root: Node) -> Iterator[str]:
-    """The events that a document throws itself; the empty name stands for those of expressions."""
+    """The events that a document throws itself; the empty name means those of expressions."""
     for node in root.walk():
         if node.tag in ("throw", "link", "choice", "return"):
             if node.get("event"):

@@ -196,7 +196,7 @@ class VoiceTimes:
         return ""
 
     def _held(self, node: Node) -> _Held:
-        """What is directly in an element."""
+        """An element's own content, without its descendants'."""
         if id(node) not in self.held:
             self.held[id(node)] = _Held(node)
         return self.held[id(node)]

@@ -129,7 +129,7 @@ class Variables:
         yield from _parts_of_event(expr, names, known)
 
     def given(self) -> Iterator[Problem]:
-        """Check variables that acts assign, clear or return; what is no name is told before."""
+        """Check variables that acts assign, clear or return; wrong names are reported before."""
         for form, assign in self.facts.acts.of(Assign):
             names = self.facts.known_in(form)
             head, dot, rest = assign.name.partition(".")

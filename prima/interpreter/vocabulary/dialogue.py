@@ -70,7 +70,7 @@ ELEMENTS = (
         "meta",
         "A fact about the document, for people and tools.",
         (
-            attribute("name", "text", "what it tells", "required"),
+            attribute("name", "text", "its meaning", "required"),
             attribute("content", "text", "the fact", "required"),
         ),
     ),

@@ -1,4 +1,4 @@
-"""What happens in a scenario: triggers, what users do, and what else there is, as a table."""
+"""Triggers, users' actions and other events of a scenario, as a table."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from prima.markup.vocabulary import Element, attribute
 
 AFTER = attribute("after", "delay", "how long afterwards", default="0s")
 DOINGS = ("say", "hang-up", "touch", "walk", "wait", "look", "follow", "stay", "leave", "note")
-"""What a user does, without what happens in the surroundings."""
+"""Users' actions, without those of the surroundings."""
 _ACTIONS = (
     *DOINGS,
     *("message", "event", "sensor", "fail", "repair", "emergency", "release", "unload", "load"),

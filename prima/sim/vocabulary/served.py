@@ -1,4 +1,4 @@
-"""What a scenario has beside its users: services and the telephone, as a table."""
+"""Parts of a scenario besides its users: services and the telephone, as a table."""
 
 from __future__ import annotations
 

@@ -84,4 +84,4 @@ RULES: dict[str, Callable[[Node], Iterator[Problem]]] = {
     "say-as": _check_say_as,
     **dict.fromkeys((*INPUT_ITEMS, "choice", "link"), _check_item),
 }
-"""What checks an element, by its key."""
+"""The checks of elements, by their keys."""

@@ -153,7 +153,7 @@ def _type_problems(field: Node) -> Iterator[Problem]:
 def grammar_problems(
     node: Node, lang: str, base: str = "", fetch: Callable[[str], bytes] | None = None
 ) -> list[Problem]:
-    """What is wrong with a ``<grammar>``; without ``fetch``, files that it names are not read."""
+    """The problems of a ``<grammar>``; without ``fetch``, files that it names are not read."""
     from prima.grammar import GrammarError, load
 
     mode: Literal["dtmf", "voice"] = "dtmf" if node.get("mode") == "dtmf" else "voice"

@@ -53,10 +53,10 @@ class ConsoleDriver(Driver):
     def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:
         super().__init__(settings, profile, site)
         self._saying: dict[str, ConsoleSaying] = {}
-        """What goals are saying."""
+        """The speech under way, by goal."""
         self._listening: set[str] = set()
         self._heard: tuple[int, str] | None = None
-        """What the user is saying, and when they have said it (ms of the run)."""
+        """The end (ms of the run) and the text of the user's current utterance."""
         self._lines: LineSource | None = None
         self._task: asyncio.Task[None] | None = None
         self._speed = 1.0

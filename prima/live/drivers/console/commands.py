@@ -1,4 +1,4 @@
-"""What an operator types besides the user's words: the commands of ``prima talk`` for a robot."""
+"""Input of an operator besides the user's words: the commands of ``prima talk`` for a robot."""
 
 from __future__ import annotations
 

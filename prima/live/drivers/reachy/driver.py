@@ -301,7 +301,7 @@ def check_ways(settings: DriverSettings) -> None:
     for senses in settings.senses:
         message = ""
         if not senses.by.startswith(STATES):
-            message = f'by="{senses.by}" is nothing that the daemon tells: write "/api/state/doa".'
+            message = f'by="{senses.by}" is not an address of the daemon: write "/api/state/doa".'
         elif senses.what == "event" and not senses.when:
             message = 'An event needs when="...": the daemon is asked again and again.'
         elif senses.what == "heard":

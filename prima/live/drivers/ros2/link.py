@@ -114,7 +114,7 @@ class RclpyLink:
         return f"in the domain {self._domain}, {names} {verb} not there. {remedy}"
 
     def _missing(self) -> list[RosUse]:
-        """What is not available yet."""
+        """The actions, services and topics that are not available yet."""
         clients = self._clients
         self._add_untyped()
         gone = [use for use, one in clients.actions.items() if not one.server_is_ready()]

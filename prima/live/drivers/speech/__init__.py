@@ -54,7 +54,7 @@ class SpeechDriver(TaskDriver):
         self._listens: asyncio.Task[None] | None = None
         self._worker = ThreadPoolExecutor(1, "ears")
         self._takes: tuple[Answers, ...] = ()
-        """What listens now."""
+        """The answers for which it listens now."""
         self._speaking = 0
         """How many texts the robot is saying."""
         self._deaf_until = 0.0

@@ -1,4 +1,4 @@
-"""What listens now, as a JSGF grammar for a recogniser limited to it."""
+"""The active grammars as one JSGF grammar, for a recogniser limited to it."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ def likeness(one: str, other: str) -> float:
 
 
 def hypotheses(said: str, fits: str, phrases: Iterable[str], cutoff: float) -> list[Hypothesis]:
-    """What an utterance may have been, the likeliest first.
+    """The possible texts of an utterance, the likeliest first.
 
     What the open recogniser has heard comes first: a question may accept just that. Similar
     phrases follow, for a question that accepts only those.

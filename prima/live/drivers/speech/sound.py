@@ -169,7 +169,7 @@ class SoundCard:
 
 
 def _lacking(name: str, device: int | str | None, error: Exception) -> str:
-    """What to do if a microphone or a loudspeaker is missing."""
+    """The remedies for a missing microphone or loudspeaker."""
     which = (
         f'the {name} "{device}" cannot be opened' if device is not None else f"there is no {name}"
     )
