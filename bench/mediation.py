@@ -60,7 +60,7 @@ def decisions(waiting: int, seconds: float, policy: str = "prima") -> float:
         for _ in range(CHAIN):
             recorder.now += 1
             mediator.ended(order.behavior, True, {})
-            mediator.told.clear()
+            mediator.deliveries.clear()
             mediator.select()
             (order,) = mediator.drain_orders()
             records += recorder.drain()

@@ -32,8 +32,8 @@ from prima.session import AnyDocument, Session
 
 def _heard_or_occurred(record: Record, data: Record) -> Inbound:
     if record["event"] == "speech" and record["actor"] == "user":
-        told = {name: value for name, value in data.items() if name != "lasted"}
-        return Heard(record["text"], told, _milliseconds(data.get("lasted", 0)))
+        values = {name: value for name, value in data.items() if name != "lasted"}
+        return Heard(record["text"], values, _milliseconds(data.get("lasted", 0)))
     return Occurred(record["event"], record["actor"], data, record.get("app"))
 
 

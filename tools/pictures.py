@@ -182,17 +182,17 @@ def line(x1: float, y1: float, x2: float, y2: float, kind: str = "line") -> str:
     return f'<path class="{kind}" d="M{x1:.1f} {y1:.1f}L{x2:.1f} {y2:.1f}"/>'
 
 
-def svg(title: str, told: str, height: float, parts: list[str]) -> str:
+def svg(title: str, description: str, height: float, parts: list[str]) -> str:
     """A whole picture."""
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height:.0f}"'
-        f' width="{WIDTH}" height="{height:.0f}" role="img" aria-labelledby="title told">'
+        f' width="{WIDTH}" height="{height:.0f}" role="img" aria-labelledby="title description">'
     )
-    names = f'<title id="title">{escape(title)}</title>\n<desc id="told">{escape(told)}</desc>'
+    names = f'<title id="title">{escape(title)}</title>\n<desc id="description">{escape(description)}</desc>'
     return "\n".join([head, names, f"<style>{STYLE}</style>", *parts, "</svg>\n"])
 
 
-def timeline(records: list[Record], title: str, told: str) -> str:
+def timeline(records: list[Record], title: str, description: str) -> str:
     """A run over time: events on top, a lane for each application, floor and conversation."""
     scale = (WIDTH - LEFT - 12) / finish(records)
     parts: list[str] = []
@@ -227,7 +227,7 @@ def timeline(records: list[Record], title: str, told: str) -> str:
         parts.append(text(x - 3, y + 19, str(second), "small"))
     parts.append(text(4, y + 19, "seconds", "small"))
     parts.append(text(LEFT, y + 34, LEGEND, "small"))
-    return svg(title, told, y + 42, flags + parts)
+    return svg(title, description, y + 42, flags + parts)
 
 
 def lane(
@@ -312,7 +312,7 @@ def parents(request: Record) -> list[str]:
     return [base(name) for name in found if name]
 
 
-def memory(records: list[Record], title: str, told: str) -> str:
+def memory(records: list[Record], title: str, description: str) -> str:
     """Working memory at the first event, and when the first AB after it has ended."""
     event = float(events(records)[0]["time"])
     after = next(float(r["time"]) for r in records if r["phase"] == "end" and r["time"] > event)
@@ -352,7 +352,7 @@ def memory(records: list[Record], title: str, told: str) -> str:
         ]
         parts.append(text(left + 4, y + 4, "occupied: " + ", ".join(busy), "small"))
         height = max(height, y + 14)
-    return svg(title, told, height, parts)
+    return svg(title, description, height, parts)
 
 
 # Files -----------------------------------------------------------------------------------------
@@ -429,9 +429,9 @@ GRAPHS: dict[str, tuple[str, Callable[[Path], str]]] = {
 def outputs(root: Path) -> dict[Path, str]:
     """Every picture of a checkout, by its file."""
     made = {}
-    for name, (scenario, draw, title, told) in PICTURES.items():
+    for name, (scenario, draw, title, description) in PICTURES.items():
         run = api.rehearse(root / "documents" / "tutorial" / f"{scenario}.xml")
-        made[root / "docs" / "pictures" / f"{name}.svg"] = draw(run.records, title, told)
+        made[root / "docs" / "pictures" / f"{name}.svg"] = draw(run.records, title, description)
     for name, (path, show) in GRAPHS.items():
         made[root / "docs" / "pictures" / f"{name}.svg"] = show(root / "documents" / path)
     return made

@@ -427,7 +427,7 @@ def code_examples() -> str:
         for name, text in examples.beside(code).items():
             parts += [f"`{name}`:", _listing(text)]
         parts += [examples.headline(code, "Wrong"), _listing(wrong.text)]
-        parts += [_listing(examples.told(wrong)), examples.headline(code, "Right")]
+        parts += [_listing(examples.problems_of(wrong)), examples.headline(code, "Right")]
         parts += [_listing(right.text)]
     return "\n" + "\n\n".join(parts) + "\n\n"
 
@@ -540,11 +540,11 @@ def _signature(function: Callable[..., object]) -> str:
 
 def _members(thing: type) -> list[str]:
     """Public fields, properties and methods of a class."""
-    told: dict[str, str] = {}
+    docs: dict[str, str] = {}
     for one in reversed(getattr(thing, "__mro__", (thing,))):
-        told |= _field_docs(one) if inspect.get_annotations(one) else {}
+        docs |= _field_docs(one) if inspect.get_annotations(one) else {}
     rows = [
-        (f"`{name}: {getattr(kind, '__forward_arg__', kind)}`", told.get(name, ""))
+        (f"`{name}: {getattr(kind, '__forward_arg__', kind)}`", docs.get(name, ""))
         for one in reversed(getattr(thing, "__mro__", (thing,)))
         for name, kind in inspect.get_annotations(one).items()
         if not name.startswith("_")
@@ -563,15 +563,15 @@ def _field_docs(thing: type) -> dict[str, str]:
     """The strings written behind the fields of a class."""
     tree = ast.parse(textwrap.dedent(inspect.getsource(thing)))
     body = tree.body[0].body if isinstance(tree.body[0], ast.ClassDef) else []
-    told: dict[str, str] = {}
+    docs: dict[str, str] = {}
     for entry, behind in pairwise(body):
         match entry, behind:
             case (
                 ast.AnnAssign(target=ast.Name(id=name)),
                 ast.Expr(value=ast.Constant(value=str(text))),
             ):
-                told[name] = _marked(text)
-    return told
+                docs[name] = _marked(text)
+    return docs
 
 
 SECTION = re.compile(r"^(Args|Returns|Raises):$\n((?:[ ]{4}.*\n?|\n)+)", re.MULTILINE)

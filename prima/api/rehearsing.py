@@ -89,7 +89,7 @@ def rehearse(
     measure = Measure()
     made = Transcript([], cast.scenario.id, measure=measure)
 
-    def told() -> Iterator[Entry]:
+    def each() -> Iterator[Entry]:
         for records in chain([[head]], rehearsal.run()):
             for record in records:
                 entry = Entry(record, record["time"] / 1000)
@@ -105,9 +105,9 @@ def rehearse(
                 made.visits += rehearsal.visits
 
     if rows:
-        made.made = make_rows(told())
+        made.made = make_rows(each())
     else:
-        deque(told(), maxlen=0)
+        deque(each(), maxlen=0)
     made.failures = list(rehearsal.session.failures)
     made.defects = list(rehearsal.session.defects)
     made.outcome = rehearsal.outcome

@@ -50,11 +50,11 @@ def certify(
     )
 
 
-def _lacks(document: AnyDocument, told: Outline, profile: Profile) -> list[str]:
+def _lacks(document: AnyDocument, theirs: Outline, profile: Profile) -> list[str]:
     """Commands of an application for which a robot lacks the devices."""
     if not isinstance(document, Document):
         rows = profile.commands
-        asked = set().union(*(part.names for part in told.parts)) - NO_COMMANDS
+        asked = set().union(*(part.names for part in theirs.parts)) - NO_COMMANDS
         return sorted(
             name for name in asked if name not in rows or not rows[name].devices <= profile.devices
         )

@@ -95,13 +95,13 @@ def _some(
 
 def delays(own: Outline, theirs: Outline) -> list[Delay]:
     """The waits of each reaction of ``own`` for ``theirs``; if there are very many, one for all."""
-    other, told = _Other(theirs), [one for one in own.reactions if one.firsts]
-    held = [len(one.events) * (1 + len(one.firsts) + len(one.responds)) for one in told]
+    other, asking = _Other(theirs), [one for one in own.reactions if one.firsts]
+    held = [len(one.events) * (1 + len(one.firsts) + len(one.responds)) for one in asking]
     if sum(held) * other.size > MOST_COMPARED:
-        mine = {ANY_EVENT: told}
+        mine = {ANY_EVENT: asking}
     else:
         mine = {}
-        for reaction in told:
+        for reaction in asking:
             for event in reaction.events:
                 mine.setdefault(event, []).append(replace(reaction, events=(event,)))
     found = [_delay(event, reactions, other) for event, reactions in sorted(mine.items())]
@@ -234,12 +234,12 @@ def _whole(firsts: list[Price], theirs: _Other, same: list[Busy]) -> Busy | None
     """The part of the other that is waited for as a whole (F2, K1, K2); None if there is none."""
     if _drives(firsts, theirs):
         return theirs.at_all
-    told = [one for one in same if one.lasts]
-    if not told:
+    busy = [one for one in same if one.lasts]
+    if not busy:
         return None
-    different = {id(one): one for one in told}.values()
+    different = {id(one): one for one in busy}.values()
     return Busy(
-        sum(one.lasts for one in told),
+        sum(one.lasts for one in busy),
         [gap for one in different for gap in one.endless],
         [*(gap for one in different for gap in one.unknown), *theirs.later],
     )
@@ -287,13 +287,13 @@ def starving(own: Outline, theirs: Outline) -> list[Starving]:
     found = [_by_loops(part, held, part in floor, drives) for part in theirs.parts]
     found += [_by_cycle(loop, held, floors, drives) for loop in loops(theirs)]
     found += [Starving(gap.place, gap.reason, "", everything, drives, True) for gap in theirs.gaps]
-    told = [one for one in found if one is not None]
-    return told + _again(theirs, told, drives)
+    causes = [one for one in found if one is not None]
+    return causes + _again(theirs, causes, drives)
 
 
-def _again(theirs: Outline, told: list[Starving], drives: bool) -> list[Starving]:
+def _again(theirs: Outline, causes: list[Starving], drives: bool) -> list[Starving]:
     """The reactions that cause their own event again, except those found to keep the floor."""
-    kept = {(one.place, one.what) for one in told if one.everything}
+    kept = {(one.place, one.what) for one in causes if one.everything}
     return [
         Starving(gap.place, gap.reason, "F2", (), drives, True)
         for gap in reacting_again(theirs)

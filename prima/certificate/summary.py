@@ -46,12 +46,12 @@ def _delays(one: Certificate) -> list[str]:
     """The waits of reactions; events with equal waits are combined."""
     if not one.delays:
         return [f"  never: {one.ea} does nothing that reactions of {one.fa} wait for"]
-    told: dict[tuple[str, ...], list[str]] = {}
+    groups: dict[tuple[str, ...], list[str]] = {}
     for delay in one.delays:
-        told.setdefault(tuple(_delay(delay, one)), []).append(delay.event)
+        groups.setdefault(tuple(_delay(delay, one)), []).append(delay.event)
     return [
         line
-        for (first, *rest), events in told.items()
+        for (first, *rest), events in groups.items()
         for line in (f"  {', '.join(events)}: {first}", *rest)
     ]
 

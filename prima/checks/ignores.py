@@ -153,7 +153,7 @@ class Ignores:
         """Check the ignores of a document itself, once its problems have been filtered."""
         self._checked[absolute(file)] = file
 
-    def told(self) -> list[Problem]:
+    def problems(self) -> list[Problem]:
         """The problems of the ignores of the documents checked, including unused ones."""
         found: list[Problem] = []
         settings: dict[str, IgnoreSettings] = {}

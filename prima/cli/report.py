@@ -197,8 +197,8 @@ def _write_figures(figures: list[Figure], output: str | None, name: str | None) 
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
-        told = getattr(error, "strerror", None) or error
-        raise UsageError(f"{output}: cannot be written: {told}.") from None
+        reason = getattr(error, "strerror", None) or error
+        raise UsageError(f"{output}: cannot be written: {reason}.") from None
     for one in figures:
         write_whole(folder / f"{one.file}.svg", one.whole())
     tell(f"{output}: {counted(len(figures), 'figure')}")

@@ -183,11 +183,11 @@ def _tell_cost(made: Sweep, address: str | None, workers: int | None, plan: bool
     from prima.experiments.sweep import estimate
 
     if plan or len(made) > MANY:
-        told = estimate(made, size_of(address, workers))
+        line = estimate(made, size_of(address, workers))
         if plan:
-            put(told)
+            put(line)
         else:
-            tell(told)
+            tell(line)
 
 
 def _print(made: Sweep, pool: Pool) -> None:
@@ -239,9 +239,9 @@ def _write(out: Output, resume: bool) -> None:
         bad += bool(code)
         failed += bool(row["expects_failed"])
         worst = max(worst, code if isinstance(code, int) else 0)
-    told = [counted(total, "run"), counted(len(orders - {""}), "order")]
-    told += [f"{bad} not fine"] if bad else []
-    told += [f"{failed} with failed expectations"] if failed else []
-    put(f"{out.path}: {', '.join(told)}")
+    counts = [counted(total, "run"), counted(len(orders - {""}), "order")]
+    counts += [f"{bad} not fine"] if bad else []
+    counts += [f"{failed} with failed expectations"] if failed else []
+    put(f"{out.path}: {', '.join(counts)}")
     if worst:
         raise Exit(worst)

@@ -194,10 +194,10 @@ def _report(results: list[Result]) -> None:
     for result in results:
         click.echo(_paint(clean(row(result, wide)), result.status), color=coloured())
     for result in results:
-        told = format_result(result)
-        if told:
+        shown = format_result(result)
+        if shown:
             click.echo(_paint(f"\n{clean(result.path)}", result.status), color=coloured())
-            put(told)
+            put(shown)
 
 
 def _finish(

@@ -168,8 +168,8 @@ class Sees:
     @property
     def where(self) -> Data:
         """Where the user is, as far as known."""
-        told = {"distance": self.distance, "angle": self.angle} if self.visible else {}
-        return {name: value for name, value in told.items() if value is not None}
+        values = {"distance": self.distance, "angle": self.angle} if self.visible else {}
+        return {name: value for name, value in values.items() if value is not None}
 
 
 @dataclass(frozen=True, slots=True)

@@ -153,15 +153,15 @@ def few(problems: list[Problem], most: int) -> list[Problem]:
     counts = Counter(problem.sentence for problem in problems)
     if max(counts.values(), default=0) <= most:
         return problems
-    told: Counter[tuple[str, ...]] = Counter()
+    reported: Counter[tuple[str, ...]] = Counter()
     kept: list[Problem] = []
     for problem in sorted(problems):
         alike = problem.sentence
-        told[alike] += 1
-        if told[alike] == most and counts[alike] > most:
+        reported[alike] += 1
+        if reported[alike] == most and counts[alike] > most:
             more = f"So it is at {counted(counts[alike] - most, 'more place')}."
             problem = problem._replace(remedy=f"{problem.remedy} {more}".strip())
-        if told[alike] <= most:
+        if reported[alike] <= most:
             kept.append(problem)
     return kept
 

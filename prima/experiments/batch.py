@@ -146,8 +146,8 @@ def _failed(job: Job, error: Exception) -> BatchRow:
     """The row of a run that an exception ended."""
     match error:
         case DocumentError():
-            told = [str(one) for one in error.problems if one.severity == "error"]
-            return BatchRow(job.scenario, job.policy, 1, messages=_few(told))
+            errors = [str(one) for one in error.problems if one.severity == "error"]
+            return BatchRow(job.scenario, job.policy, 1, messages=_few(errors))
         case UsageError():
             code, message = 2, str(error)
         case OSError():

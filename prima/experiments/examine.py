@@ -65,8 +65,8 @@ class Examiner(Stage):
 
 def _findings(variant: Variant, loaded: Loaded, transcript: api.Transcript) -> Iterator[Finding]:
     policy = variant.policy or loaded.cast.scenario.policy
-    for told in transcript.failures:
-        yield Finding("error", told, told)
+    for failure in transcript.failures:
+        yield Finding("error", failure, failure)
     if transcript.outcome == "limit":
         yield Finding("endless", "", "the run exceeds a limit")
     for failed in failed_expectations(loaded, transcript):

@@ -311,8 +311,8 @@ def _is(signature: str) -> Callable[[Seen], bool]:
 def _seen(made: Made | Died) -> Seen:
     if isinstance(made, Seen):
         return made
-    told = f"its process ended with code {made.code}" if isinstance(made, Died) else made.failures
-    return Seen(3, failures=told, found=[Finding("error", told, told)])
+    reason = f"its process ended with code {made.code}" if isinstance(made, Died) else made.failures
+    return Seen(3, failures=reason, found=[Finding("error", reason, reason)])
 
 
 def _events(scenario: str, settings: ExperimentSettings) -> list[str]:

@@ -64,8 +64,8 @@ class Explored:
 
     def moved(self, point: Point) -> str:
         """The same as a phrase."""
-        told = [f"{path} at {at:g} s ({by:+g} s)" for path, (at, by) in self.shifts(point).items()]
-        return ", ".join(told) or "as written"
+        moved = [f"{path} at {at:g} s ({by:+g} s)" for path, (at, by) in self.shifts(point).items()]
+        return ", ".join(moved) or "as written"
 
     def data(self) -> dict[str, Json]:
         """All results for JSON; times in seconds."""
@@ -120,10 +120,10 @@ class Explored:
         wide = max(len(self.moved(order.point)) for order in one.orders)
         yield f"{'order':12}  {'runs':>6}  {'smallest shift':{wide}}  first difference"
         for order in one.orders:
-            told = visible(self.difference(order))
-            told = told if len(told) <= WIDTH else f"{told[: WIDTH - 3]}..."
+            difference = visible(self.difference(order))
+            difference = difference if len(difference) <= WIDTH else f"{difference[: WIDTH - 3]}..."
             moved = self.moved(order.point)
-            yield f"{order.signature}  {order.runs:6}  {moved:{wide}}  {told}".rstrip()
+            yield f"{order.signature}  {order.runs:6}  {moved:{wide}}  {difference}".rstrip()
         for which, target in enumerate(one.targets):
             yield ""
             yield f"{target.path}:"

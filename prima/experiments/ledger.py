@@ -95,8 +95,8 @@ def _sound(row: BatchRow) -> bool:
         row.reactions,
         row.responses,
     )
-    told = (row.reaction_mean, row.reaction_max, row.response_mean, row.response_max)
-    times = [one for one in told if one is not None]
+    measures = (row.reaction_mean, row.reaction_max, row.response_mean, row.response_max)
+    times = [one for one in measures if one is not None]
     words = (row.policy, row.ended, *(row.messages if isinstance(row.messages, list) else [0]))
     return (
         all(type(one) is int for one in whole)

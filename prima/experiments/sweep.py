@@ -61,10 +61,10 @@ class SweepQuestion:
 
     def placed(self, error: UsageError) -> UsageError:
         """A mistake with its place in the study file, if it concerns something in it."""
-        told = str(error)
+        message = str(error)
         for name, place in self.places.items():
-            if told.startswith(f"{name}: ") or f'"{name}"' in told:
-                return UsageError(f"{place}: {told}")
+            if message.startswith(f"{name}: ") or f'"{name}"' in message:
+                return UsageError(f"{place}: {message}")
         return error
 
 
@@ -164,8 +164,8 @@ class Sweep:
     def row(self, variant: Variant, made: Made | Died, folder: str) -> list[Json]:
         """A row of the table."""
         if isinstance(made, Died):
-            told = f"its process ended with code {made.code}"
-            made = Made(3, failures=told if made.code >= 0 else f"{told}: no memory left?")
+            reason = f"its process ended with code {made.code}"
+            made = Made(3, failures=reason if made.code >= 0 else f"{reason}: no memory left?")
         script = self.stage.scripts[variant.scenario]
         cells: dict[str, Json] = {
             "run": variant.number,

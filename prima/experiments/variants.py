@@ -177,8 +177,8 @@ class Stage:
         except (Exception, MemoryError) as error:
             if "PRIMA_DEBUG" in os.environ:
                 raise
-            told = f"this is a defect of prima: {type(error).__name__}: {error}"
-            return Made(3, failures=_short(told))
+            reason = f"this is a defect of prima: {type(error).__name__}: {error}"
+            return Made(3, failures=_short(reason))
 
     def rehearsed(
         self, variant: Variant, loaded: Loaded, sink: api.Sink | None = None, keep: bool = False
@@ -206,13 +206,13 @@ class Stage:
         """What came of a run."""
         rows = transcript.rows()
         failed = len(failed_expectations(loaded, transcript))
-        told = [*transcript.failures, *([TOO_MUCH] if transcript.outcome == "limit" else [])]
+        failures = [*transcript.failures, *([TOO_MUCH] if transcript.outcome == "limit" else [])]
         assert transcript.measure is not None
         summary, criteria = transcript.summary(), transcript.measure.criteria()
         return Made(
-            3 if told else 0,
+            3 if failures else 0,
             transcript.outcome,
-            _short("; ".join(told)),
+            _short("; ".join(failures)),
             failed,
             signature(rows),
             {

@@ -107,8 +107,8 @@ def _mark_messages(topic: str, part: TierPart) -> Iterator[Message]:
     marks = part.marks
     for number, mark in enumerate(marks):
         times: dict[str, Json] = {"start": mark.start / 1000, "end": mark.end / 1000}
-        told = {"text": mark.text, "active": True, **times, **mark.about}
-        yield (mark.start, 1, topic, _dumps(told))
+        value = {"text": mark.text, "active": True, **times, **mark.about}
+        yield (mark.start, 1, topic, _dumps(value))
         end = max(mark.end, mark.start + 1)
         follows = number + 1 < len(marks) and marks[number + 1].start <= end
         if not part.tier.points and not follows:

@@ -145,9 +145,9 @@ class _TierBuilder:
     def _hear(self, entry: Entry, until: float) -> None:
         """Add what the user said; its start is computed, as the record comes at its end."""
         text = clean(entry.text)
-        told = entry.data.get("duration")
-        known = isinstance(told, int | float) and 0 <= told <= LONGEST_MS
-        lasted = round(told or 0) if known else voice.duration(text, voice.language(text), {})
+        duration = entry.data.get("duration")
+        known = isinstance(duration, int | float) and 0 <= duration <= LONGEST_MS
+        lasted = round(duration or 0) if known else voice.duration(text, voice.language(text), {})
         start = max(_ms(entry.time) - lasted, _ms(until)) / 1000
         about = {"event": "speech", "serial": str(entry.serial or "")}
         about["note"] = "" if known else "start estimated"
@@ -214,9 +214,9 @@ class _TierBuilder:
                 verb = "starts" if entry.phase == "load" else "ends"
                 self._point(entry, f"{entry.app} {verb}{outcome}")
             case "fetched" | "transferred" | "emergency" | "error":
-                told = (entry.app, entry.phase, entry.data.get("uri"), entry.outcome)
+                about = (entry.app, entry.phase, entry.data.get("uri"), entry.outcome)
                 why = (entry.data.get("problem"), entry.message)
-                self._point(entry, " ".join(map(str, filter(None, (*told, *why)))))
+                self._point(entry, " ".join(map(str, filter(None, (*about, *why)))))
 
     def _decision(self, entry: Entry) -> None:
         winner, more = entry.winner, entry.losers_count - len(entry.losers)
@@ -267,5 +267,5 @@ def _about(spell: Spell) -> dict[str, str]:
 def _values(data: dict[str, Json]) -> str:
     """An event's scalar values, in brackets."""
     plain = [(key, one) for key, one in data.items() if not isinstance(one, dict | list)]
-    told = ", ".join(f"{key} {_value(one)}" for key, one in plain)
-    return f" ({told})" if told else ""
+    details = ", ".join(f"{key} {_value(one)}" for key, one in plain)
+    return f" ({details})" if details else ""

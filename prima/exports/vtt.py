@@ -9,13 +9,13 @@ from prima.exports.timeline import Interval, Tier, Timeline, clean
 
 def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
     """The file, in pieces: a cue for each utterance, and notes for other events."""
-    told: list[tuple[Interval, Tier]] = [
+    cues: list[tuple[Interval, Tier]] = [
         (mark, tier)
         for tier in timeline.tiers
         if tier.kind in ("says", "user-says", "user-does", "events")
         for mark in tier.marks
     ]
-    told.sort(key=lambda one: (one[0].start, not one[1].points))
+    cues.sort(key=lambda one: (one[0].start, not one[1].points))
     yield "WEBVTT\n"
     head = [
         f"{name}: {timeline.head[name]}"
@@ -24,7 +24,7 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
     ]
     if head:
         yield f"\nNOTE {_escaped(clean(', '.join(head)))}\n"
-    for mark, tier in told:
+    for mark, tier in cues:
         if tier.points:
             yield f"\nNOTE {_time(mark.start)} {_escaped(mark.text)}\n"
         elif mark.text:

@@ -124,8 +124,8 @@ class _AbnfReader:
         self.declared.add(kind)
 
     def _uri(self, token: Token, media: bool = False) -> str:
-        uri, told, _ = token.partition("~")
-        if not uri[1:-1].strip() or (told and not media):
+        uri, media_type, _ = token.partition("~")
+        if not uri[1:-1].strip() or (media_type and not media):
             message = f'"{token[:60]}" is not a URI in angle brackets.'
             self.note(token, "bad-value", message, "Write one such as <names.gram>.")
         return uri[1:-1].strip()

@@ -88,12 +88,12 @@ class _DialogueGrammarReader:
         found = self.document.rules[name] = Rule(name, body, self.document, True)
         return found
 
-    def _rule_named(self, node: Node, name: str, attribute: str, told: bool = False) -> Rule:
+    def _rule_named(self, node: Node, name: str, attribute: str, reported: bool = False) -> Rule:
         """A rule by its name, or one that matches nothing."""
         found = self.document.rules.get(name)
         if found is not None:
             return found
-        if not told:
+        if not reported:
             hint = suggestion(name, self.document.rules, *value_span(node, attribute, name))
             self.note(NO_RULE, node, attribute, hint, name=name)
         return self._define(name, choice([], []))

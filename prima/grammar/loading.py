@@ -86,8 +86,8 @@ def load(
 
 
 def _language(library: Library, document: GrammarDocument, languages: Languages | None) -> None:
-    told = document.lang and document.mode == "voice"
-    if told and languages is not None and not languages(document.lang):
+    spoken = document.lang and document.mode == "voice"
+    if spoken and languages is not None and not languages(document.lang):
         message = f'Grammars in "{document.lang}" are not taken.'
         problems = library.problems
         problems.unsupported(UnsupportedLanguage, document.where, "language", message)

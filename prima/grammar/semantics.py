@@ -167,8 +167,8 @@ class TagInterpreter:
         tags = [event for event in frame.events if isinstance(event, Tag)]
         codes = [translate(tag.code) if legacy else tag.code for tag in tags]
         numbered = enumerate(in_turn(codes))
-        told = list(zip(tags, codes, strict=True))
-        _check(told, result.document, engine)
+        tagged = list(zip(tags, codes, strict=True))
+        _check(tagged, result.document, engine)
         environment: Any = None
         try:
             environment = engine.environment(self.text(result), result.document.merges)

@@ -153,9 +153,9 @@ class _Reader(GrammarChecker):
         if scope not in ("public", "private"):
             message = f'The scope of a rule is public or private, not "{scope}".'
             self.note(node, "bad-value", message, 'Write scope="public", or remove it.', "scope")
-        told = len(self.problems.found)
+        before = len(self.problems.found)
         parts = self._parts(node, 1)
-        if not parts and len(self.problems.found) == told:
+        if not parts and len(self.problems.found) == before:
             message = f'The rule "{name}" holds nothing.'
             remedy = 'Write <ruleref special="NULL"/> for one that is matched by nothing said.'
             self.note(node, "empty", message, remedy)

@@ -140,7 +140,7 @@ def states(path: str | Path) -> Graph:
 
         assert isinstance(document, VoiceDocument)
         graph = voicexml.states(document)
-    graph.told = _told(graph)
+    graph.description = _describe(graph)
     return graph
 
 
@@ -195,7 +195,7 @@ def tree(transcript: Transcript, row: int | None = None, to: str = "svg") -> str
 
     until = NEVER if row is None else _time(transcript, row)
     graph = run.trees(transcript.run(), until)
-    graph.told = _told(graph)
+    graph.description = _describe(graph)
     return _shown(graph, to, transcript.name)
 
 
@@ -220,7 +220,7 @@ def _time(transcript: Transcript, row: int) -> float:
     return rows[row].time
 
 
-def _told(graph: Graph) -> str:
+def _describe(graph: Graph) -> str:
     """A description of the picture as text, for accessibility."""
     sentences = []
     for node in list(graph.nodes.values())[:40]:

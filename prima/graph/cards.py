@@ -73,7 +73,9 @@ def draw(graph: Graph) -> str:
         width, y = max(width, right), bottom + 34
     width = max(width + MARGIN, 560.0)
     top = [text(MARGIN, MARGIN + 8, fit(graph.title, width - 2 * MARGIN, 13, True), "name")]
-    return picture(graph.title, graph.told, width, y + 6, top + parts + _legend(graph, y - 4))
+    return picture(
+        graph.title, graph.description, width, y + 6, top + parts + _legend(graph, y - 4)
+    )
 
 
 def _columns(graph: Graph) -> dict[str, int]:
@@ -178,8 +180,8 @@ def _titled(card: Card) -> list[str]:
     if node.start:
         parts.append(text(x + WIDTH - PAD - start + 4, y + 16, "start", "small"))
     if node.source:
-        told = "start: " if node.start else ""
-        parts.append(f"<title>{escape(f'{told}{node.title}, {node.source}')}</title>")
+        prefix = "start: " if node.start else ""
+        parts.append(f"<title>{escape(f'{prefix}{node.title}, {node.source}')}</title>")
     return parts
 
 

@@ -133,18 +133,18 @@ class _DialogueGraph(Transitions[Act]):
         for filled in filleds:
             self.content(filled.content, base, (), reply)
 
-    def _leaves(self, act: Act, told: str) -> bool:
+    def _leaves(self, act: Act, label: str) -> bool:
         match act:
             case Goto():
-                self._goto(act, told)
+                self._goto(act, label)
             case Exit():
-                self.graph.edge(self.here, "", "exit", told)
+                self.graph.edge(self.here, "", "exit", label)
             case Return():
                 thrown = f", throws {act.event}" if act.event else ""
-                self.graph.edge(self.here, "", "return", told + thrown)
+                self.graph.edge(self.here, "", "return", label + thrown)
             case Throw():
                 if not isinstance(act.event, Expression):
-                    self.throw(act.event, told)
+                    self.throw(act.event, label)
             case _:
                 return False
         return True
@@ -161,19 +161,19 @@ class _DialogueGraph(Transitions[Act]):
             return ()
         return [(cond.code if cond else None, acts) for cond, acts in act.branches]
 
-    def _goto(self, act: Goto, told: str) -> None:
+    def _goto(self, act: Goto, label: str) -> None:
         if isinstance(act.form, Expression):
             for name in literals(act.form.code, self.document.forms):
-                self.graph.edge(self.here, name, "guess", told)
-            self.graph.edge(self.here, "", "computed", told, act.form.code)
+                self.graph.edge(self.here, name, "guess", label)
+            self.graph.edge(self.here, "", "computed", label, act.form.code)
         elif act.form:
-            self._to(act.form, "go", told)
+            self._to(act.form, "go", label)
 
-    def _to(self, form: str, kind: str, told: str) -> None:
+    def _to(self, form: str, kind: str, label: str) -> None:
         if form in self.document.forms:
-            self.graph.edge(self.here, form, kind, told)
+            self.graph.edge(self.here, form, kind, label)
         else:
-            self.graph.edge(self.here, "", "missing", told, form)
+            self.graph.edge(self.here, "", "missing", label, form)
 
 
 def _describe(node: GraphNode, form: Form, items: Sequence[Item]) -> None:

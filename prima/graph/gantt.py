@@ -41,7 +41,7 @@ def draw(history: History) -> str:
         mark = line(x, y - 4, x + 22, y - 4) if kind == "line" else box(x, y - 10, 22, 12, kind, 2)
         parts += [mark, text(x + 28, y, words, "small")]
         x += 46 + measure(words, 10)
-    return picture(history.title, told(history), width, y + MARGIN, parts)
+    return picture(history.title, describe(history), width, y + MARGIN, parts)
 
 
 def _axis(left: float, end: float, top: float, bottom: float) -> list[str]:
@@ -117,7 +117,7 @@ def _uncovered(stream: StreamSpan, away: StreamPiece) -> float:
     return max([away.begin, *(one.end for one in runs if one.begin <= away.begin < one.end)])
 
 
-def told(history: History) -> str:
+def describe(history: History) -> str:
     """The history as text, for accessibility."""
     sentences = []
     for stream in history.streams[:40]:

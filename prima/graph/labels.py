@@ -58,10 +58,10 @@ def condition(code: str, reply: AnswerLabel = NO_REPLY) -> str:
 
 def joined(base: str, conditions: Iterable[str]) -> str:
     """A cause with its conditions."""
-    told = base
+    label = base
     for one in conditions:
-        told += f" {one}" if one in YES or one.startswith('"') else f", {one}"
-    return told
+        label += f" {one}" if one in YES or one.startswith('"') else f", {one}"
+    return label
 
 
 def otherwise(branches: list[str]) -> str:
@@ -71,12 +71,12 @@ def otherwise(branches: list[str]) -> str:
 
 def handled(events: Iterable[str], count: int, cond: str, hints: dict[str, list[str]]) -> str:
     """The events that a handler takes, with their known sources."""
-    told = []
+    names = []
     for event in events:
         more = hints.get(event, [])
-        told.append(f"{event} ({short('; '.join(more), TOLD)})" if more else event or "any event")
+        names.append(f"{event} ({short('; '.join(more), TOLD)})" if more else event or "any event")
     times = f", {ordinal(count)} time" if count > 1 else ""
-    return joined(", ".join(told) + times, [condition(cond)] if cond else [])
+    return joined(", ".join(names) + times, [condition(cond)] if cond else [])
 
 
 def literals(code: str, names: Iterable[str]) -> list[str]:
@@ -148,7 +148,7 @@ def notes(questions: Sequence[str], said: str, goals: Sequence[str]) -> list[str
 def known(sources: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
     """The sources of events, each once, by event."""
     found: dict[str, list[str]] = {}
-    for event, told in sources:
-        if told not in found.setdefault(event, []):
-            found[event].append(told)
+    for event, label in sources:
+        if label not in found.setdefault(event, []):
+            found[event].append(label)
     return found

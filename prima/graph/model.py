@@ -72,10 +72,10 @@ class Edge:
 
 @dataclass(slots=True)
 class Graph:
-    """A picture's content; ``told`` is the description for screen readers."""
+    """A picture's content; ``description`` is for screen readers."""
 
     title: str
-    told: str = ""
+    description: str = ""
     nodes: dict[str, GraphNode] = field(default_factory=dict)
     across: bool = True
     """Whether it runs from left to right; else from top to bottom."""

@@ -152,13 +152,11 @@ def head(x: float, y: float, kind: str, turn: str) -> str:
     return f'<path class="{kind}" d="M{x:.1f} {y:.1f}{shape}"/>'
 
 
-def picture(title: str, told: str, width: float, height: float, parts: list[str]) -> str:
+def picture(title: str, description: str, width: float, height: float, parts: list[str]) -> str:
     """A whole picture, with a title and a description for accessibility."""
     begin = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}"'
-        f' width="{width:.0f}" height="{height:.0f}" role="img" aria-labelledby="title told">'
+        f' width="{width:.0f}" height="{height:.0f}" role="img" aria-labelledby="title description">'
     )
-    names = (
-        f'<title id="title">{escape(clean(title))}</title>\n<desc id="told">{escape(told)}</desc>'
-    )
+    names = f'<title id="title">{escape(clean(title))}</title>\n<desc id="description">{escape(description)}</desc>'
     return "\n".join([begin, names, f"<style>{STYLE}</style>", *parts, "</svg>\n"])

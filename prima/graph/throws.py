@@ -30,10 +30,10 @@ class Taker(Generic[Act]):
     named: bool = True
     """Whether the document names its events; else it shows only where they are thrown."""
 
-    def told(self, told: str) -> str:
+    def label(self, cause: str) -> str:
         """The label of an edge that leads through this handler."""
         times = f", {ordinal(self.count)} time" if self.count > 1 else ""
-        return joined(told + times, [condition(self.cond)] if self.cond else [])
+        return joined(cause + times, [condition(self.cond)] if self.cond else [])
 
 
 def chosen(takers: Iterable[Taker[Act]]) -> tuple[list[Taker[Act]], bool]:

@@ -36,7 +36,7 @@ class Transitions(ABC, Generic[Act]):
     # What a language defines ------------------------------------------------------------------
 
     @abstractmethod
-    def _leaves(self, act: Act, told: str) -> bool:
+    def _leaves(self, act: Act, label: str) -> bool:
         """Add the transition of an act that leaves its content; return whether it does."""
 
     @abstractmethod
@@ -79,52 +79,52 @@ class Transitions(ABC, Generic[Act]):
     ) -> tuple[bool, list[str]]:
         """Add the transitions of an ``if``; return whether it never ends, and what holds after it."""
         ends: list[bool] = []
-        told: list[str] = []
+        earlier: list[str] = []
         for cond, acts in branches:
-            one = otherwise(told) if cond is None else condition(cond, reply)
+            one = otherwise(earlier) if cond is None else condition(cond, reply)
             ends.append(self.content(acts, base, [*conditions, one], reply))
-            told.append(one)
+            earlier.append(one)
         complete = branches[-1][0] is None
-        return all(ends) and complete, [otherwise(told)] if any(ends) and not complete else []
+        return all(ends) and complete, [otherwise(earlier)] if any(ends) and not complete else []
 
     def handlers(self, handlers: Iterable[Taker[Act]], where: str = "", of: str = "") -> None:
         """Add the transitions of handlers, also that they stay if they are not ``of`` a Command."""
         for one in handlers:
-            told = handled(one.events, one.count, one.cond, self.hints)
-            self.content(one.acts, f"{where}{told}{of}")
+            label = handled(one.events, one.count, one.cond, self.hints)
+            self.content(one.acts, f"{where}{label}{of}")
             if not of and one.named:
-                self._stay(one, told)
+                self._stay(one, label)
 
-    def _stay(self, handler: Taker[Act], told: str) -> None:
+    def _stay(self, handler: Taker[Act], label: str) -> None:
         if handler.stays and not self.here.endswith(ANY):
-            self.graph.edge(self.here, self.here, "stay", told)
+            self.graph.edge(self.here, self.here, "stay", label)
 
-    def throw(self, event: str, told: str) -> None:
+    def throw(self, event: str, label: str) -> None:
         """Add the transitions of handlers that take a thrown event."""
         with self.throws.following(event) as followed:
             if not followed:
                 return
             if self.here.endswith(ANY):
-                self._throw_in_states(event, told)
-            self._taken(event, told)
+                self._throw_in_states(event, label)
+            self._taken(event, label)
 
-    def _throw_in_states(self, event: str, told: str) -> None:
+    def _throw_in_states(self, event: str, label: str) -> None:
         """Events that the document's handlers throw go to a state's own handlers first."""
         here, scopes = self.here, self.scopes
         for key, handlers in self._states():
             if any(_takes(one, event) for one in handlers):
                 self.here, self.scopes = key, [handlers]
-                self._taken(event, told, ends=False)
+                self._taken(event, label, ends=False)
         self.here, self.scopes = here, scopes
 
-    def _taken(self, event: str, told: str, ends: bool = True) -> None:
+    def _taken(self, event: str, label: str, ends: bool = True) -> None:
         found, always = chosen(one for scope in self.scopes for one in scope if _takes(one, event))
-        told = f"{told}, throws {event}"
+        label = f"{label}, throws {event}"
         for one in found:
-            self.content(one.acts, one.told(told))
-            self._stay(one, one.told(told))
+            self.content(one.acts, one.label(label))
+            self._stay(one, one.label(label))
         if ends and not always and not any(takes(name, event) for name in self.goes_on):
-            self.graph.edge(self.here, "", "exit", told)
+            self.graph.edge(self.here, "", "exit", label)
 
 
 def _takes(handler: Taker[Act], event: str) -> bool:

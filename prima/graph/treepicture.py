@@ -42,7 +42,7 @@ def draw(graph: Graph) -> str:
         drawn, right = _legend(y)
         parts, wide = parts + drawn, max(wide, right)
     top = text(MARGIN, MARGIN + 8, fit(graph.title, wide - 2 * MARGIN, 13, True), "name")
-    return picture(graph.title, graph.told, wide, y + MARGIN, [top, *parts])
+    return picture(graph.title, graph.description, wide, y + MARGIN, [top, *parts])
 
 
 def _legend(y: float) -> tuple[list[str], float]:

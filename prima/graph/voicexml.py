@@ -182,9 +182,9 @@ class _VoiceGraph(Transitions[Node]):
                 key += 1
                 own = str(key)
             words = said(choice)
-            told = f"said {quoted(words)}" if words else sayings(choice.all("grammar"))
-            told = told or "chosen"
-            self._led(choice, f"{told} or key {clean(own)}" if own else told)
+            label = f"said {quoted(words)}" if words else sayings(choice.all("grammar"))
+            label = label or "chosen"
+            self._led(choice, f"{label} or key {clean(own)}" if own else label)
 
     def _everywhere(self) -> None:
         """Add handlers and links that are active in all dialogs of a document and its leaves."""
@@ -196,8 +196,8 @@ class _VoiceGraph(Transitions[Node]):
         for name, dialog in page.dialogs.items():
             own = [one for one in dialog.all("grammar") if one.get("scope") == "document"]
             if dialog.get("scope") == "document" or own:
-                told = sayings(own or dialog.all("grammar")) or "one of its choices"
-                self.graph.edge(self.here, self._key(page, name), "go", f"said {told}")
+                words = sayings(own or dialog.all("grammar")) or "one of its choices"
+                self.graph.edge(self.here, self._key(page, name), "go", f"said {words}")
         if self.graph.out(self.here):
             self.graph.node(self.here, self._title_of_any(), kind="any")
 
@@ -218,30 +218,30 @@ class _VoiceGraph(Transitions[Node]):
             keys = [f"key {clean(link.get('dtmf'))}"] if link.get("dtmf") else []
             self._led(link, " or ".join([*said_by(link), *keys]) or "link")
 
-    def _led(self, node: Node, told: str) -> None:
+    def _led(self, node: Node, label: str) -> None:
         """Add the transition of a link or choice; one that throws shows at its handlers."""
         if node.attributes.keys() & {"next", "expr"}:
-            self._target(node, "next", "expr", "go", told)
+            self._target(node, "next", "expr", "go", label)
 
-    def _leaves(self, act: Node, told: str) -> bool:
+    def _leaves(self, act: Node, label: str) -> bool:
         match act.tag if act.namespace == NAMESPACE else "":
             case "goto":
                 if not act.attributes.keys() & {"nextitem", "expritem"}:
-                    self._target(act, "next", "expr", "go", told)
+                    self._target(act, "next", "expr", "go", label)
             case "submit":
                 names = " ".join(act.get("namelist").split())
-                self._target(act, "next", "expr", "go", f"{told}, submits {names}".rstrip())
+                self._target(act, "next", "expr", "go", f"{label}, submits {names}".rstrip())
             case "exit":
-                self.graph.edge(self.here, "", "exit", told)
+                self.graph.edge(self.here, "", "exit", label)
             case "disconnect":
-                self.graph.edge(self.here, "", "exit", told + ", hangs up")
+                self.graph.edge(self.here, "", "exit", label + ", hangs up")
             case "return":
                 event = act.get("event") or act.get("eventexpr")
                 thrown = f", throws {event}" if event else ""
-                self.graph.edge(self.here, "", "return", told + thrown)
+                self.graph.edge(self.here, "", "return", label + thrown)
             case "throw":
                 if event := act.get("event"):
-                    self.throw(event, told)
+                    self.throw(event, label)
             case _:
                 return False
         return True
@@ -253,23 +253,23 @@ class _VoiceGraph(Transitions[Node]):
     def _branches(self, act: Node) -> Branches[Node]:
         return divided(act) if act.tag == "if" and act.namespace == NAMESPACE else ()
 
-    def _target(self, node: Node, plain: str, computed: str, kind: str, told: str) -> None:
+    def _target(self, node: Node, plain: str, computed: str, kind: str, label: str) -> None:
         """Add an edge to an element's target."""
         if code := node.get(computed):
             for name in literals(code, [*self.page.dialogs, *(f"#{d}" for d in self.page.dialogs)]):
-                self.graph.edge(self.here, self._key(self.page, name), "guess", told)
-            self.graph.edge(self.here, "", "computed", told, code)
+                self.graph.edge(self.here, self._key(self.page, name), "guess", label)
+            self.graph.edge(self.here, "", "computed", label, code)
             return
         uri = node.get(plain).strip()
         base, fragment = parted(self.page.resolve(uri, node) if uri[:1] != "#" else uri)
         if urlsplit(base).scheme == "service" and fragment in self.page.dialogs:
-            told, base = f"{told}, asks {base}", ""
+            label, base = f"{label}, asks {base}", ""
         if urlsplit(base).scheme or base.startswith("//"):
-            self.graph.edge(self.here, "", "outside", told, uri)
+            self.graph.edge(self.here, "", "outside", label, uri)
         elif key := self._dialog_at(base, fragment):
-            self.graph.edge(self.here, key, kind, told)
+            self.graph.edge(self.here, key, kind, label)
         else:
-            self.graph.edge(self.here, "", "missing", told, uri)
+            self.graph.edge(self.here, "", "missing", label, uri)
 
     def _dialog_at(self, uri: str, fragment: str) -> str:
         """The key of a dialog, by default a document's first one; empty if there is none."""
@@ -288,8 +288,8 @@ def _describe(box: Box, dialog: Node) -> None:
     box.marks = _marks(dialog, parts, bool(asking), bool(leaving))
     questions = list(filter(None, map(asked, asking)))
     blocks = filter(None, (said(one) for one in parts if one.tag == "block"))
-    told = "" if asking else next(blocks, "")
-    box.notes = notes(questions, told, [TABLE_4_2[one.tag].title for one in leaving[:1]])
+    first = "" if asking else next(blocks, "")
+    box.notes = notes(questions, first, [TABLE_4_2[one.tag].title for one in leaving[:1]])
 
 
 def _marks(dialog: Node, parts: list[Node], asks: bool, leaves: bool) -> list[str]:

@@ -126,7 +126,9 @@ def draw(world: Map) -> str:
     parts += _labels(sheet, world)
     parts += _legend(world, sheet.bottom + 26)
     width = max(sheet.width, 640.0)
-    return picture(f"The map of {clean(world.id)}", told(world), width, sheet.bottom + 40, parts)
+    return picture(
+        f"The map of {clean(world.id)}", describe(world), width, sheet.bottom + 40, parts
+    )
 
 
 def _labels(sheet: _Sheet, world: Map) -> list[str]:
@@ -189,7 +191,7 @@ def _legend(world: Map, y: float) -> list[str]:
     return parts
 
 
-def told(world: Map) -> str:
+def describe(world: Map) -> str:
     """The map as text, for accessibility."""
     spots = [f"{name} at {x:g}, {y:g}" for name, (x, y) in list(world.places.items())[:40]]
     things = [f"{name} at {x:g}, {y:g}" for name, (x, y) in list(world.things.items())[:40]]

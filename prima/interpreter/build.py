@@ -288,14 +288,14 @@ class Builder(ContentBuilder):
     def settle_units(self, document: Document) -> None:
         """U5: give each unit the devices of all that may run in it."""
         finder = Finder(document)
-        told: set[int] = set()
+        reported: set[int] = set()
         for form, unit in units_of(document):
             reach = finder.reach(form, unit)
             unit.devices, unit.types = reach.devices, reach.types
             for one in reach.commands:
                 problem = unit_problem(one, TABLE_4_2.get(one.command.type), unit)
-                if problem is not None and id(one.command) not in told:
-                    told.add(id(one.command))
+                if problem is not None and id(one.command) not in reported:
+                    reported.add(id(one.command))
                     self.problems.append(problem)
 
     def filleds(self, parts: Parts) -> tuple[Filled, ...]:

@@ -179,9 +179,9 @@ class KnownEvents:
         wanted: set[str] = set()
         for handler in self.handlers:
             for name in handler.events:
-                told = self._unraised(name)
-                if told is not None:
-                    message, nearest = told
+                suggested = self._unraised(name)
+                if suggested is not None:
+                    message, nearest = suggested
                     wanted.add(nearest)
                     place = event_place(handler.node, name)
                     hint = meant(nearest, Span.of(place, name))

@@ -284,17 +284,17 @@ class Handling:
         assert frame is not None
         fiber = Fiber(frame)
         for watch in watches:
-            told = self._armed.setdefault(id(watch), WatchState())
-            looked_at = self._sensors_of(watch) if told.report >= 0 else None
+            state = self._armed.setdefault(id(watch), WatchState())
+            looked_at = self._sensors_of(watch) if state.report >= 0 else None
             if looked_at is not None and all(
-                self.owner.reported.get(name, 0) <= told.report for name in looked_at
+                self.owner.reported.get(name, 0) <= state.report for name in looked_at
             ):
                 continue
-            told.report = self.owner.reports  # even if it fails
+            state.report = self.owner.reports  # even if it fails
             true = self.owner.execute.condition(watch.when, fiber)
-            if true and not told.true:
+            if true and not state.true:
                 raised.append(watch.name)
-            told.true = true
+            state.true = true
         return raised
 
     def _sensors_of(self, watch: Watch) -> frozenset[str] | None:

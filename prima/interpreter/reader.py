@@ -85,11 +85,11 @@ def _read(file: str, data: bytes, fetch: Fetch | None) -> tuple[Document, list[P
     from prima.interpreter.checks import check_document
 
     root, problems = read_tree(file, data, DIALOGUE)
-    told = bool(problems)
+    wrong = bool(problems)
     builder = Builder(root, fetch)
     document = builder.document()
     problems += builder.problems
-    strange = [node for node in root.walk() if not node.key] if told else []
+    strange = [node for node in root.walk() if not node.key] if wrong else []
     named = {text[1:] for node in strange for text in node.attributes.values() if text[:1] == "#"}
     found = check_document(document)
     problems += [one for one in found if not (strange and _follows(one, named))]

@@ -83,10 +83,10 @@ def told_twice(sources: Sequence[EnteredDocument], remedy: str = REMEDY) -> Iter
     ways = Ways(sources)
     backs = chain.from_iterable(_Leavings(source, ways).back() for source in sources)
     found = [*islice(backs, MOST_FOUND)]  # as many handlers may lead to each of as many forms
-    told: set[int] = set()
+    reported: set[int] = set()
     for one in sorted(found, key=lambda one: not one.certain):
-        if one.certain or id(one.way.node) not in told:  # one example of a guess will do
-            told.add(id(one.way.node))
+        if one.certain or id(one.way.node) not in reported:  # one example of a guess will do
+            reported.add(id(one.way.node))
             yield _problem(one, remedy)
     yield from _returning(sources)
 

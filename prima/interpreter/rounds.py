@@ -114,7 +114,7 @@ def endless_reactions(document: Document) -> Iterator[Problem]:
     Only certain ones: without conditions, and with nothing in between that would let a reaction of
     another application go first, such as a question, a pause or a second Command.
     """
-    told: set[int] = set()
+    reported: set[int] = set()
     leads, everywhere = EventLeads(raised_first), _certain(document.handlers)
     alone = False
     for form in document.forms.values():
@@ -122,11 +122,11 @@ def endless_reactions(document: Document) -> Iterator[Problem]:
         behind = [one for item in all_items(form.items) for one in _certain(item.handlers)]
         if before or behind or not alone:  # the document's own alone need checking only once
             leads.among([*before, *everywhere, *behind])
-            yield from _endless([*before, *everywhere, *behind], leads, told)
+            yield from _endless([*before, *everywhere, *behind], leads, reported)
         alone = alone or not (before or behind)
 
 
-def _endless(scope: Sequence[Handler], leads: EventLeads, told: set[int]) -> Iterator[Problem]:
+def _endless(scope: Sequence[Handler], leads: EventLeads, reported: set[int]) -> Iterator[Problem]:
     """Those of a scope that lead to themselves, and to none reported already."""
     behind: set[int] = set()
     """Those that lead to a reported one."""
@@ -134,13 +134,13 @@ def _endless(scope: Sequence[Handler], leads: EventLeads, told: set[int]) -> Ite
         again = False
         for one in leads.of(handler):
             again = again or one is handler
-            if one.node.index in told or one.node.index in behind:
+            if one.node.index in reported or one.node.index in behind:
                 behind.add(handler.node.index)
                 break
         if leads.left < 0:
             return
         if again and handler.node.index not in behind:
-            told.add(handler.node.index)
+            reported.add(handler.node.index)
             yield AGAIN.at(handler.node.attribute_place("reactive"), event=handler.events[0])
 
 

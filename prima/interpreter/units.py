@@ -271,8 +271,8 @@ class Finder:
             for handler in self._takers(form, inner, one.event):
                 if id(handler) not in inside:
                     inside.add(id(handler))
-                    told = one.first or one.event or handler.events[0]
-                    by = _Raised(one.event, told, one.code)
+                    event = one.first or one.event or handler.events[0]
+                    by = _Raised(one.event, event, one.code)
                     waiting += self._take_in(self._piece(handler), False, by, found)
 
     def _by_links(self, form: Form, item: Item) -> list[_Raised]:

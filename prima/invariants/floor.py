@@ -132,9 +132,11 @@ class FloorRules(Turn):
             if tree.waits:
                 self.turns[tree.name] = self.now
             tree.waits = False
-            told = self.resumptions.pop(tree.name, None)
-            if told != ab.shown:
-                self.report(13, "C2", f"{tree.name} resumes by {ab.shown}; the records name {told}")
+            named = self.resumptions.pop(tree.name, None)
+            if named != ab.shown:
+                self.report(
+                    13, "C2", f"{tree.name} resumes by {ab.shown}; the records name {named}"
+                )
 
     def waits_suspended(self, ab: AB) -> None:
         """C2: an application is notified that another's stream keeps its suspended one waiting."""
@@ -148,11 +150,11 @@ class FloorRules(Turn):
 
     def note_floor(self, record: Record) -> None:
         """F3: the floor is a stack; only the named stream is pushed, or removed."""
-        tree, told = record["tree"], list(record.get("floor") or ())
+        tree, recorded = record["tree"], list(record.get("floor") or ())
         rest = [name for name in self.told_floor if name != tree]
-        if told != (rest if record["outcome"] == "returned" else [*rest, tree]):
-            self.report(13, "F3", f"the floor is {told}, after {self.told_floor}")
-        self.told_floor = told
+        if recorded != (rest if record["outcome"] == "returned" else [*rest, tree]):
+            self.report(13, "F3", f"the floor is {recorded}, after {self.told_floor}")
+        self.told_floor = recorded
         self.told_turns.append((tree, record["outcome"], record["rule"]))
 
     def note_suspend(self, record: Record) -> None:
@@ -175,9 +177,9 @@ class FloorRules(Turn):
             self.told_floor = names
         self._turns_told_rightly()
         for tree, by in self.suspended_by.items():
-            told = self.suspensions.pop(tree, None)
-            if told != by:
-                self.report(13, "C2", f"{by} suspends {tree}; the records name {told}")
+            named = self.suspensions.pop(tree, None)
+            if named != by:
+                self.report(13, "C2", f"{by} suspends {tree}; the records name {named}")
         for tree, by in self.suspensions.items():
             self.report(13, "C2", f"{tree} is not suspended by {by}, as a record says")
         for tree in self.ordered(self.resumptions):

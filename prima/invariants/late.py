@@ -87,9 +87,9 @@ class Late(Selection):
         else:
             app, when = lapsed
             late = "" if began - when > LATE else app
-        told = record.get("app") or ""
-        if told and (record.get("rule") != "X10" or told != late):
-            self.report(16, "X10", f"what {told} has not asked for is told it alone")
+        named = record.get("app") or ""
+        if named and (record.get("rule") != "X10" or named != late):
+            self.report(16, "X10", f"what {named} has not asked for is told it alone")
         self.late_app = late
 
     def note_lapse(self, record: Record) -> None:

@@ -149,11 +149,11 @@ class Selection(Patience):
 
     def started_by(self, ab: AB, record: Record) -> None:
         """A start has the rule of its decision; inside a unit, without a decision, the unit's."""
-        told, shown = self.decision, record["behavior"]
+        decision, shown = self.decision, record["behavior"]
         if ab.unit is not None:
             expected = "U4" if ab.unit.name in self.groups else "U5"
-        elif told is not None and told["winner"] == shown:
-            expected = told["rule"]
+        elif decision is not None and decision["winner"] == shown:
+            expected = decision["rule"]
         else:
             return  # a missing decision is found elsewhere
         if record["rule"] != expected:
@@ -161,17 +161,17 @@ class Selection(Patience):
 
     def decided_rightly(self, ab: AB, shown: str) -> None:
         """The ``decision`` before a start: its losers, and the rule that decided."""
-        told, self.decision = self.decision, None
-        if told is None or told["winner"] != shown:
+        decision, self.decision = self.decision, None
+        if decision is None or decision["winner"] != shown:
             self.report(13, "S2", f"{shown} starts, but nobody has decided so")
             return
         rivals = [other for other in self.competing(ab) if self.could_start(other, ab)]
         needed = {other.shown for other in rivals if self._keeps_from(ab, other)}
-        self._losers_told_rightly(ab, shown, told, needed)
-        named = {*told["losers"], *needed}
+        self._losers_told_rightly(ab, shown, decision, needed)
+        named = {*decision["losers"], *needed}
         rivals = [other for other in rivals if other.shown in named]
         self._rule_told_rightly(
-            ab, shown, told["rule"], rivals or self._perhaps(ab, told["losers"])
+            ab, shown, decision["rule"], rivals or self._perhaps(ab, decision["losers"])
         )
 
     def _perhaps(self, ab: AB, losers: Sequence[str]) -> list[AB]:
@@ -183,15 +183,15 @@ class Selection(Patience):
         """S1: whether two cannot run at once."""
         return bool(other.devices & ab.devices) and not self.composes(ab, other)
 
-    def _losers_told_rightly(self, ab: AB, shown: str, told: Record, needed: set[str]) -> None:
+    def _losers_told_rightly(self, ab: AB, shown: str, decision: Record, needed: set[str]) -> None:
         """S2: the losers could have started; all are named, up to the limit."""
-        losers, count = set(told["losers"]), told["losers_count"]
+        losers, count = set(decision["losers"]), decision["losers_count"]
         allowed = {other.shown for other in self.competing(ab) if self.kept_by_s3(other)}
         if strangers := losers - allowed:
             text = f"{shown} is said to start before {self.ordered(strangers)}"
             self.report(13, "S2", f"{text}, which could not have started")
         elif count <= MANY and (needed - losers or len(losers) != count):
-            text = f"{shown} is said to start before {told['losers']}"
+            text = f"{shown} is said to start before {decision['losers']}"
             self.report(13, "S2", f"{text}, {count}, not {self.ordered(needed)}")
         elif count > MANY and (len(losers) != MANY or not len(needed) <= count <= len(allowed)):
             self.report(13, "S2", f"{shown} is said to start before {count}, not {len(needed)}")

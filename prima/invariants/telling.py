@@ -42,7 +42,7 @@ class Telling(LeavingRules):
     def _told_as_requested(self, record: Record, name: str) -> None:
         request = self.requests[name]
         for field in SAME:
-            told = record.get(field)
-            if told is not None and told != request.get(field):
-                text = f"a {record['phase']} of {name} has the {field} {told}"
+            value = record.get(field)
+            if value is not None and value != request.get(field):
+                text = f"a {record['phase']} of {name} has the {field} {value}"
                 self.report(13, "U1", f"{text}, not {request.get(field)}")

@@ -56,25 +56,25 @@ class Chosen:
         """
         return LiveServices(load_services(self.services)[0] if self.services else (), web)
 
-    def told(self, folder: str) -> dict[str, Json]:
+    def recorded(self, folder: str) -> dict[str, Json]:
         """The same for a journal in a folder: paths from there, and the whole robot document."""
 
         def seen(path: str) -> str:
             return os.path.relpath(path, folder or ".")
 
-        told: dict[str, Json] = {"robot": seen(self.robot)} if self.robot else {}
+        recorded: dict[str, Json] = {"robot": seen(self.robot)} if self.robot else {}
         for name in ("scenario", "world", "services"):
             if path := getattr(self, name):
-                told[name] = seen(path)
+                recorded[name] = seen(path)
         for name, paths in (("fa", self.fas), ("ea", self.eas)):
             if paths:
-                told[name] = [seen(path) for path in paths]
+                recorded[name] = [seen(path) for path in paths]
         if self.maps:
             parts = (text.partition("=") for text in self.maps)
-            told["maps"] = [f"{uri}={seen(path)}" for uri, _, path in parts]
+            recorded["maps"] = [f"{uri}={seen(path)}" for uri, _, path in parts]
         if self.robot:
-            told["document"] = read_file(self.robot).decode("utf-8", "replace")
-        return told
+            recorded["document"] = read_file(self.robot).decode("utf-8", "replace")
+        return recorded
 
 
 def _check_owners(endpoints: Iterable[Endpoint], known: list[str]) -> None:
@@ -113,11 +113,11 @@ def chosen_then(head: Record, name: str) -> Chosen:
         raise UsageError(f"{name}: {message}")
     folder = os.path.dirname(name)
 
-    def path(told: Json) -> str:
-        return os.path.relpath(os.path.join(folder, str(told))) if told else ""
+    def path(recorded: Json) -> str:
+        return os.path.relpath(os.path.join(folder, str(recorded))) if recorded else ""
 
-    def paths(told: Json) -> tuple[str, ...]:
-        return tuple(path(one) for one in told) if isinstance(told, list) else ()
+    def paths(recorded: Json) -> tuple[str, ...]:
+        return tuple(path(one) for one in recorded) if isinstance(recorded, list) else ()
 
     parts = (str(one).partition("=") for one in live.get("maps") or ())
     return Chosen(

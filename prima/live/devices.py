@@ -143,10 +143,10 @@ class LiveDevices:
 
     def due(self) -> int | None:
         """When there is next something to collect, if known."""
-        told = None if self._told is None else max(self._told, self._last + 1)
+        reported = None if self._told is None else max(self._told, self._last + 1)
         return earliest(
             self._last + 1 if self._loads or self._entrances.unseen else None,
-            told,
+            reported,
             self.conductor.due(self._sees.visible),
             self._speech.too_long,
             self.services.due(),
@@ -212,29 +212,29 @@ class LiveDevices:
 
     # The drivers' side -------------------------------------------------------------------
 
-    def tell(self, driver: Driver, told: Report | News) -> None:
+    def tell(self, driver: Driver, report: Report | News) -> None:
         """Take a driver's news; reports on goals reach the conductor at once."""
         now = self._now()
-        if not isinstance(told, Accepted | Progress | Stopped) and self._told is None:
+        if not isinstance(report, Accepted | Progress | Stopped) and self._told is None:
             self._told = now
-        match told:
+        match report:
             case At():
-                self._at = told
+                self._at = report
             case Sees():
-                self._sees = told
-            case _ if isinstance(told, Report):
-                if isinstance(told, Lost):
+                self._sees = report
+            case _ if isinstance(report, Report):
+                if isinstance(report, Lost):
                     self.lost(driver)
-                    if EAR in told.devices:  # it will not report the end of an utterance
+                    if EAR in report.devices:  # it will not report the end of an utterance
                         self._news.append(Speaks(False))
-                if isinstance(told, Back):
+                if isinstance(report, Back):
                     self._failing.discard(driver)
-                if isinstance(told, Done | Stopped | Broke):
-                    self._routes.pop(told.key, None)
-                self.conductor.report(now, told)
+                if isinstance(report, Done | Stopped | Broke):
+                    self._routes.pop(report.key, None)
+                self.conductor.report(now, report)
                 self._carry_out()
             case _ if len(self._news) < MOST_NEWS:
-                self._news.append(told)
+                self._news.append(report)
             case _:
                 if driver not in self._flooding:
                     self._flooding.add(driver)

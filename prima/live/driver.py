@@ -168,12 +168,12 @@ class Driver:
     def tell(self, report: Report | News) -> None:
         """Report to the run, from its event loop; if no record can hold it, the robot is lost."""
         try:
-            told = well_formed(report)
+            checked = well_formed(report)
         except WRONG as error:
             self.lose(f"a report of the driver is wrong ({type(report).__name__}): {error}")
             return
-        if told is not None:
-            self._tell(told)
+        if checked is not None:
+            self._tell(checked)
 
     def post(self, report: Report | News) -> None:
         """Report to the run from another thread. After the run's end it is dropped."""

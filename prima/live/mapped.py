@@ -10,7 +10,7 @@ from prima.devices import voice
 from prima.devices.goals import LISTEN, SAY, At, Begin
 from prima.devices.settings import Does, Senses
 from prima.live.driver import Refused, TaskDriver, call_in, speaks
-from prima.live.told import Teller
+from prima.live.reports import SenseReports
 from prima.messages import Json
 
 DEGREES: Final = ("angle", "heading", "pan", "tilt", "down", "turn", "turn-speed")
@@ -30,7 +30,7 @@ class MappedDriver(TaskDriver):
     gone: bool = True
     """Whether there is no connection."""
     _at: At | None = None
-    _teller: Teller | None = None
+    _reports: SenseReports | None = None
     _flush: asyncio.TimerHandle | None = None
 
     # Goals ----------------------------------------------------------------------------------
@@ -113,8 +113,8 @@ class MappedDriver(TaskDriver):
 
     def sense(self, senses: Senses, message: Json) -> None:
         """Take a message of the robot. Frequent values are reported at regular times."""
-        self._teller = self._teller or Teller()
-        self._teller.take(senses, message)
+        self._reports = self._reports or SenseReports()
+        self._reports.take(senses, message)
         if senses.what not in OFTEN:
             self._tell_sensed()
         elif self._flush is None:
@@ -125,7 +125,7 @@ class MappedDriver(TaskDriver):
         if self._flush is not None:
             self._flush.cancel()
             self._flush = None
-        for news in self._teller.drain() if self._teller is not None else ():
+        for news in self._reports.drain() if self._reports is not None else ():
             if isinstance(news, At):
                 self._at = news
             self.tell(news)

@@ -178,7 +178,7 @@ class Preflight:
         self._tell(usual < LATE_S, "clock", f"ticks were {_ms(max(usual, 0))} late")
 
     async def _opens(self, driver: Driver) -> bool:
-        def told(report: Report | News) -> None:
+        def attend(report: Report | News) -> None:
             if isinstance(report, Lost):
                 for queue in self._reports.values():
                     queue.put_nowait(report)
@@ -187,7 +187,7 @@ class Preflight:
                 if waiting is not None:
                     waiting.put_nowait(report)
 
-        driver.attach(told, self._now)
+        driver.attach(attend, self._now)
         began = monotonic()
         try:
             await open_driver(driver)

@@ -319,6 +319,6 @@ def _why(use: RosUse, outcome: Outcome) -> str:
     return _reason(outcome.result) or f"{use} has given it up"
 
 
-def _reason(told: dict[str, Json]) -> str:
-    said = (str(told.get(name) or "") for name in REASONS)
+def _reason(answer: dict[str, Json]) -> str:
+    said = (str(answer.get(name) or "") for name in REASONS)
     return next((one for one in said if one), "")

@@ -185,9 +185,9 @@ def begin(chosen: Chosen, settings: LiveSettings, output: str | None) -> Visit:
         loaded.problems += uncarried(cast.robot, loop.devices.drivers, cast.documents)
     if settings.until is not None:
         loop.until = settings.until
-    told = chosen.told(os.path.dirname(output or ""))
+    recorded = chosen.recorded(os.path.dirname(output or ""))
     patience = cast.scenario.patience if settings.patience is None else settings.patience
-    head = run_record(loaded, name, settings.bound, patience, {"live": told})
+    head = run_record(loaded, name, settings.bound, patience, {"live": recorded})
     journal = Journal(output, settings.sync) if output is not None else None
     record_beside(loop, journal, settings)
     return Visit(loop, Clock(settings.speed), settings, head, loaded, journal)

@@ -24,7 +24,7 @@ REASON = 4_000
 """Characters of a reason above which its middle is left out: a library may give a whole page."""
 
 
-def well_formed(told: Report | News) -> Report | News | None:
+def well_formed(report: Report | News) -> Report | News | None:
     """A driver's report in a form that records can hold.
 
     A measurement that is NaN or infinite becomes None. A pose that contains one is not reported
@@ -33,46 +33,46 @@ def well_formed(told: Report | News) -> Report | News | None:
     Raises:
         TypeError, ValueError, OverflowError, RecursionError: no record can hold it.
     """
-    return _report(told) if isinstance(told, Report) else _news(told)
+    return _report(report) if isinstance(report, Report) else _news(report)
 
 
-def _report(told: Report) -> Report:
-    match told:
+def _report(report: Report) -> Report:
+    match report:
         case Done():
-            return Done(told.key, _data(told.data))
+            return Done(report.key, _data(report.data))
         case Stopped():
-            return Stopped(told.key, _number(told.share), told.said)
+            return Stopped(report.key, _number(report.share), report.said)
         case Broke():
             return Broke(
-                told.key, _text(told.device), brief(_text(told.reason), REASON), told.lacks
+                report.key, _text(report.device), brief(_text(report.reason), REASON), report.lacks
             )
         case Lost():
-            return Lost(told.devices, brief(_text(told.reason), REASON))
-    return told
+            return Lost(report.devices, brief(_text(report.reason), REASON))
+    return report
 
 
-def _news(told: News) -> News | None:
-    match told:
+def _news(news: News) -> News | None:
+    match news:
         case Sensed():
-            return Sensed(_data(told.values))
+            return Sensed(_data(news.values))
         case Sees():
-            return Sees(bool(told.visible), _number(told.distance), _number(told.angle))
+            return Sees(bool(news.visible), _number(news.distance), _number(news.angle))
         case At():
-            return told if all(map(isfinite, (told.x, told.y, told.heading))) else None
+            return news if all(map(isfinite, (news.x, news.y, news.heading))) else None
         case Heard():
-            data = _data(told.data)
+            data = _data(news.data)
             if "lasted" in data:
                 raise ValueError("how long it lasted is not among its data: Heard(text, data, ms)")
-            return Heard(_short(told.text), data, int(told.lasted))
+            return Heard(_short(news.text), data, int(news.lasted))
         case Occurred():
-            _check_actor(told.actor, OCCURRED)
-            if (told.name, told.actor) == ("speech", "user"):
+            _check_actor(news.actor, OCCURRED)
+            if (news.name, news.actor) == ("speech", "user"):
                 raise ValueError("report the user's words by Heard(text)")
-            return Occurred(_short(told.name), told.actor, _data(told.data), told.app)
+            return Occurred(_short(news.name), news.actor, _data(news.data), news.app)
         case Narrated():
-            _check_actor(told.actor, NARRATED)
-            return Narrated(told.actor, _short(told.text))
-    return told
+            _check_actor(news.actor, NARRATED)
+            return Narrated(news.actor, _short(news.text))
+    return news
 
 
 def _check_actor(actor: str, actors: frozenset[str]) -> None:

@@ -127,11 +127,11 @@ def load_whole(path: Path, data: bytes, whole: bool = False, robot: str = "") ->
     from prima.sim.rehearsal import check_cast, check_names
     from prima.sim.scenario import look_at_scenario
 
-    scenario, told = look_at_scenario(str(path), data)
+    scenario, found = look_at_scenario(str(path), data)
     if robot:
         read_robot(robot, read_file(robot))  # what is wrong with it is not the scenario's fault
         scenario.robot = os.path.relpath(robot, path.parent)
-    reading = Reading(path, {path.name: digest(data)}, [*told], whole=whole)
+    reading = Reading(path, {path.name: digest(data)}, [*found], whole=whole)
     reading.applications(scenario)
     reading.users(scenario)
     world, profile = reading.surroundings(scenario)
@@ -148,7 +148,7 @@ def load_whole(path: Path, data: bytes, whole: bool = False, robot: str = "") ->
         raise DocumentError(in_order([*reading.problems, *names]))
     cast = Cast(scenario, reading.documents, world, profile, offers)
     problems = in_order([*reading.problems, *check_cast(cast)])
-    if not has_errors(told):
+    if not has_errors(found):
         problems = in_order([*problems, *check_hearing(cast)])
     if has_errors(problems):
         raise DocumentError(problems)

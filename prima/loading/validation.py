@@ -86,7 +86,7 @@ class Validation:
 
     def ignored(self) -> list[Problem]:
         """The problems of ignores in the documents checked: no reason, or nothing to ignore."""
-        return in_order(self._ignores.told())
+        return in_order(self._ignores.problems())
 
 
 def _validate_one(path: str, maps: Mapping[str, str]) -> list[Problem]:

@@ -146,11 +146,13 @@ class _Fetching:
     def wait(self) -> Fetched | None:
         """The answer; None if there is none by the deadline."""
         began = time.monotonic()
-        told = self.done.wait(max(self.ends - began, 0)) and self.found is not None
-        self.hosts.took(self.app, self.uri, time.monotonic() - began, self.size if told else None)
-        if not told:
+        answered = self.done.wait(max(self.ends - began, 0)) and self.found is not None
+        self.hosts.took(
+            self.app, self.uri, time.monotonic() - began, self.size if answered else None
+        )
+        if not answered:
             self.close()
-        return self.found if told else None
+        return self.found if answered else None
 
     def run(self, method: str, values: Data) -> None:
         """Send the request, and keep the answer or the error."""
@@ -263,8 +265,8 @@ def end_connections(held: Iterable[socket.socket]) -> None:
 
 def silence(reason: object) -> str:
     """Why a host does not answer, from an error of urllib."""
-    told = str(reason)
-    return told if isinstance(reason, ValueError) else f"the host does not answer: {told}"
+    sentence = str(reason)
+    return sentence if isinstance(reason, ValueError) else f"the host does not answer: {sentence}"
 
 
 class _Stays(HTTPRedirectHandler):

@@ -192,14 +192,14 @@ def _script(code: str, tag: ScannedTag) -> Iterator[Mark]:
     if len(inner) > LONGEST_CODE:
         return
     home, names = _home("variable", tag), script_names(inner)
-    told: set[str] = set()
+    defined: set[str] = set()
     for use in names.uses:
         name, at = use.name, tag.end + use.start
         if use.holder or name in KNOWN:
             continue
-        defines = name in names.declared and name not in told
+        defines = name in names.declared and name not in defined
         yield Mark(("variable",), name, at, at + len(name), defines, tag, home)
-        told.add(name)
+        defined.add(name)
 
 
 def _given(page: ScannedText, tag: ScannedTag, attr: Attr) -> Iterator[Mark]:

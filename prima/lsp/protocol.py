@@ -76,11 +76,11 @@ class Protocol(LanguageServerProtocol):
         except (JsonRpcException, ValueError) as error:
             if not is_request:
                 raise
-            told = f"Wrong parameters of {data['method'][:80]}."
-            raise self.refused(asked, JsonRpcInvalidParams(told)) from error
+            sentence = f"Wrong parameters of {data['method'][:80]}."
+            raise self.refused(asked, JsonRpcInvalidParams(sentence)) from error
         if is_request and not hasattr(message, "id"):
-            told = f"{data['method']} is a notification: it has no id."
-            raise self.refused(asked, JsonRpcInvalidRequest(told))
+            sentence = f"{data['method']} is a notification: it has no id."
+            raise self.refused(asked, JsonRpcInvalidRequest(sentence))
         return message
 
     def handle_message(self, message: Any) -> None:
@@ -110,8 +110,8 @@ class Protocol(LanguageServerProtocol):
     def refused(self, asked: Any, error: JsonRpcException) -> JsonRpcException:
         """Answer a request, by its id (perhaps none), with an error, and return that."""
         known = asked if isinstance(asked, IDS) else None
-        told = {"code": error.code, "message": error.message}
-        self._send_data({"jsonrpc": self.VERSION, "id": known, "error": told})
+        details = {"code": error.code, "message": error.message}
+        self._send_data({"jsonrpc": self.VERSION, "id": known, "error": details})
         return error
 
 
@@ -216,7 +216,7 @@ class Server(LanguageServer):
 
     def problems(self, file: Path) -> list[Problem]:
         """All problems of a file, from all validated documents."""
-        return [one for told in self.reported.values() for one in told.get(file, ())]
+        return [one for by_file in self.reported.values() for one in by_file.get(file, ())]
 
     def publish(self, file: Path) -> None:
         """Publish all problems of a file."""

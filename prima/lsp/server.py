@@ -115,11 +115,11 @@ def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:
     path = path_of(params.text_document.uri)
     if path is None or path not in server.documents.open:
         return
-    told = server.reported.pop(path, {})
+    reported = server.reported.pop(path, {})
     concerned = server.concerned(path)
     uri = server.documents.uri(path)
     server.documents.drop(params.text_document.uri)
-    for file in {path, *told}:
+    for file in {path, *reported}:
         server.publish(file)
     if uri != server.documents.uri(path):
         server.text_document_publish_diagnostics(lsp.PublishDiagnosticsParams(uri, []))

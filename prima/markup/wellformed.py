@@ -115,8 +115,8 @@ def explain(source: Source, vocabularies: Sequence[Vocabulary]) -> None:
     try:
         root = etree.fromstring(source.text.encode(), parser)
     except etree.XMLSyntaxError as error:
-        told = _misspelt(source, error, vocabularies)
-        raise told or _syntax_error(source, error, vocabularies) from None
+        misspelt = _misspelt(source, error, vocabularies)
+        raise misspelt or _syntax_error(source, error, vocabularies) from None
     dtd = root.getroottree().docinfo.internalDTD
     if dtd is not None and (dtd.entities() or dtd.elements()):  # type: ignore[union-attr]
         raise refusal(Place(source.file), "doctype", "A DOCTYPE may not declare anything itself.")
@@ -198,9 +198,9 @@ def _syntax_error(
         return too_deep(place)
     if message.startswith("Entity '"):
         name = message.split("'")[1]
-        told = f"The entity &{name}; is not known: documents declare none."
+        sentence = f"The entity &{name}; is not known: documents declare none."
         remedy = "Write the character itself; only &amp; &lt; &gt; &quot; &apos; are needed."
-        return refusal(_beginning(source, place, message), "entity", told, remedy)
+        return refusal(_beginning(source, place, message), "entity", sentence, remedy)
     return _not_well_formed(source, place, message, vocabularies)
 
 
@@ -208,12 +208,12 @@ def _not_well_formed(
     source: Source, place: Place, message: str, vocabularies: Sequence[Vocabulary]
 ) -> DocumentError:
     """The error for a mistake reported by the parser, with a closer place and plainer words."""
-    told, remedy = _translated(PLAINER, message) or message, _translated(REMEDIES, message)
+    sentence, remedy = _translated(PLAINER, message) or message, _translated(REMEDIES, message)
     fixes: tuple[Fix, ...] = ()
     quote = _open_quote(source, place) if "'<' not allowed in attributes" in message else None
     if quote:
         place = quote
-        told, remedy = "a quote that is opened here is not closed", "Write the other quote."
+        sentence, remedy = "a quote that is opened here is not closed", "Write the other quote."
     else:
         place = _beginning(source, place, message)
         wide = WIDE.get(_line(source, place.line)[place.column - 1 : place.column])
@@ -227,8 +227,8 @@ def _not_well_formed(
             fixes = _closed(source, place, unclosed[1])
     if TEMPLATE.search(source.text):
         remedy, fixes = "A server makes the document from this: run what it makes.", ()
-    told = f"This is not well-formed XML: {told.rstrip('.')}."
-    return refusal(place, "not-xml", told, Hint(remedy, fixes))
+    sentence = f"This is not well-formed XML: {sentence.rstrip('.')}."
+    return refusal(place, "not-xml", sentence, Hint(remedy, fixes))
 
 
 def _translated(table: Iterable[tuple[str, str]], message: str) -> str:

@@ -97,24 +97,26 @@ class Heard:
     def hypotheses(self) -> list[Hypothesis]:
         """The hypotheses, likeliest first; equal ones in the given order."""
         others = self.data.get("alternatives")
-        told = [one for one in others if isinstance(one, dict)] if isinstance(others, list) else []
+        hypotheses = (
+            [one for one in others if isinstance(one, dict)] if isinstance(others, list) else []
+        )
         found = [Hypothesis(self.text, _confidence(self.data))]
-        found += [Hypothesis(str(one.get("text", "")), _confidence(one)) for one in told]
+        found += [Hypothesis(str(one.get("text", "")), _confidence(one)) for one in hypotheses]
         return sorted(found, key=lambda one: -one.confidence)
 
     def filled(self, answer: Understood) -> dict[str, Json]:
         """The data of the end of a question that it answers."""
-        told = {name: value for name, value in self.data.items() if name != "alternatives"}
-        if "confidence" in told or answer.utterance != self.text:
-            told["confidence"] = answer.confidence
-        return {"outcome": "filled", "utterance": answer.utterance, "value": answer.value, **told}
+        data = {name: value for name, value in self.data.items() if name != "alternatives"}
+        if "confidence" in data or answer.utterance != self.text:
+            data["confidence"] = answer.confidence
+        return {"outcome": "filled", "utterance": answer.utterance, "value": answer.value, **data}
 
 
 def _confidence(data: Data) -> float:
     """A recogniser's confidence, 0 to 1; 1 if it does not report one."""
-    told = data.get("confidence")
-    sure = isinstance(told, int | float) and not isinstance(told, bool) and 0 <= told <= 1
-    return float(told) if sure and told is not None else 1.0
+    given = data.get("confidence")
+    sure = isinstance(given, int | float) and not isinstance(given, bool) and 0 <= given <= 1
+    return float(given) if sure and given is not None else 1.0
 
 
 @dataclass(slots=True)

@@ -42,8 +42,8 @@ def page_data(
 
 def _rules(view: View) -> set[str]:
     """The rules that rows and reasons name."""
-    told = [one for why in view.whys for one in why.get("told", [])]
-    return {row.rule for row in view.rows} | {one[2] for one in told}
+    explained = [one for why in view.whys for one in why.get("reasons", [])]
+    return {row.rule for row in view.rows} | {one[2] for one in explained}
 
 
 def _run(view: View, shades: dict[str, int]) -> dict[str, Any]:

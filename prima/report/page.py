@@ -101,19 +101,19 @@ def _figure(index: int, runs: int) -> str:
 
 def _map(view: View, index: int, runs: int) -> str:
     if view.walk.source == "run":
-        told = "Places as the simulation had them when the run was made again."
+        caption = "Places as the simulation had them when the run was made again."
     elif view.walk.plan is not None:
-        told = (
+        caption = (
             "The run could not be made again alike, so only the places that the robot"
             " reported are shown; between them its way is a straight line."
         )
     elif view.walk.robot:
-        told = (
+        caption = (
             "Only the places that the robot reported: a transcript holds neither the map nor"
             " the user's way. prima report with --scenario shows both."
         )
     else:
-        told = (
+        caption = (
             "The robot reported no places in this run."
             " prima report with --scenario shows the map and the user."
         )
@@ -121,7 +121,7 @@ def _map(view: View, index: int, runs: int) -> str:
     frame = f'<div class="map" id="map-{index}"></div>' if drawn else ""
     label = f"<h3>{_named(index, runs)}</h3>" if runs > 1 else ""
     return (
-        f'<div class="place">{label}{frame}<p class="told">{told}</p>'
+        f'<div class="place">{label}{frame}<p class="note">{caption}</p>'
         f'<h3 class="now-head">At <span class="clock"></span></h3>'
         f'<ul class="now" id="now-{index}"></ul></div>\n'
     )
@@ -265,8 +265,8 @@ def _badge(kind: str) -> str:
 def _change(views: Sequence[View], shades: dict[str, int], index: int, change: Change) -> str:
     row, view = change.after or change.before, views[1 if change.after else 0]
     assert row is not None
-    told = remark(change)
-    said = f' <span class="remark">({text(told)})</span>' if told else ""
+    note = remark(change)
+    said = f' <span class="remark">({text(note)})</span>' if note else ""
     label = _badge(change.kind) if change.kind != "same" else '<span class="kind">same</span>'
     return _row(
         index,

@@ -549,7 +549,7 @@
       point() {
         const time = Math.min(state.now, run.seconds);
         const pose = poseAt(robot, time), user = poseAt(person, time);
-        const told = [];
+        const shown = [];
         if (pose) {
           const [x, y, heading] = [X(pose[0]), Y(pose[1]), (pose[2] * Math.PI) / 180];
           figure.setAttribute("cx", x.toFixed(1));
@@ -565,23 +565,23 @@
             const edge = (turn) => `${(x + Math.cos(heading + turn) * range).toFixed(1)} ${(y - Math.sin(heading + turn) * range).toFixed(1)}`;
             cone.setAttribute("d", `M${x.toFixed(1)} ${y.toFixed(1)}L${edge(angle)}A${range.toFixed(1)} ${range.toFixed(1)} 0 0 1 ${edge(-angle)}Z`);
           }
-          told.push(`the robot is at ${pose[0].toFixed(1)}, ${pose[1].toFixed(1)}`);
+          shown.push(`the robot is at ${pose[0].toFixed(1)}, ${pose[1].toFixed(1)}`);
         }
         if (user) {
           const [x, y] = [X(user[0]), Y(user[1])];
           other.setAttribute("d", `M${x.toFixed(1)} ${(y - 7).toFixed(1)}l7 12h-14z`);
           names[1].setAttribute("x", x.toFixed(1));
           names[1].setAttribute("y", (y + 17).toFixed(1));
-          told.push(`the user is at ${user[0].toFixed(1)}, ${user[1].toFixed(1)}`);
+          shown.push(`the user is at ${user[0].toFixed(1)}, ${user[1].toFixed(1)}`);
         }
-        svg.setAttribute("aria-label", `Map in metres: ${told.join("; ") || "nobody is on it"}.`);
+        svg.setAttribute("aria-label", `Map in metres: ${shown.join("; ") || "nobody is on it"}.`);
       },
     };
   });
 
   // Now --------------------------------------------------------------------------------------------
 
-  const told = runs.map(() => "");
+  const shown = runs.map(() => "");
   function tellNow(index) {
     const run = runs[index], now = state.now;
     const during = (bar) => bar[BEGIN] <= now && (now < bar[END] || (bar[END] === run.seconds && now === bar[END]));
@@ -595,8 +595,8 @@
     if (!items.length) list.push(make("li", { class: "dim" }, now >= run.seconds ? "The run is over." : "The robot does nothing."));
     if (number >= 0) list.push(make("li", { class: "dim" }, `Last, at ${seconds(run.rows[number][0])}: `, linkTo(index, number, spoken(index, number))));
     const text = list.map((one) => one.textContent).join("\n");
-    if (text === told[index]) return;
-    told[index] = text;
+    if (text === shown[index]) return;
+    shown[index] = text;
     find(`now-${index}`).replaceChildren(...list);
   }
 
@@ -685,9 +685,9 @@
       made.append(make("p", {}, "It reacts to ", linkTo(index, why.cause, `row ${why.cause}`), ": ", spoken(index, why.cause), "."));
     }
     const list = make("ul", {});
-    for (const [when, text, rule, rivals] of why.told || []) {
+    for (const [when, text, rule, rivals] of why.reasons || []) {
       const item = make("li", {}, `${seconds(when)}: ${text}`);
-      if (Object.hasOwn(data.rules, rule)) item.append(make("div", { class: "told" }, `${rule}: ${data.rules[rule]}.`));
+      if (Object.hasOwn(data.rules, rule)) item.append(make("div", { class: "note" }, `${rule}: ${data.rules[rule]}.`));
       if (rivals.length) {
         const others = make("ul", {});
         for (const name of rivals) {
@@ -710,7 +710,7 @@
     if (waits.length) {
       made.append(make("p", {}, "What waits at that moment:"), make("ul", {}, ...waits.map((text) => make("li", {}, text))));
     }
-    if (!why.outside && !why.source && !why.told && !waits.length) made.append(make("p", {}, "The transcript holds no decision about it."));
+    if (!why.outside && !why.source && !why.reasons && !waits.length) made.append(make("p", {}, "The transcript holds no decision about it."));
     return made;
   }
 

@@ -113,7 +113,7 @@ def _facts(run: Run) -> list[tuple[str, str]]:
     last = run.entries[-1]
     outcome = last.outcome if last.phase == "over" else ""
     end = ENDS.get(outcome, outcome) if outcome else "the transcript is cut off"
-    told = [
+    facts = [
         ("Scenario", _short(head.get("scenario"))),
         ("Policy", _short(head.get("policy"))),
         ("Bound (E4)", _short(head.get("bound"))),
@@ -124,7 +124,7 @@ def _facts(run: Run) -> list[tuple[str, str]]:
         ("PRIMA", _short(head.get("version"))),
         ("Length", f"{last.time:.2f} s; {_short(end)}"),
     ]
-    return [(name, value) for name, value in told if value]
+    return [(name, value) for name, value in facts if value]
 
 
 def _measures(run: Run) -> list[tuple[str, str, str]]:
@@ -209,15 +209,17 @@ def _whys(run: Run, rows: Sequence[Row]) -> tuple[list[dict[str, Json]], dict[st
     whys: list[dict[str, Json]] = []
     names: dict[str, list[Json]] = {}
     for row in rows:
-        told = [_reason(reason, row) for reason in reasons(run, row, MOST_REASONS)]
-        whys.append(_why(run, row, events, told))
-        for name in chain.from_iterable(rivals for *_, rivals in told):
+        explained = [_reason(reason, row) for reason in reasons(run, row, MOST_REASONS)]
+        whys.append(_why(run, row, events, explained))
+        for name in chain.from_iterable(rivals for *_, rivals in explained):
             if name not in names:
                 names[name] = _named(name, run, first)
     return whys, names
 
 
-def _why(run: Run, row: Row, events: Mapping[int, int], told: Sequence[Json]) -> dict[str, Json]:
+def _why(
+    run: Run, row: Row, events: Mapping[int, int], explained: Sequence[Json]
+) -> dict[str, Json]:
     """The reasons of a row: its place in a document, the event behind it, and decisions."""
     asked = run.asked(row.behavior)
     why: dict[str, Json] = {}
@@ -227,8 +229,8 @@ def _why(run: Run, row: Row, events: Mapping[int, int], told: Sequence[Json]) ->
         why["outside"] = True
     if asked is not None and asked.cause and asked.cause in events:
         why["cause"] = events[asked.cause]
-    if told:
-        why["told"] = told
+    if explained:
+        why["reasons"] = explained
     return why
 
 

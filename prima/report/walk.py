@@ -92,13 +92,13 @@ def check_files(transcript: Transcript, loaded: Loaded) -> None:
     Raises:
         UsageError: it was not.
     """
-    told = transcript.run().head.get("files")
-    if not isinstance(told, dict) or not told:
+    digests = transcript.run().head.get("files")
+    if not isinstance(digests, dict) or not digests:
         message = "the transcript does not name its files; leave out --scenario."
         raise UsageError(f"{transcript.name}: {message}")
     for name, digest in loaded.files.items():
-        if digest != told.get(name) and digest not in told.values():
-            known = name in told
+        if digest != digests.get(name) and digest not in digests.values():
+            known = name in digests
             message = "has changed since" if known else "is not a file of"
             remedy = "Run it again, or leave out --scenario."
             raise UsageError(f"{name} {message} {transcript.name} was made. {remedy}" if known

@@ -95,11 +95,11 @@ class FactorColumn:
         names = self.distinct
         place = {name: index for index, name in enumerate(names)}
         codes = np.array([place[one] for one in self.words], dtype=np.int64)
-        told = [shown(one) or NOTHING for one in names]
+        labels = [shown(one) or NOTHING for one in names]
         if len(names) > most:
-            told = [*told[: most - 1], f"{len(names) - most + 1} others"]
+            labels = [*labels[: most - 1], f"{len(names) - most + 1} others"]
             codes = np.minimum(codes, most - 1)
-        return Levels(told, codes)
+        return Levels(labels, codes)
 
 
 @dataclass(slots=True)
@@ -207,9 +207,9 @@ def _numbers(column: Column, cells: Sequence[Any]) -> Values:
         except (TypeError, ValueError, OverflowError):
             value = np.inf
         if not abs(value) <= MOST_VALUE:
-            told = f'"{shown(str(cell))}" is not a number, or is too large'
+            wrong = f'"{shown(str(cell))}" is not a number, or is too large'
             name = visible(column.name[:LONGEST])
-            raise ValueError(f'row {index + 1}, column "{name}": {told}; mend the table.')
+            raise ValueError(f'row {index + 1}, column "{name}": {wrong}; mend the table.')
     return made
 
 
@@ -249,12 +249,12 @@ def number(value: float, digits: int = 4) -> str:
 
 def numbers(values: Sequence[float]) -> list[str]:
     """Different numbers with as many digits as it takes to tell them apart, at least four."""
-    told = [number(one) for one in values]
+    texts = [number(one) for one in values]
     for digits in range(5, MOST_DIGITS + 1):
-        if len(set(told)) == len(values):
+        if len(set(texts)) == len(values):
             break
-        told = [number(one, digits) for one in values]
-    return told
+        texts = [number(one, digits) for one in values]
+    return texts
 
 
 def probability(p: float) -> str:

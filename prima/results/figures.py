@@ -57,7 +57,7 @@ class Figure:
 
     name: str
     title: str
-    told: str
+    description: str
     width: float
     height: float
     parts: list[str]
@@ -69,7 +69,7 @@ class Figure:
 
     def inline(self) -> str:
         """The drawing as a part of a page."""
-        label = escape(visible(f"{self.title}. {self.told}"))
+        label = escape(visible(f"{self.title}. {self.description}"))
         return (
             f'<svg viewBox="0 0 {self.width:.0f} {self.height:.0f}" role="img"'
             f' aria-label="{label}">{"".join(self.parts)}</svg>'
@@ -78,8 +78,8 @@ class Figure:
     def whole(self) -> str:
         """The drawing as a file."""
         style = f"<style>{STYLE}</style>"
-        told = visible(self.told)
-        return picture(self.title, told, self.width, self.height, [style, *self.parts])
+        description = visible(self.description)
+        return picture(self.title, description, self.width, self.height, [style, *self.parts])
 
 
 class Scale:
@@ -125,14 +125,14 @@ def distribution(made: Distribution) -> Figure:
     axis = line(LEFT, y, WIDTH - RIGHT, y, "axis")
     by = ", ".join(panel.factor.name for panel in made.panels)
     whole = made.whole
-    told = (
+    description = (
         f"{whole.count} runs from {number(whole.least)} to {number(whole.most)}, mean"
         f" {number(whole.mean)} ({number(whole.low)} to {number(whole.high)})"
     )
-    told += f"; below by {by}" if by else ""
+    description += f"; below by {by}" if by else ""
     heading = f"{title}: {made.measure.column.description}"
     parts = [*grid, axis, *parts, *panels, *labels]
-    return Figure(made.measure.name, heading, told, WIDTH, y + 42, parts)
+    return Figure(made.measure.name, heading, description, WIDTH, y + 42, parts)
 
 
 def _bins(made: Distribution, scale: Scale, bottom: float) -> list[str]:
@@ -219,15 +219,17 @@ def orders(data: Data, made: OrderMap, factors: Sequence[FactorColumn]) -> Figur
     for place, order in enumerate(data.orders[:LISTED]):
         parts.append(box(14, y - 10, 14, 13, f"s{shade(place)}", 0))
         share = order.runs / len(data)
-        told = order.signature or "no order: the run did not end"
-        parts.append(text(34, y + 1, f"{order.label}: {told}, {order.runs} runs ({share:.1%})"))
+        signature = order.signature or "no order: the run did not end"
+        parts.append(
+            text(34, y + 1, f"{order.label}: {signature}, {order.runs} runs ({share:.1%})")
+        )
         y += 17
     if len(data.orders) > LISTED:
         parts.append(text(34, y + 1, f"and {len(data.orders) - LISTED} more", "small"))
         y += 17
     width = max(WIDTH, LEFT + CELL * len(names) + 90)
-    told = f"{len(data.orders)} orders in {len(data)} runs; in each cell the most frequent"
-    return Figure("orders", "Map of orders", told, width, y, parts)
+    description = f"{len(data.orders)} orders in {len(data)} runs; in each cell the most frequent"
+    return Figure("orders", "Map of orders", description, width, y, parts)
 
 
 def _cell(data: Data, made: OrderMap, index: int, x: float, y: float) -> list[str]:

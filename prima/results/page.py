@@ -95,8 +95,8 @@ def _constant(measures: list[MeasureColumn]) -> str:
     """The paragraph about measures that do not differ."""
     if not measures:
         return ""
-    told = ", ".join(_value(one) for one in measures)
-    return f'<p id="constant">The same in all runs, so neither drawn nor tested: {told}.</p>\n'
+    listed = ", ".join(_value(one) for one in measures)
+    return f'<p id="constant">The same in all runs, so neither drawn nor tested: {listed}.</p>\n'
 
 
 def _value(measure: MeasureColumn) -> str:
@@ -109,7 +109,7 @@ def _figure(index: int, made: Distribution) -> str:
     drawn = distribution(made)
     name = text(made.measure.name)
     missing = made.whole.missing
-    told = f"<p>{counted(missing, 'run')} without a value.</p>" if missing else ""
+    remark = f"<p>{counted(missing, 'run')} without a value.</p>" if missing else ""
     by_level = ""
     if made.panels:
         by_level = (
@@ -117,7 +117,7 @@ def _figure(index: int, made: Distribution) -> str:
         )
     return (
         f'<section aria-labelledby="m{index}"><h3 id="m{index}" tabindex="-1">{name}</h3>'
-        f"<p>{text(shown(made.measure.column.description))}</p>{told}"
+        f"<p>{text(shown(made.measure.column.description))}</p>{remark}"
         f'<figure><div class="scroll" tabindex="0" role="group" aria-label="Figure of {name}">'
         f"{drawn.inline()}</div></figure>{by_level}</section>\n"
     )

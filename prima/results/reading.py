@@ -256,15 +256,15 @@ def _columns(sheet: Sheet) -> list[Column]:
     known = {one.name: one for one in (*HEAD, *OUTCOMES, *MEASURES)}
     known |= {name: _measure(name, meaning) for name, meaning in MEANINGS.items()}
     data = _beside(sheet.path, DICTIONARY)
-    told = {one.name: one for one in _told(data or {})}
-    if not told:
+    own = {one.name: one for one in _told(data or {})}
+    if not own:
         sheet.notes.append(
             "There is no data dictionary beside the table: columns are known by their names, and"
             " those that no measure has are taken for factors."
         )
         return [known.get(name) or _guessed(name, sheet.cells[name]) for name in sheet.cells]
-    described = told | known | told
-    _note_missing(sheet, "The table lacks columns of its dictionary", told, sheet.cells)
+    described = own | known | own
+    _note_missing(sheet, "The table lacks columns of its dictionary", own, sheet.cells)
     _note_missing(
         sheet, "Columns that no dictionary describes are left out", sheet.cells, described
     )

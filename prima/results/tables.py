@@ -114,8 +114,8 @@ def _levels(factor: FactorColumn) -> str:
         if len(distinct) > 8:
             return " to ".join(numbers([distinct[0], distinct[-1]]))
         return ", ".join(numbers(distinct)) or "–"
-    told = ", ".join(f"“{shown(one)}”" if one else "(nothing)" for one in distinct[:8])
-    return told if len(distinct) <= 8 else f"{told}, and {len(distinct) - 8} more"
+    listed = ", ".join(f"“{shown(one)}”" if one else "(nothing)" for one in distinct[:8])
+    return listed if len(distinct) <= 8 else f"{listed}, and {len(distinct) - 8} more"
 
 
 def outcomes(data: Data) -> str:
@@ -221,11 +221,17 @@ def orders(data: Data, link: Link) -> str:
     rows = []
     for place, one in enumerate(data.orders[:LISTED]):
         address = link(one)
-        told = text(shown(one.signature)) if one.signature else "no order: the run did not end"
+        signature = text(shown(one.signature)) if one.signature else "no order: the run did not end"
         where = f'<a href="{text(address)}">transcript</a>' if address else "none"
         label = f'<span class="key fill{shade(place)}">{text(one.label)}</span>'
         rows.append(
-            (label, f"<code>{told}</code>", _share(one.runs, len(data)), text(one.first), where)
+            (
+                label,
+                f"<code>{signature}</code>",
+                _share(one.runs, len(data)),
+                text(one.first),
+                where,
+            )
         )
     heads = ("Order", "Signature", "Runs", "First run", "Transcript")
     return table("orders", "Orders, the most frequent first", heads, rows)
@@ -255,8 +261,10 @@ def _cell(data: Data, made: OrderMap, index: int, link: Link) -> str:
     place, runs, whole, distinct = found
     order = data.orders[place]
     address = link(order)
-    told = f"Order {order.label}, {runs} of {whole} runs"
+    title = f"Order {order.label}, {runs} of {whole} runs"
     label = text(order.label)
-    label = f'<a href="{text(address)}" aria-label="{text(told)}">{label}</a>' if address else label
+    label = (
+        f'<a href="{text(address)}" aria-label="{text(title)}">{label}</a>' if address else label
+    )
     more = f' <span class="more">+{distinct - 1}</span>' if distinct > 1 else ""
     return f'<td class="fill{shade(place)}">{label}{more}</td>'

@@ -70,13 +70,13 @@ def _tell(mediation: Mediation, lost: list[Behavior]) -> None:
 
     The rest of the same request goes on, if any of it has started or is yet to start.
     """
-    told = [ab for ab in lost if ab.run is not None and not (ab.silent or ab.app.gone)]
-    for ab in told:
+    notified = [ab for ab in lost if ab.run is not None and not (ab.silent or ab.app.gone)]
+    for ab in notified:
         assert ab.run is not None
         ab.run.left -= 1
-    for ab in told:
+    for ab in notified:
         assert ab.run is not None
-        mediation.tell(ab.app, None, *_notices(ab, ab.run, last=ab is told[-1]))
+        mediation.tell(ab.app, None, *_notices(ab, ab.run, last=ab is notified[-1]))
 
 
 def _notices(ab: Behavior, run: AwaitedRun, last: bool) -> list[Notice]:

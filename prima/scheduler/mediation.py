@@ -20,7 +20,7 @@ from prima.scheduler.robot_state import RobotState
 
 
 @dataclass(slots=True)
-class Told:
+class Delivery:
     """Notices for one application, to be handled in the window of ``stream`` if any (C3)."""
 
     app: str
@@ -65,7 +65,7 @@ class Mediation:
     """Whether the emergency stop is pressed (E5)."""
     orders: list[Order] = field(default_factory=list)
     """For the devices."""
-    told: deque[Told] = field(default_factory=deque)
+    deliveries: deque[Delivery] = field(default_factory=deque)
     """For the applications."""
     turns: list[tuple[str, Stream]] = field(default_factory=list)
     """Streams that wait ``suspended`` or have ``resumed``, to notify their applications (C2)."""
@@ -114,7 +114,7 @@ class Mediation:
 
     def tell(self, app: Application, stream: Stream | None, *notices: Notice) -> None:
         """Notify an application of what became of its Commands."""
-        self.told.append(Told(app.name, stream, list(notices)))
+        self.deliveries.append(Delivery(app.name, stream, list(notices)))
 
     def order(self, verb: Verb, ab: Behavior) -> None:
         """Tell the devices to stop an AB in some way."""

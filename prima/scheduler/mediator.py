@@ -2,7 +2,7 @@
 
 It has no clock, devices or documents. At each instant the caller reports first
 what has ended, then what has happened, calls :meth:`Mediator.select` once
-(rule V3), and drains the orders (for the devices), ``told`` (for the
+(rule V3), and drains the orders (for the devices), ``deliveries`` (for the
 applications) and the recorder's records. The rules are functions in the
 neighbouring modules, which this module calls.
 """
@@ -25,7 +25,7 @@ from prima.scheduler import (
     streams,
 )
 from prima.scheduler.behavior import Application, Behavior, Stream
-from prima.scheduler.mediation import Mediation, Told
+from prima.scheduler.mediation import Delivery, Mediation
 from prima.scheduler.policy import Policy
 from prima.scheduler.recorder import Recorder
 
@@ -86,13 +86,13 @@ class Mediator:
             case LeaveState():
                 requests.o3(self._all, app, asked)
 
-    def open_window(self, told: Told) -> None:
+    def open_window(self, delivery: Delivery) -> None:
         """C3: an application begins to handle a notice."""
-        streams.open_window(self._all, told)
+        streams.open_window(self._all, delivery)
 
-    def close_window(self, told: Told) -> None:
+    def close_window(self, delivery: Delivery) -> None:
         """C3: it has handled the notice."""
-        streams.close_window(self._all, told)
+        streams.close_window(self._all, delivery)
 
     # Devices and the user ---------------------------------------------------------------
 
@@ -202,9 +202,9 @@ class Mediator:
         return self._all.holds
 
     @property
-    def told(self) -> deque[Told]:
+    def deliveries(self) -> deque[Delivery]:
         """The notices not yet passed to applications."""
-        return self._all.told
+        return self._all.deliveries
 
     @property
     def orders(self) -> list[Order]:

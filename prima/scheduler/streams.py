@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from prima.messages import Request
 from prima.scheduler.behavior import Application, Behavior, Stream, application
-from prima.scheduler.mediation import Mediation, Told
+from prima.scheduler.mediation import Delivery, Mediation
 
 
 def opened(mediation: Mediation, stream: Stream) -> Stream:
@@ -38,18 +38,18 @@ def end_continuing(mediation: Mediation) -> None:
 # Windows (C3) -------------------------------------------------------------------------------
 
 
-def open_window(mediation: Mediation, told: Told) -> None:
+def open_window(mediation: Mediation, delivery: Delivery) -> None:
     """C3: while an application handles the end of its Command, its stream stays open."""
-    mediation.memory.apps[told.app].window = told.stream
-    if told.stream is not None:
-        mediation.recorder.stream("window", told.stream, "C3", outcome="open")
+    mediation.memory.apps[delivery.app].window = delivery.stream
+    if delivery.stream is not None:
+        mediation.recorder.stream("window", delivery.stream, "C3", outcome="open")
 
 
-def close_window(mediation: Mediation, told: Told) -> None:
+def close_window(mediation: Mediation, delivery: Delivery) -> None:
     """C3: the application now waits for something else."""
-    mediation.memory.apps[told.app].window = None
-    if told.stream is not None:
-        mediation.recorder.stream("window", told.stream, "C3", outcome="closed")
+    mediation.memory.apps[delivery.app].window = None
+    if delivery.stream is not None:
+        mediation.recorder.stream("window", delivery.stream, "C3", outcome="closed")
 
 
 # Floors (F1, F3) and suspension (C2) -----------------------------------------------------------

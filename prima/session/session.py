@@ -116,7 +116,7 @@ class Session:
         mediator = self.mediator
         if self._wiring.due or mediator.memory.behaviors or mediator.holds:
             self._time_out(now)
-        if mediator.told:
+        if mediator.deliveries:
             self._wiring.settle()
         orders: list[Order] = []
         if mediator.changed:  # otherwise it has not given any orders either
@@ -339,7 +339,7 @@ class Session:
 
 def place_data(value: ApplicationLoaded | ApplicationUnloaded) -> dict[str, Json] | None:
     """A record's data on an application that a place loads or unloads, or that has a caller."""
-    told: dict[str, Json] = {"place": value.place} if value.place else {}
+    data: dict[str, Json] = {"place": value.place} if value.place else {}
     if isinstance(value, ApplicationLoaded) and value.connection:
-        told["connection"] = dict(value.connection)
-    return told or None
+        data["connection"] = dict(value.connection)
+    return data or None

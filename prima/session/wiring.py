@@ -25,7 +25,7 @@ from prima.messages import (
     line_of,
 )
 from prima.scheduler.behavior import Stream
-from prima.scheduler.mediation import Told
+from prima.scheduler.mediation import Delivery
 from prima.scheduler.mediator import Mediator
 from prima.scheduler.recorder import Recorder
 from prima.session.applications import AnyApp, Applications
@@ -69,21 +69,21 @@ class Wiring:
 
     def settle(self) -> None:
         """Notify applications of what became of their Commands, until no notices are left."""
-        told_queue = self.mediator.told
-        while told_queue:
-            told = told_queue.popleft()
-            self._tell(told)
+        deliveries = self.mediator.deliveries
+        while deliveries:
+            delivery = deliveries.popleft()
+            self._tell(delivery)
 
-    def _tell(self, told: Told) -> None:
-        app = self.apps.named[told.app]
+    def _tell(self, delivery: Delivery) -> None:
+        app = self.apps.named[delivery.app]
         if app.over:
             return
-        self.mediator.open_window(told)
-        for notice in told.notices:
+        self.mediator.open_window(delivery)
+        for notice in delivery.notices:
             with self.apps.contained(app):
                 app.notice(self.recorder.now, notice)
             self.act(app)
-        self.mediator.close_window(told)
+        self.mediator.close_window(delivery)
 
     def note_turns(self) -> None:
         """Keep the streams that wait suspended or have resumed and whose application handles it."""
@@ -103,12 +103,12 @@ class Wiring:
         turns, self.turns = self.turns, []
         for name, stream in turns:
             app = self.apps.named[stream.app.name]
-            told = Told(app.name, stream if stream.open else None, [])
-            self.mediator.open_window(told)
+            delivery = Delivery(app.name, stream if stream.open else None, [])
+            self.mediator.open_window(delivery)
             with self.apps.contained(app):
                 app.event(self.recorder.now, Event(name, 0, {}, reactive=False, shared=True))
             self.act(app)
-            self.mediator.close_window(told)
+            self.mediator.close_window(delivery)
 
     def own_event(self, app: AnyApp, name: str, data: dict[str, Json], reactive: bool) -> None:
         """Handle an event that one application alone has defined, and the actions it causes."""

@@ -103,7 +103,7 @@ class Body:
     def broke(self, device: str, hangs: bool) -> list[Report]:
         """A device fails, with the goals on it (E1); or it hangs and no longer reports."""
         self.broken[device] = hangs
-        told: list[Report] = []
+        reports: list[Report] = []
         for effort in [one for one in self.efforts.values() if device in one.begin.devices]:
             if device == "locomotion" and effort.lost:
                 continue
@@ -112,8 +112,8 @@ class Body:
                 effort.ends = effort.tick = effort.control = None
             else:
                 self._forget(effort)
-                told.append(Broke(effort.begin.key, device, FAILS))
-        return told
+                reports.append(Broke(effort.begin.key, device, FAILS))
+        return reports
 
     def _begin(self, now: int, begin: Begin) -> None:
         effort = self.efforts[begin.key] = Effort(begin, now)

@@ -181,15 +181,15 @@ def _said(reader: Reader, node: Node) -> Doing:
         message = f"<{node.tag}> holds no words: the user stays silent."
         remedy = f"Write the words into it, or remove <{node.tag}>."
         reader.problem(node, "empty", message, "", remedy, "warning")
-    return Doing("say", node.text, {"told": _recognised(reader, node)})
+    return Doing("say", node.text, {"report": _recognised(reader, node)})
 
 
 def _recognised(reader: Reader, node: Node) -> dict[str, Json]:
     """The recogniser's report of the user's words (:class:`prima.messages.Heard`)."""
-    told: dict[str, Json] = {}
+    report: dict[str, Json] = {}
     sure = reader.get(node, "confidence")
     if "confidence" in node.attributes:
-        told["confidence"] = sure
+        report["confidence"] = sure
     others = [(one.text, reader.get(one, "confidence")) for one in node.all("alternative")]
     for one, (_, less) in zip(node.all("alternative"), others, strict=True):
         if None not in (sure, less) and less > sure:
@@ -197,9 +197,9 @@ def _recognised(reader: Reader, node: Node) -> dict[str, Json]:
             remedy = "Put the likeliest words first."
             reader.problem(one, "out-of-range", message, "confidence", remedy)
     if others:
-        told["confidence"] = sure
-        told["alternatives"] = [{"text": text, "confidence": less} for text, less in others]
-    return told
+        report["confidence"] = sure
+        report["alternatives"] = [{"text": text, "confidence": less} for text, less in others]
+    return report
 
 
 def check_where(reader: Reader, node: Node, name: str, what: str, needed: bool = True) -> None:

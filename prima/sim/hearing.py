@@ -71,8 +71,8 @@ def check_hearing(cast: Cast) -> list[Problem]:
     if pages:
         return problems  # what a VoiceXML application accepts is known only at run time
     problems += _services(events, cast)
-    told = {one.place for one in corners}
-    triggers = [one for one in _triggers(nodes, events, cast) if one.place not in told]
+    places = {one.place for one in corners}
+    triggers = [one for one in _triggers(nodes, events, cast) if one.place not in places]
     return [*problems, *_unheard(nodes, events), *triggers]
 
 

@@ -44,7 +44,7 @@ class TriggeredScript:
     """When they began to speak."""
     lasts: int = field(default=0, compare=False)
     """How long (ms) they speak."""
-    told: dict[str, Json] = field(default_factory=dict, compare=False)
+    report: dict[str, Json] = field(default_factory=dict, compare=False)
     """The report if it is recorded."""
 
 
@@ -161,9 +161,9 @@ class People:
         made: list[Inbound] = []
         while script.time <= now:
             if script.speaking:
-                told = {**self.robot.conductor.marks_passed(script.began), **script.told}
-                told |= self._by(script.who)
-                made.append(Heard(script.speaking, told, now - script.began))
+                report = {**self.robot.conductor.marks_passed(script.began), **script.report}
+                report |= self._by(script.who)
+                made.append(Heard(script.speaking, report, now - script.began))
                 script.speaking = ""
                 self.robot.ear.speech_ends()
             if not script.left:
@@ -191,7 +191,7 @@ class People:
             case "say":
                 self.world.attend(who)
                 self._speak(doing.text, script, now)
-                script.told = {**values.get("told", {}), **script.told}
+                script.report = {**values.get("report", {}), **script.report}
             case "hang-up":
                 return [self._hang_up(now)]
             case "touch":
@@ -212,22 +212,22 @@ class People:
     def _speak(self, text: str, script: TriggeredScript, now: int) -> None:
         """Begin to say something; a recording ends after a silence, or is cut off."""
         self.robot.speech_begins(now)
-        script.began, script.speaking, script.told = now, text, {}
+        script.began, script.speaking, script.report = now, text, {}
         bounds = self.robot.ear.recording()
         said = self._timeline(text.rstrip(KEYS_THAT_END) if bounds is not None else text)
         script.lasts, silence = said.total, 0
         if bounds is not None:
             longest, silence = bounds.longest, bounds.silence
-            script.told = {"duration": script.lasts}
+            script.report = {"duration": script.lasts}
             if 0 < longest < script.lasts:
                 script.speaking, script.lasts, silence = _part(said, longest), longest, 0
-                script.told = {"duration": longest, "maxtime": True}
+                script.report = {"duration": longest, "maxtime": True}
             elif text.endswith(tuple(KEYS_THAT_END)):
                 silence = 0
         elif not KEYS.issuperset(text):
             longest = self.robot.conductor.longest_answer()
             if 0 < longest < script.lasts:
-                script.lasts, script.told = longest, {"toolong": True}
+                script.lasts, script.report = longest, {"toolong": True}
         script.time = now + script.lasts + silence
 
     def _timeline(self, text: str) -> voice.SpeechTimeline:
@@ -239,7 +239,7 @@ class People:
         speaking = [one for one in (*self._playing, *self._scripts) if one.speaking]
         for script in sorted(speaking, key=lambda one: one.serial):
             spoken = min(now - script.began, script.lasts)
-            if "duration" in script.told and spoken:
+            if "duration" in script.report and spoken:
                 said = _part(self._timeline(script.speaking), spoken)
                 data = {"recorded": said, "duration": spoken}
             script.speaking, script.time = "", now

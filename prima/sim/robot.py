@@ -63,9 +63,9 @@ class Robot:
         """Everything that the devices report at ``now``, once the body has been advanced."""
         visible = self.world.sees_person()
         where = self.body.locomotion.whereabouts() if visible else {}
-        told = self.conductor.collect(now, visible, where)
+        reports = self.conductor.collect(now, visible, where)
         self._carry_out(now)
-        return [*told, *self._reached]
+        return [*reports, *self._reached]
 
     def settle(self, now: int) -> None:
         """Note that all orders of an instant have been given."""
@@ -85,9 +85,9 @@ class Robot:
             for task in self.conductor.tasks.values():
                 if device in task.order.devices:
                     self.ear.deafen(task.id)
-        told = self.conductor.failures()
+        reports = self.conductor.failures()
         self._carry_out(now)
-        return told
+        return reports
 
     def speech_begins(self, now: int) -> None:
         """The user begins to speak."""

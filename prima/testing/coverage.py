@@ -135,8 +135,8 @@ def _branches(node: Node, marks: set[Mark]) -> Iterator[tuple[str, str, int, boo
 def _shown(node: Node) -> str:
     """A start tag, abbreviated."""
     names = ("cond",) if node.tag in ("if", "elseif") else TELLING
-    told = next((f' {name}="{node.get(name)}"' for name in names if node.get(name)), "")
-    return f"<{node.tag}{told[:WIDEST]}>"
+    attribute = next((f' {name}="{node.get(name)}"' for name in names if node.get(name)), "")
+    return f"<{node.tag}{attribute[:WIDEST]}>"
 
 
 # Output ----------------------------------------------------------------------------

@@ -56,13 +56,13 @@ def _case(suite: Element, result: Result) -> None:
     if lines:
         case.set("line", str(lines[0]))
     first = result.failures[0].message if result.failures else "The table differs."
-    told = SubElement(
+    element = SubElement(
         case,
         "failure" if result.status == "failed" else "error",
         type=result.status,
         message=visible(first),
     )
-    told.text = visible(format_result(result), "\n")
+    element.text = visible(format_result(result), "\n")
 
 
 def cobertura(coverage: Coverage) -> bytes:
@@ -82,8 +82,8 @@ def cobertura(coverage: Coverage) -> bytes:
     classes = SubElement(package, "classes")
     for name, held in lines.items():
         shown = visible(PurePath(name).as_posix())
-        told = {"name": shown, "filename": shown, **_rates(list(held.values()))}
-        one = SubElement(classes, "class", told)
+        attributes = {"name": shown, "filename": shown, **_rates(list(held.values()))}
+        one = SubElement(classes, "class", attributes)
         SubElement(one, "methods")
         inside = SubElement(one, "lines")
         for number, hit in held.items():

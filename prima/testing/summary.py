@@ -49,13 +49,13 @@ def _checked(result: Result) -> str:
     if result.expectations:
         counted = f"{result.expectations} expectation{'s'[: result.expectations != 1]}"
         parts.append(f"{wrong} of {counted}" if wrong and result.status == "failed" else counted)
-    told = {
+    words = {
         "same": "table as expected",
         "differs": "table differs",
         "skipped": "table not compared",
     }
     if result.golden:
-        parts.append(told[result.golden])
+        parts.append(words[result.golden])
     if result.status == "error":
         parts.append("the run ended by an error")
     return ", ".join(parts) or "no expectations; it ran"
@@ -71,5 +71,5 @@ def counts(results: Iterable[Result]) -> dict[str, int]:
 
 def summary(results: list[Result]) -> str:
     """All results as one line."""
-    told = ", ".join(f"{status}: {n}" for status, n in counts(results).items() if n)
-    return f"scenarios: {len(results)}; {told}"
+    tally = ", ".join(f"{status}: {n}" for status, n in counts(results).items() if n)
+    return f"scenarios: {len(results)}; {tally}"

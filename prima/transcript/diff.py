@@ -207,7 +207,7 @@ def format_difference(difference: Difference, colour: bool = False) -> str:
         assert row is not None
         what = brief(row.what, LONGEST_SHOWN)
         text = f"{MARKS[change.kind]} {row.time:>8.2f} {row.actor} {row.app:<12} {what}"
-        text = visible(text + (f"  ({told})" if (told := remark(change)) else ""))
+        text = visible(text + (f"  ({note})" if (note := remark(change)) else ""))
         if colour and change.kind != "same":
             text = f"\x1b[{codes[change.kind]}m{text}\x1b[0m"
         lines.append(text)

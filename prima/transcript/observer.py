@@ -161,9 +161,9 @@ class Observer:
         marked = request.inserted == RESUMES
         if tree.talked_over and not marked and not _reacts(tree, request):
             self.found.wordless += 1
-        tree.told, tree.talked_over = True, False
+        tree.has_spoken, tree.talked_over = True, False
         for other in self._trees.values():
-            other.talked_over = other.talked_over or (other.told and other.app != tree.app)
+            other.talked_over = other.talked_over or (other.has_spoken and other.app != tree.app)
 
     def _over(self, record: Entry) -> None:
         """A behavior ends; if it is a question, note whose answer it took."""

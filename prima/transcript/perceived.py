@@ -31,7 +31,7 @@ class PerceivedStream:
     """Whether another application has spoken, other than by a reaction, since it last did."""
     since: float = 0.0
     """When another application entered it or spoke into it."""
-    told: bool = False
+    has_spoken: bool = False
     """Whether it has ever spoken."""
     talked_over: bool = False
     """Whether another application has spoken since it last did."""

@@ -226,8 +226,8 @@ class Run:
     @property
     def languages(self) -> dict[str, str]:
         """The languages of applications, as far as the transcript says."""
-        told = {one.app: one.data.get("lang") for one in self.started}
-        return {app: lang for app, lang in told.items() if isinstance(lang, str)}
+        languages = {one.app: one.data.get("lang") for one in self.started}
+        return {app: lang for app, lang in languages.items() if isinstance(lang, str)}
 
     @property
     def started(self) -> list[Entry]:

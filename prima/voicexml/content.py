@@ -325,8 +325,8 @@ class Content(Speaker):
         if "expr" in node.attributes:
             found = self.value(node, "expr", context, local)
         if found is not None:
-            told = json.dumps(found, ensure_ascii=False)
-            self.write(f"{node.tag}: {told}", node)
+            shown = json.dumps(found, ensure_ascii=False)
+            self.write(f"{node.tag}: {shown}", node)
 
     def log(self, node: Node, context: Context, local: Scope) -> None:
         """Write a log entry to the transcript (5.3.13)."""

@@ -83,8 +83,8 @@ class Questions:
             return
         if outcome == "nomatch":
             self._not_taken(context, item, resume.data)
-        told = resume.data.get("message")
-        message = f"{source(item)}: {told}" if told else ""
+        reason = resume.data.get("message")
+        message = f"{source(item)}: {reason}" if reason else ""
         raise Thrown("noinput" if outcome == "filled" else outcome, message, source(item))
 
     def _not_taken(self, context: Context, item: Node, data: Data) -> None:

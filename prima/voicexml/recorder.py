@@ -43,10 +43,10 @@ class RecordItems:
         Raises:
             Thrown: ``error.unsupported.format`` (2.0, 2.3.6; 2.1, 7.2).
         """
-        told = item.get("type") if item.tag == "record" else ""
+        media_type = item.get("type") if item.tag == "record" else ""
         if item.tag != "record" and setting(context, "recordutterance") == "true":
-            told = setting(context, "recordutterancetype")
-        name = told.partition(";")[0].strip().lower()
+            media_type = setting(context, "recordutterancetype")
+        name = media_type.partition(";")[0].strip().lower()
         if name and name not in FORMATS:
             raise Thrown.at(item, "error.unsupported.format", f'nothing is recorded as "{name}"')
 

@@ -53,9 +53,9 @@ def check_sketched(pages: Iterable[tuple[Page, Page | None]]) -> Iterator[Proble
 
 def _check_units(sketch: Sketch, root: Page | None) -> Iterator[Problem]:
     page = sketch.page
-    told = {one.place for one in page.problems}
+    places = {one.place for one in page.problems}
     for problem in _unit_problems(sketch) if root is not None else ():
-        if problem.place not in told:  # a handler of the root's, which is another's document
+        if problem.place not in places:  # a handler of the root's, which is another's document
             yield problem._replace(severity="warning", remedy=problem.remedy + LATER)
     for _, unit in sketch.units:
         yield from long_unit(unit.node, unit_speaks(unit, page.lang))

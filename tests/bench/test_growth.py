@@ -236,4 +236,4 @@ def test_ignores_are_found_by_their_places(tmp_path: Path) -> None:
     problems = [Problem(Place(str(path), *at), "warning", "empty", "Empty.") for at in places]
     assert [one.place.line for one in ignores.left(problems)] == [3]
     ignores.check(str(path))
-    assert ignores.told() == []
+    assert ignores.problems() == []

@@ -123,8 +123,8 @@ class Stage:
         self.settle(then)
 
     def settle(self, then: Any = None) -> None:
-        while self.mediator.told:
-            told = self.mediator.told.popleft()
+        while self.mediator.deliveries:
+            told = self.mediator.deliveries.popleft()
             self.notices += [(told.app, notice) for notice in told.notices]
             self.mediator.open_window(told)
             if then is not None:

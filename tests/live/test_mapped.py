@@ -13,7 +13,7 @@ from prima.devices.profile import Profile, read_robot
 from prima.errors import DocumentError
 from prima.live.driver import Refused
 from prima.live.mapped import MappedDriver
-from prima.live.told import Teller, pose
+from prima.live.reports import SenseReports, pose
 from prima.messages import Command, Emergency, Heard, Json, Occurred, Sensed
 from prima.sim.map import Map
 
@@ -66,7 +66,7 @@ def test_a_direction_of_the_map_is_a_turn_from_where_the_robot_looks(
 
 
 def test_a_direction_needs_to_know_where_the_robot_is() -> None:
-    with pytest.raises(Refused, match="where the robot is, is not known"):
+    with pytest.raises(Refused, match="the robot's place is unknown"):
         driver().values(begin("set-direction", heading=90))
 
 
@@ -93,11 +93,11 @@ def test_slots_may_be_in_a_list() -> None:
 
 def told(senses: str, *messages: Json) -> list[Any]:
     robot = profile(f"<senses {senses}/>")
-    teller = Teller()
+    reports = SenseReports()
     news: list[Any] = []
     for message in messages:
-        teller.take(robot.drivers[0].senses[0], message)
-        news += teller.drain()
+        reports.take(robot.drivers[0].senses[0], message)
+        news += reports.drain()
     return news
 
 

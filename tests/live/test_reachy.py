@@ -18,7 +18,7 @@ from prima.live.drivers import driver_class
 from prima.live.drivers.reachy import DRIVER, driver
 from prima.live.drivers.reachy.link import PAST, read_address
 from prima.live.drivers.reachy.pose import HeadPose, read_pose, read_step
-from prima.live.told import Teller
+from prima.live.reports import SenseReports
 from prima.messages import Command, Occurred, Sensed
 from prima.sim.map import Map
 from tests.live.fake_reachy import UPRIGHT, FakeReachy, fake_reachy
@@ -43,7 +43,7 @@ class Run:
         self.told: list[Report | News] = []
         self.driver.attach(self.told.append)
         self._keys = 0
-        self.teller = Teller()
+        self.reports = SenseReports()
 
     def begin(self, kind: str, **args: Any) -> str:
         self._keys += 1
@@ -434,7 +434,7 @@ def test_what_the_daemon_senses_is_told_when_it_changes(monkeypatch: pytest.Monk
             assert not [one for one in run.told if isinstance(one, Sensed | Occurred)]
             for angle, speaks in ((1.5, False), (1.5, True), (1.5, True), (2.0, True)):
                 fake.doa = {"angle": angle, "speech_detected": speaks}
-                await run.driver._sense(run.driver._link, run.teller)  # type: ignore[arg-type]
+                await run.driver._sense(run.driver._link, run.reports)  # type: ignore[arg-type]
             await run.driver.close()
             told = [one for one in run.told if isinstance(one, Sensed | Occurred)]
             assert told == [

@@ -126,9 +126,9 @@ def test_reasons_are_those_of_prima_explain() -> None:
     whys = data_of(make([made]))["runs"][0]["whys"]
     for row in made.rows():
         told = api.explain_row(made, row.number)
-        for time, words, _, _ in whys[row.number].get("told", []):
+        for time, words, _, _ in whys[row.number].get("reasons", []):
             assert f"{time:.3f} s: {words}" in told
-        assert len(whys[row.number].get("told", [])) == told.count(" s: ") - 1  # the head's
+        assert len(whys[row.number].get("reasons", [])) == told.count(" s: ") - 1  # the head's
     data = data_of(make([made]))["runs"][0]
     assert data["whys"][14]["source"] == "navigate.xml:61"
     assert data["names"]["navigate#3"][1:] == ["navigate.xml:39", 6]

@@ -96,7 +96,7 @@ def shown(code: str) -> str:
     parts = [meaning(code)]
     for name, text in beside(code).items():
         parts += [f"{name}:", _indented(text)]
-    parts += [headline(code, "Wrong"), _indented(wrong.text), told(wrong)]
+    parts += [headline(code, "Wrong"), _indented(wrong.text), problems_of(wrong)]
     return "\n\n".join([*parts, headline(code, "Right"), _indented(right.text)])
 
 
@@ -146,7 +146,7 @@ def headline(code: str, word: str) -> str:
     return f"{word}, where {BY_HAND[code]}:" if code in BY_HAND else f"{word}:"
 
 
-def told(example: Example) -> str:
+def problems_of(example: Example) -> str:
     """The problems of an example as ``prima validate`` prints them."""
     from prima.errors.rendering import render
 

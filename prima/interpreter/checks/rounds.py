@@ -51,16 +51,16 @@ def check_endless(facts: Facts) -> Iterator[Problem]:
 def check_rounds(facts: Facts) -> Iterator[Problem]:
     """Warn of forms that go to each other for ever without asking or waiting."""
     gotos = {form.id: _always(form) for form, items in facts.forms if items}
-    told: set[str] = set()
+    reported: set[str] = set()
     for start in gotos:
         way: list[str] = []
         passed: set[str] = set()
         name = start
-        while name not in passed and name not in told and (act := gotos.get(name)):
+        while name not in passed and name not in reported and (act := gotos.get(name)):
             way.append(name)
             passed.add(name)
             name = act.form if isinstance(act.form, str) else ""
-        told |= passed
+        reported |= passed
         last = gotos[way[-1]] if way else None
         if last is not None and name in passed:
             yield _round(last, way[way.index(name) :])

@@ -39,10 +39,10 @@ RESERVED_NAME = BAD_VALUE.says(
 
 def check_script_names(script: Node) -> Iterator[Problem]:
     """Variables of a script that hide the platform's scopes (5.1.2)."""
-    told: set[str] = set()
+    reported: set[str] = set()
     for use in script_names(script.own_text).uses:
-        if use.declares and not use.holder and use.name in HIDING.keys() - told:
-            told.add(use.name)
+        if use.declares and not use.holder and use.name in HIDING.keys() - reported:
+            reported.add(use.name)
             yield _hides(script.source.inside(script.index, "", use.start), use.name)
 
 

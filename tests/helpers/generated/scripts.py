@@ -318,8 +318,8 @@ class Driver:
 
     def _settle(self) -> None:
         mediator = self.mediator
-        while mediator.told:
-            told = mediator.told.popleft()
+        while mediator.deliveries:
+            told = mediator.deliveries.popleft()
             app = self.apps[told.app]
             if app.over:
                 continue

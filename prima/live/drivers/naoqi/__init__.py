@@ -113,10 +113,10 @@ class NaoqiDriver(MappedDriver):
         await self._find(MEMORY, "subscriber")
         memory = self._services[MEMORY]
         for senses in self.settings.senses:
-            told = await self._answer(partial(memory.subscriber, senses.by, _async=True))
+            subscriber = await self._answer(partial(memory.subscriber, senses.by, _async=True))
             take = partial(self.sense_from_thread, senses)
-            link = await asyncio.to_thread(told.signal.connect, take)
-            self._links.append((told, link))
+            link = await asyncio.to_thread(subscriber.signal.connect, take)
+            self._links.append((subscriber, link))
 
     def _gone(self, session: Any, *_: object) -> None:
         """The connection has been lost; called in a thread of qi."""

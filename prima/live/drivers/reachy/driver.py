@@ -16,7 +16,7 @@ from prima.live.driver import Refused, TaskDriver, Unreachable, Unusable
 from prima.live.drivers.reachy.link import ReachyLink, read_address
 from prima.live.drivers.reachy.pose import LIMITS, NEAR, HeadPose, read_pose, read_step, wrapped
 from prima.live.drivers.reachy.ways import WAYS, Step, number
-from prima.live.told import Teller
+from prima.live.reports import SenseReports
 from prima.messages import Data
 from prima.sim.map import Map
 
@@ -74,14 +74,14 @@ class ReachyDriver(TaskDriver):
         try:
             await self._wake(self._link)
             if self.settings.senses:
-                teller = Teller()
-                await self._sense(self._link, teller)
-                self._sensing = asyncio.create_task(self._sense_on(self._link, teller))
+                reports = SenseReports()
+                await self._sense(self._link, reports)
+                self._sensing = asyncio.create_task(self._sense_on(self._link, reports))
         except BaseException:
             await self._leave()
             raise
 
-    async def _sense(self, link: ReachyLink, teller: Teller) -> None:
+    async def _sense(self, link: ReachyLink, reports: SenseReports) -> None:
         """Ask the daemon for its sensor values, and report changes.
 
         Raises:
@@ -95,16 +95,16 @@ class ReachyDriver(TaskDriver):
             except Refused as error:
                 raise Unusable(f'<senses by="{senses.by}">: {error}') from None
             if answers[senses.by] is not None:  # it has no such sensor, or no value yet
-                teller.take(senses, answers[senses.by])
-        for news in teller.drain():
+                reports.take(senses, answers[senses.by])
+        for news in reports.drain():
             self.tell(news)
 
-    async def _sense_on(self, link: ReachyLink, teller: Teller) -> None:
+    async def _sense_on(self, link: ReachyLink, reports: SenseReports) -> None:
         """Ask repeatedly as long as the daemon answers."""
         while True:
             await asyncio.sleep(SENSE_S)
             try:
-                await self._sense(link, teller)
+                await self._sense(link, reports)
             except (Unreachable, Unusable) as error:
                 self.lose(str(error))
                 return

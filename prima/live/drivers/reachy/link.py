@@ -124,13 +124,13 @@ class ReachyLink:
         if answer.status_code == 503:
             raise Unreachable("The daemon has lost its robot.")
         try:
-            told = answer.json()
+            content = answer.json()
         except ValueError:
-            told = answer.text[:200]
+            content = answer.text[:200]
         if answer.is_error:
-            detail = told.get("detail", told) if isinstance(told, dict) else told
+            detail = content.get("detail", content) if isinstance(content, dict) else content
             raise Refused(f"Reachy Mini refuses {path}: {detail} ({answer.status_code}).")
-        return told
+        return content
 
     async def play(self, path: str, body: object = None) -> None:
         """Let the robot make a move to its end; stop it if this is cancelled.

@@ -177,8 +177,8 @@ class RclpyLink:
         return Sent(end, lambda: self._do(handle.cancel_goal_async))
 
     async def _end(self, handle: Any) -> Outcome:
-        told = await self._answer(handle.get_result_async)
-        return Outcome(told.status, plain(told.result))
+        answer = await self._answer(handle.get_result_async)
+        return Outcome(answer.status, plain(answer.result))
 
     async def call(self, use: RosUse, values: dict[str, Json]) -> dict[str, Json]:
         """Call a service; returns its answer."""

@@ -156,9 +156,9 @@ class RosbridgeLink:
         end.add_done_callback(lambda one: self._goals.pop(key, None))
         return Sent(end, partial(client.cancel_goal, key))
 
-    def _from_thread(self, end: asyncio.Future[Outcome], told: Any) -> None:
-        status = getattr(told["status"], "value", told["status"])
-        values = told["values"]
+    def _from_thread(self, end: asyncio.Future[Outcome], answer: Any) -> None:
+        status = getattr(answer["status"], "value", answer["status"])
+        values = answer["values"]
         result = dict(values) if isinstance(values, dict) else {"message": str(values)}
         self._post(partial(_settle, end, Outcome(status, result)))
 
@@ -168,11 +168,11 @@ class RosbridgeLink:
 
         future = self._future()
 
-        def answer(told: Any) -> None:
-            self._post(partial(_settle, future, dict(told)))
+        def answer(values: Any) -> None:
+            self._post(partial(_settle, future, dict(values)))
 
-        def refuse(told: Any) -> None:
-            self._post(partial(_settle, future, Refused(str(told))))
+        def refuse(reason: Any) -> None:
+            self._post(partial(_settle, future, Refused(str(reason))))
 
         Service(self._ros, use.name, use.type).call(ServiceRequest(values), answer, refuse)
         return dict(await future)
@@ -227,14 +227,14 @@ class RosbridgeLink:
             await asyncio.to_thread(ros.close)
 
 
-def _settle(future: asyncio.Future[Any], told: object) -> None:
+def _settle(future: asyncio.Future[Any], outcome: object) -> None:
     """Resolve a future with its result or error."""
     if future.done():
         return
-    if isinstance(told, Exception):
-        future.set_exception(told)
+    if isinstance(outcome, Exception):
+        future.set_exception(outcome)
     else:
-        future.set_result(told)
+        future.set_result(outcome)
 
 
 def _not_there(missing: list[RosUse]) -> str:

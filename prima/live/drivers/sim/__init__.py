@@ -73,8 +73,8 @@ class SimDriver(Driver):
         """Refuse unknown options, and a ``user`` that is neither true nor false."""
         options, place = self.settings.options, self.settings.place
         if unknown := sorted(options.keys() - {"at", "stopping", "user"}):
-            told = f'there is no option "{unknown[0]}". The options are at, stopping and user.'
-            raise UsageError(f"{place}: {told}")
+            problem = f'there is no option "{unknown[0]}". The options are at, stopping and user.'
+            raise UsageError(f"{place}: {problem}")
         if (user := options.get("user", "true")) not in ("true", "false"):
             raise UsageError(f'{place}: user is "{user}". Write true or false.')
 
@@ -94,11 +94,11 @@ class SimDriver(Driver):
 
     def cancel(self, key: str) -> None:
         """End a goal, at once or after the time that stopping takes."""
-        told = self.body.take(self.world.time, Cancel(key)) or [Stopped(key)]
+        reports = self.body.take(self.world.time, Cancel(key)) or [Stopped(key)]
         if self._stopping:
-            self._later += [(self.now() + self._stopping, one) for one in told]
+            self._later += [(self.now() + self._stopping, one) for one in reports]
         else:
-            self._report(told)
+            self._report(reports)
 
     def again(self, key: str) -> None:
         """The wheels stay with a goal that makes another loop."""

@@ -13,7 +13,7 @@ from prima.messages import Emergency, Heard, Json, Occurred, Sensed
 Actor = Literal["user", "environment", "robot"]
 
 
-class Teller:
+class SenseReports:
     """Turns messages into news; unchanged values are not reported again."""
 
     def __init__(self) -> None:
@@ -114,8 +114,8 @@ def _heard(message: Json, value: Json) -> list[News]:
     if isinstance(value, list):
         return _ranked(value)
     text = "" if value is None else str(value).strip()
-    told = message.get("confidence") if isinstance(message, dict) else None
-    known: dict[str, Json] = {} if told is None else {"confidence": _share(told)}
+    given = message.get("confidence") if isinstance(message, dict) else None
+    known: dict[str, Json] = {} if given is None else {"confidence": _share(given)}
     return [Heard(text, known)] if text else []
 
 
