@@ -71,6 +71,7 @@ class Calls:
         check_destination(call.to, item)
         if call.listens:
             yield from gathered(self.owner, lambda: self.owner.inputs.activate(context))
+        self.owner.items_of.forget_results(context)
         yield from self._announce(context, call)
         outcome = NEAR_END
         if call.heard is None:

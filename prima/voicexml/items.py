@@ -81,6 +81,11 @@ class Items:
         self.engine.set(local, "$results", results)
         self.engine.assign(context.application, "lastresult$", RESULTS, context.scopes(local))
 
+    def forget_results(self, context: Context) -> None:
+        """While input is waited for, ``application.lastresult$`` is undefined (5.1.5)."""
+        if self.engine.has(context.application, "lastresult$"):
+            self.engine.unset(context.application, "lastresult$")
+
     def _fill(self, context: Context, heard: TakenUtterance) -> list[Node]:
         """Give items their values (3.1.6): an item's own grammar one, a form's perhaps many."""
         owner, found = heard.owner, heard.interpretation

@@ -196,6 +196,9 @@ class Filling(Protocol):
     def remember(self, context: Context, heard: TakenUtterance) -> None:
         """Set ``application.lastresult$`` (5.1.5)."""
 
+    def forget_results(self, context: Context) -> None:
+        """Make ``application.lastresult$`` undefined, as input is waited for (5.1.5)."""
+
     def fill(
         self, context: Context, item: Node, value: Json, shadow: dict[str, Json] | None = None
     ) -> None:

@@ -34,6 +34,7 @@ class Questions:
         if item.tag == "record":
             owner.items_of.recorder.prepare(item, question)
         owner.app.heard = None
+        owner.items_of.forget_results(context)
         opened = [] if item.tag == "record" else open_to_answers(owner.queue, question)
         resume = yield from owner.wait([*owner.queue, question], opened)
         yield from self._answered(context, item, resume)

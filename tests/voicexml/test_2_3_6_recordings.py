@@ -53,9 +53,9 @@ def test_without_dtmfterm_keys_end_nothing(place: Path) -> None:
 
 
 def test_a_key_before_anything_is_said_leaves_the_record_unfilled(place: Path) -> None:
-    app = """<form><record name="r"><prompt>Speak.</prompt><noinput><log>silence</log></noinput>
-    <filled><log expr="r + ' ' + application.lastresult$.utterance
-    + application.lastresult$.inputmode"/></filled></record></form>"""
+    app = """<form><var name="key"/><record name="r" cond="key = application.lastresult$, true">
+    <prompt>Speak.</prompt><noinput><log>silence</log></noinput>
+    <filled><log expr="r + ' ' + key.utterance + key.inputmode"/></filled></record></form>"""
     made = run(place, app, says("#", HELLO))
     assert logs(made) == [f"{HELLO} #dtmf"]
 

@@ -11,6 +11,7 @@ from tests.helpers.dialogs import (
     HOME,
     LEAF,
     PAGE,
+    SILENT,
     YES,
     Case,
     Cases,
@@ -413,13 +414,28 @@ def test_a_links_choice_sets_lastresult() -> None:  # 5.1.5
     assert call.logs() == ["operator"]
 
 
-def test_lastresult_is_kept_until_the_next_utterance() -> None:  # 5.1.5
-    call = Call(
-        """<form><field name="f"><prompt>One?</prompt><option>yes</option></field>
-        <block><log expr="application.lastresult$.utterance"/></block></form>"""
+def test_lastresult_is_kept_until_the_next_wait() -> None:  # 5.1.5
+    result = "application.lastresult$"
+    call = run(
+        f"""<form><field name="f"><prompt>One?</prompt>{YES}</field>
+        <block><log expr="{result}.utterance"/></block>
+        <field name="g"><prompt><value expr="{result}.utterance"/>?</prompt>{YES}
+        <noinput><log expr="{result}"/></noinput></field></form>""",
+        "yes",
+        SILENT,
     )
-    call.answer("yes")
-    assert call.logs() == ["yes"]
+    assert call.said() == ["One?", "yes?"]
+    assert call.logs() == ["yes", "undefined"]
+
+
+def test_lastresult_is_undefined_during_a_call() -> None:  # 5.1.5
+    call = run(
+        f"""<form><field name="f"><prompt>One?</prompt>{YES}</field>
+        <transfer name="t" dest="tel:1" bridge="true"><filled>
+        <log expr="application.lastresult$"/></filled></transfer></form>""",
+        "yes",
+    )
+    assert call.logs() == ["undefined"]
 
 
 def test_lastresult_has_no_more_than_what_fits() -> None:  # 5.1.5
