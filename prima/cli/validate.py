@@ -152,7 +152,10 @@ def _expanded(files: tuple[str, ...]) -> Iterator[str]:
             continue
         from pathlib import Path
 
-        found = sorted(str(path) for path in Path(name).rglob("*") if path.suffix in KINDS)
+        from prima.loading import is_foreign
+
+        each = sorted(str(path) for path in Path(name).rglob("*") if path.suffix in KINDS)
+        found = [one for one in each if not is_foreign(one)]
         if not found:
             raise UsageError(
                 f"{name}: contains no documents (files with the suffix {one_of(KINDS)})."

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from prima.loading.applications import load, load_services, read_application
 from prima.loading.folders import documents_folder, schemas_folder
-from prima.loading.kinds import is_application, is_grammar, is_voicexml
+from prima.loading.kinds import is_application, is_foreign, is_grammar, is_voicexml
 from prima.loading.reading import favourite_problem
 from prima.loading.scenarios import (
     Loaded,
@@ -24,7 +24,7 @@ from prima.loading.voicedocuments import mappings
 
 __all__ = [
     "Loaded", "Validation", "documents_folder", "favourite_problem", "is_application",
-    "is_grammar", "is_voicexml", "load", "load_scenario", "load_services", "load_text", "mappings",
-    "once", "read_application", "schemas_folder", "seeded", "stage", "validate", "with_robot",
-    "with_scenario",
+    "is_foreign", "is_grammar", "is_voicexml", "load", "load_scenario", "load_services",
+    "load_text", "mappings", "once", "read_application", "schemas_folder", "seeded", "stage",
+    "validate", "with_robot", "with_scenario",
 ]  # fmt: skip

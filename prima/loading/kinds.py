@@ -20,6 +20,11 @@ GRAMMAR = re.compile(rb"<(?:[\w.-]+:)?grammar[\s>/]")
 """The beginning of the root element of a grammar file."""
 
 
+ROOT = re.compile(rb"<(?:[\w.-]+:)?([^\s:/>]+)")
+OURS = frozenset([b"prima", b"world", b"robot", b"scenario", b"user", b"services"])
+"""The root elements of PRIMA's own documents."""
+
+
 GRAMMAR_FILES = (".gram", ".abnf", ".grxml", ".srgs")
 """Suffixes of files that are certainly grammars."""
 
@@ -43,6 +48,21 @@ def is_surely_ours(data: bytes) -> bool:
     before, found, _ = tag.partition(b'xmlns="%s"' % DIALOGUE.namespace.encode())
     apart = before[6:7].isspace() and before[-1:].isspace()
     return bool(found) and before.startswith(b"<prima") and apart and b"<" not in before[6:]
+
+
+def is_foreign(path: str) -> bool:
+    """Whether a file is XML for another purpose, such as data that VoiceXML reads.
+
+    It is judged by the name and namespaces of its root element.
+    """
+    try:
+        root = root_of(read_file(path))
+    except (DocumentError, UsageError):
+        return False  # its problem is to be reported
+    if is_voicexml(root) or GRAMMAR.match(root):
+        return False
+    name = ROOT.match(root)
+    return name is not None and name[1] not in OURS and b"urn:prima:" not in root.partition(b">")[0]
 
 
 def is_application(path: str) -> bool:

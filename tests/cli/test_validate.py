@@ -196,6 +196,23 @@ def test_a_folder_stands_for_its_documents(tmp_path: Path) -> None:
     assert "files: 3; errors: 1, warnings: 1" in done.stderr
 
 
+def test_xml_of_another_purpose_is_no_document_of_a_folder(tmp_path: Path) -> None:
+    (tmp_path / "a.vxml").write_text(
+        '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml">'
+        '<data name="d" src="d.xml"/><form><block>Hello.</block></form></vxml>'
+    )
+    (tmp_path / "d.xml").write_text('<?xml version="1.0"?><!-- data --><result/>')
+    (tmp_path / "e.xml").write_text('<page xmlns="http://www.w3.org/1999/xhtml"/>')
+    done = prima("validate", ".", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "files: 1; no problems\n")
+    assert prima("validate", "d.xml", cwd=tmp_path).returncode == 1  # named by itself
+    (tmp_path / "w.xml").write_text("<world/>")
+    (tmp_path / "s.xml").write_text('<scenaro xmlns="urn:prima:scenario:1"/>')
+    (tmp_path / "x.xml").write_text("no XML")
+    done = prima("validate", ".", "--format", "short", cwd=tmp_path)
+    assert [line[:5] for line in done.stdout.splitlines()] == ["s.xml", "w.xml", "x.xml"]
+
+
 def test_all_documents_that_come_along_are_clean() -> None:
     done = prima("validate", "documents", "--format", "short", cwd=ROOT)
     assert done.returncode == 0
