@@ -47,6 +47,35 @@ def test_a_variable_that_nothing_declares_is_told(tmp_path: Path, content: str, 
     assert f'undeclared-variable The variable "{name}" is not declared' in one
 
 
+GOTO = '<catch event="e"><goto nextitem="{}"/></catch>'
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (f"<form>{GOTO}<block name='pay'/></form>", 'form has no item "{}" to go to'),
+        ("<form><block name='pay'><goto nextitem='{}'/></block></form>", 'form has no item "{}"'),
+        (f"<menu>{GOTO}<choice event='e'>pay</choice></menu>", 'menu has no item "{}"'),
+    ],
+)
+def test_an_item_to_go_to_that_is_not_there_is_told(
+    tmp_path: Path, content: str, message: str
+) -> None:  # 5.3.7
+    end = '<form id="end"/>'
+    (one,) = told(tmp_path, content.format("play") + end)
+    assert one.startswith("main.vxml no-such-item This " + message.format("play"))
+    assert one.endswith('Did you mean "pay"?') == ("<form>" in content)
+    (one,) = told(tmp_path, content.format("end") + end)
+    assert one.endswith('It is a dialog: write next="#end".')
+
+
+def test_an_item_to_go_to_that_is_there_is_none_to_tell(tmp_path: Path) -> None:
+    form = """<form><p:iu xmlns:p="urn:prima:dialogue:1" name="u"><block name="b"/></p:iu>
+    <block><if cond="true"><goto nextitem="b"/><else/><goto expritem="'u'"/></if>
+    <goto nextitem="u"/></block></form>"""
+    assert told(tmp_path, GOTO.format("b") + form) == []
+
+
 @pytest.mark.parametrize(
     "holder",
     ['<menu><choice next="#a">{}a</choice></menu>', '<link event="e">{}</link>'],

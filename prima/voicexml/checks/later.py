@@ -7,20 +7,26 @@ from contextlib import suppress
 from typing import Literal
 
 from prima.errors import Hint, Problem, one_of, suggestion
-from prima.errors.diagnoses.names import BAD_EXPRESSION, NO_SUCH_FORM, NO_SUCH_NAME
+from prima.errors.diagnoses.names import (
+    BAD_EXPRESSION,
+    NO_SUCH_FORM,
+    NO_SUCH_ITEM,
+    NO_SUCH_NAME,
+)
 from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE
 from prima.errors.diagnoses.values import BAD_VALUE, EXCLUSIVE
 from prima.language.commands import TABLE_4_2
-from prima.markup.spans import value_span
+from prima.markup.spans import instead, value_span
 from prima.markup.tree import Node
 from prima.markup.uris import parted
 from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.shared import IsolatedSyntax, syntax
-from prima.voicexml.arranging import UNIT
+from prima.voicexml.arranging import UNIT, is_unit, parts_of
 from prima.voicexml.checks.attributes import bad_value, fits, instead_of
 from prima.voicexml.checks.guests import command_problems
 from prima.voicexml.checks.names import check_name, check_script_names
+from prima.voicexml.elements import ITEMS
 from prima.voicexml.vocabulary import (
     EXPRESSIONS,
     FETCHED_VALUES,
@@ -51,6 +57,9 @@ NO_EFFECT = MISSING_ATTRIBUTE.says(
 NO_DIALOG = NO_SUCH_FORM.says(
     'There is no dialog "{name}" here: this will be error.badfetch.', severity="warning"
 )
+NO_ITEM = NO_SUCH_ITEM.says(
+    'This {tag} has no item "{name}" to go to: this will be error.badfetch.', severity="warning"
+)
 BAD_PROPERTY = BAD_VALUE.says('{name} "{value}" is not allowed.', severity="warning")
 TWO_MEANINGS = EXCLUSIVE.says("{wrong}", "At run time it is error.badfetch.", "warning")
 UNKNOWN_TYPE = NO_SUCH_NAME.says("{wrong}", severity="warning")
@@ -78,6 +87,8 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
     for node in root.walk():
         problems += _check_node(node, lang)
         problems += _targets(node, dialogs)
+    for dialog in root.all("form", "menu"):
+        problems += _items(dialog, dialogs)
     return problems
 
 
@@ -105,6 +116,21 @@ def _targets(node: Node, dialogs: set[str]) -> Iterator[Problem]:
         if target.startswith("#") and node.key != "grammar" and name not in dialogs:
             hint = suggestion(name, dialogs, *value_span(node, attribute, target[1:]))
             yield NO_DIALOG.at(node.attribute_place(attribute), hint, name=name)
+
+
+def _items(dialog: Node, dialogs: set[str]) -> Iterator[Problem]:
+    """Form items to which a dialog's content goes, and that it lacks (5.3.7)."""
+    items = [one for one in parts_of(dialog) if one.tag in ITEMS or is_unit(one)]
+    names = {one.get("name") for one in items} - {""}
+    for node in dialog.walk():
+        name = node.get("nextitem")
+        if node.key != "goto" or "nextitem" not in node.attributes or name in names:
+            continue
+        hint = suggestion(name, names, *value_span(node, "nextitem"))
+        if name in dialogs:
+            remedy = f'It is a dialog: write next="#{name}".'
+            hint = instead(remedy, node, "nextitem", "next", f"#{name}")
+        yield NO_ITEM.at(node.attribute_place("nextitem"), hint, tag=dialog.tag, name=name)
 
 
 def is_code(node: Node, attribute: str) -> bool:
