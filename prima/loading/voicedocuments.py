@@ -11,6 +11,7 @@ from prima.errors import (
     Hint,
     Problem,
     UsageError,
+    replaced,
 )
 from prima.loading.applications import fetcher, in_folder, nearby
 from prima.loading.diagnoses import (
@@ -104,6 +105,10 @@ NAMING_FILES = {
 """Attributes of VoiceXML elements that name a file, unless they name something else."""
 
 
+LEADING = ("goto", "link", "choice", "submit", "subdialog")
+"""Elements that lead to a dialog."""
+
+
 SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:|//")
 """URI schemes that do not name a file."""
 
@@ -123,6 +128,10 @@ def _not_there(
         missing.add(node.index)
         few = len(missing) <= LIMITS.problems  # problems that are not listed need no hint
         hint = nearby(folder / file, *spans, listed=listed) if few else Hint()
+        dialog = node.get(name).strip()
+        if dialog in page.dialogs and node.tag in LEADING:
+            text = f'It is a dialog: write "#{dialog}".'
+            hint = replaced(text, f"#{dialog}", *value_span(node, name))
         yield NO_FILE_HERE.at(node.attribute_place(name), hint, file=file[:80])
 
 

@@ -102,6 +102,21 @@ def test_files_of_a_voicexml_document_that_are_not_there_are_warned_of(
     assert "error:" not in done.stdout
 
 
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<form><block><goto next=" end "/></block></form>',
+        '<form><subdialog src="end"/></form>',
+        '<menu><choice next="end">bye</choice></menu>',
+    ],
+)
+def test_a_dialog_without_its_sign_is_told_to_be_one(tmp_path: Path, content: str) -> None:
+    end = '<form id="end"><block><script src="end"/></block></form>'
+    first, second = told(tmp_path, content + end)
+    assert 'no-such-file There is no file "end" here' in first
+    assert first.endswith('It is a dialog: write "#end".') and "dialog" not in second
+
+
 CALLED = VXML.format(
     "", '<form id="call"><var name="order"/><block><return namelist="order"/></block></form>'
 )
