@@ -32,7 +32,7 @@ class VoiceInterpreter(App[AnyEngine]):
         self.waits = Waits(self, self._here, self._begun)
         self._machine = Machine(self)
         self._flow: Flow | None = None
-        self._marked: str | None = None
+        self.marked: str | None = None
         """The last mark of what is being said."""
         self._missed: deque[Event] = deque()
         """Events that arrived while waiting for an answer (4.1.8): none is lost."""
@@ -147,7 +147,7 @@ class VoiceInterpreter(App[AnyEngine]):
             self.heard.recognised = False
         if self.heard is None:
             return None
-        self.heard.mark = self._marked
+        self.heard.mark = self.marked
         heard, found = self.heard, self.heard.interpretation
         value = found if found is not None else heard.utterance
         return Understood(value, heard.utterance, heard.confidence)
@@ -217,7 +217,7 @@ class VoiceInterpreter(App[AnyEngine]):
     def _begun(self) -> None:
         """The queue has been requested: its last mark counts from now on."""
         content = self._machine.content
-        self._marked, content.mark = content.mark, None
+        self.marked, content.mark = content.mark, None
 
     def _catch_up(self) -> None:
         """Deliver the events that arrived while waiting for an answer, once there is a wait."""

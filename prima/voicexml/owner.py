@@ -34,6 +34,8 @@ class VoiceApplication(Protocol):
     """The user's connection, as far as known (VoiceXML 5.1.4)."""
     heard: TakenUtterance | None
     """The user's latest utterance, as a grammar took it."""
+    marked: str | None
+    """The last mark of what is being said."""
     actions: list[Action]
     """Its requests, for the session to carry out."""
 

@@ -102,6 +102,7 @@ class Questions:
         further: list[tuple[str, Json, float]] = [(one, one, less) for one, less in others]
         most = self.owner.inputs.most_results(context)
         heard = TakenUtterance(said, said, item, context.page, sure, mode, further[: most - 1])
+        heard.mark = self.owner.app.marked
         heard.take_mark(data)
         self.owner.items_of.remember(context, heard)
 

@@ -228,11 +228,12 @@ def test_data_that_is_not_there_is_error_badfetch() -> None:  # 2.1, 5
 def test_the_last_mark_before_an_answer_is_told() -> None:  # 2.1, 4
     call = Call(
         """<form><field name="f"><prompt>One <mark name="a"/> two <mark nameexpr="'b' + 1"/>?</prompt>
-        <option>yes</option><filled><log expr="f$.markname"/>
+        <option>yes</option><nomatch>No.<log expr="application.lastresult$.markname"/><reprompt/></nomatch>
+        <filled><log expr="f$.markname"/>
         <log expr="application.lastresult$.markname"/></filled></field></form>"""
     )
-    call.answer("yes")
-    assert call.logs() == ["b1", "b1"]
+    call.answer("no", "yes")
+    assert call.logs() == ["b1", "b1", "b1"]
 
 
 def test_without_marks_there_is_no_name_of_one() -> None:  # 2.1, 4
