@@ -9,6 +9,12 @@ from prima.errors.diagnoses.values import BAD_VALUE
 NO_FILE_HERE = NO_SUCH_FILE.says(
     'There is no file "{file}" here: this will be error.badfetch.', severity="warning"
 )
+OUTSIDE = NO_SUCH_FILE.says(
+    '"{file}" is outside of the folder of the first document: this will be error.badfetch.',
+    'Let a folder above both represent a URI: "--map https://example.org/=FOLDER", or uri and'
+    " folder of the scenario's <application>.",
+    "warning",
+)
 UNREADABLE = NO_SUCH_FILE.says('"{name}" {wrong}')
 NOT_SERVED = UNKNOWN_ATTRIBUTE.says(
     '"{src}" is not VoiceXML, which alone is served at a URI.', "Remove uri and folder."

@@ -16,6 +16,7 @@ from prima.errors import (
 from prima.loading.applications import fetcher, in_folder, nearby
 from prima.loading.diagnoses import (
     NO_FILE_HERE,
+    OUTSIDE,
 )
 from prima.loading.files import Folder, path_of
 from prima.markup.limits import LIMITS
@@ -126,6 +127,9 @@ def _not_there(
             continue
         spans = value_span(node, name, file.rpartition("/")[2])
         missing.add(node.index)
+        if file.startswith("../") and exists(folder / file):
+            yield OUTSIDE.at(node.attribute_place(name), file=file[:80])
+            continue
         few = len(missing) <= LIMITS.problems  # problems that are not listed need no hint
         hint = nearby(folder / file, *spans, listed=listed) if few else Hint()
         dialog = node.get(name).strip()

@@ -117,6 +117,20 @@ def test_a_dialog_without_its_sign_is_told_to_be_one(tmp_path: Path, content: st
     assert first.endswith('It is a dialog: write "#end".') and "dialog" not in second
 
 
+def test_a_file_above_the_folder_is_told_to_need_a_mapping(tmp_path: Path) -> None:
+    folder = tmp_path / "voice"
+    folder.mkdir()
+    (tmp_path / "root.vxml").write_text(VXML.format("", '<var name="v"/>'))
+    form = '<form><block><value expr="v"/></block></form>'
+    (one,) = told(folder, form, ' application="../root.vxml"')
+    assert one.startswith('main.vxml no-such-file "../root.vxml" is outside of the folder')
+    assert "--map https://example.org/=FOLDER" in one
+    maps = [f"https://example.org/={tmp_path}"]
+    assert loading.validate([folder / "main.vxml"], maps) == []
+    (one,) = told(folder, form, ' application="../rood.vxml"')
+    assert 'There is no file "../rood.vxml" here' in one
+
+
 CALLED = VXML.format(
     "", '<form id="call"><var name="order"/><block><return namelist="order"/></block></form>'
 )
