@@ -50,6 +50,7 @@ DOCUMENTS = {
 }
 """Kinds of documents by their namespaces."""
 VOICEXML = "a VoiceXML document"
+VOICEXML_NAMESPACE = "http://www.w3.org/2001/vxml"
 
 OTHER_ROOT = WRONG_ROOT.says(
     "The root element is <{tag}>; it must be <{root}>.", "Begin with <{root}>."
@@ -96,17 +97,26 @@ def _other_document(root: Node, vocabularies: Sequence[Vocabulary]) -> Problem |
 def _no_document(root: Node, vocabularies: Sequence[Vocabulary]) -> Problem:
     """The problem of a root element whose namespace is unknown or missing."""
     found = f'namespace "{root.namespace}"' if root.namespace else "no namespace"
-    likely = [one for one in vocabularies if one.root_tag == root.tag] or vocabularies
-    wanted = " or ".join(f'<{one.root_tag} xmlns="{one.namespace}">' for one in likely)
-    spaces = [one.namespace for one in likely]
+    known = [(one.root_tag, one.namespace) for one in vocabularies]
+    likely = [one for one in known if one[0] == root.tag]
+    if not likely and "prima" in dict(known) and _seems_voicexml(root):
+        likely = [("vxml", VOICEXML_NAMESPACE)]
+    likely = likely or known
+    wanted = " or ".join(f'<{tag} xmlns="{space}">' for tag, space in likely)
+    spaces = [space for _, space in likely if space != root.namespace]
     near = suggestion(root.namespace, spaces, *value_span(root, "xmlns"))
     place = root.source.place(root.index, "xmlns", value=True)
     return ROOT_HAS.at(place, near, tag=root.tag, found=found, wanted=wanted)
 
 
+def _seems_voicexml(root: Node) -> bool:
+    """Whether a document whose root element is none of PRIMA's is meant to be VoiceXML."""
+    return root.namespace == VOICEXML_NAMESPACE or root.source.file.lower().endswith(".vxml")
+
+
 def kind_of(root: Node) -> str:
     """The kind of document that an element is the root of, such as ``a world``; or nothing."""
-    if root.tag == "vxml" and root.namespace in ("", "http://www.w3.org/2001/vxml"):
+    if root.tag == "vxml" and root.namespace in ("", VOICEXML_NAMESPACE):
         return VOICEXML
     return DOCUMENTS.get(root.namespace, "")
 

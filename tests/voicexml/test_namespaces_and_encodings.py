@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 import prima
-from prima.loading import validate
+from prima.errors import DocumentError
+from prima.loading import read_application, validate
 from tests.helpers.old_documents import HEAD, problems, run, said, scenario
 from tests.helpers.voice import Call, vxml
 
@@ -97,6 +98,25 @@ def test_one_misuse_at_many_places(tmp_path: Path) -> None:
     assert [one.place.line for one in found] == [2, 3, 4, 5, 6, 32]
     assert found[4].remedy.endswith("So it is at 25 more places.")
     assert found[5].code == "unknown-element"
+
+
+@pytest.mark.parametrize(
+    ("name", "root"),
+    [
+        ("a.xml", 'VXML xmlns="http://www.w3.org/2001/vxml"'),
+        ("a.xml", 'vmxl xmlns="http://www.w3.org/2001/vxml"'),
+        ("a.vxml", "html"),
+    ],
+)
+def test_how_voicexml_begins_is_told_where_it_is_meant(
+    tmp_path: Path, name: str, root: str
+) -> None:
+    (tmp_path / name).write_text(f"<{root}/>")
+    [problem] = validate([tmp_path / name])
+    with pytest.raises(DocumentError) as error:
+        read_application(name, f"<{root}/>".encode())
+    for one in (problem, *error.value.problems):
+        assert one.remedy == 'Begin with <vxml xmlns="http://www.w3.org/2001/vxml">.'
 
 
 def test_vendors_elements_and_attributes(tmp_path: Path) -> None:
