@@ -47,6 +47,24 @@ def test_a_variable_that_nothing_declares_is_told(tmp_path: Path, content: str, 
     assert f'undeclared-variable The variable "{name}" is not declared' in one
 
 
+@pytest.mark.parametrize(
+    ("uri", "says"),
+    [
+        ("grammar/bolean", 'built-in type "builtin:grammar/bolean". Did you mean "boolean"?'),
+        ("dtmf/digits?minlength=3;maxlength=2", "minlength is more than maxlength."),
+        ("grammar/digits?size=3", 'digits has no parameter "size". Write boolean, '),
+        ("grammar/boolean", ""),
+        ("dtmf/digits?length=4", ""),
+    ],
+)
+def test_a_built_in_grammar_is_checked_as_a_type_is(
+    tmp_path: Path, uri: str, says: str
+) -> None:  # 2.3.1.2
+    grammar = f'<grammar src="builtin:{uri}"/>'
+    found = told(tmp_path, f'<form><field name="f">{grammar}</field></form>')
+    assert len(found) == bool(says) and says in "".join(found)
+
+
 GOTO = '<catch event="e"><goto nextitem="{}"/></catch>'
 
 

@@ -96,7 +96,9 @@ def _check_node(node: Node, lang: str) -> Iterator[Problem]:
     if node.key == "grammar" and not {"src", "srcexpr"} & node.attributes.keys():
         yield from grammar_problems(node, lang)
     if node.key == "field" and node.get("type"):
-        yield from _type_problems(node)
+        yield from _type_problems(node, "type")
+    if node.key == "grammar" and node.get("src").startswith("builtin:"):
+        yield from _type_problems(node, "src")
     if node.key in ("prosody", "voice") and not node.attributes:
         yield NO_EFFECT.at(node.place, tag=node.tag)  # SSML 1.0, 3.2.1 and 3.2.4
     yield from check_name(node)
@@ -160,18 +162,20 @@ def _property_problems(node: Node) -> Iterator[Problem]:
         yield BAD_PROPERTY.at(place, hint, name=name, value=value[:LONGEST_VALUE])
 
 
-def _type_problems(field: Node) -> Iterator[Problem]:
+def _type_problems(node: Node, attribute: str) -> Iterator[Problem]:
     """An unknown built-in type: the field throws error.unsupported.builtin (2.3.1)."""
     from prima.grammar.builtin import TYPES, Conflict, built_in
 
-    kind, place = field.get("type"), field.attribute_place("type")
+    kind, place = node.get(attribute), node.attribute_place(attribute)
     try:
         built_in(kind, "voice", "en")
     except Conflict as error:
         yield TWO_MEANINGS.at(place, wrong=error)
     except ValueError as error:
-        hint = suggestion(kind, TYPES, *value_span(field, "type"))
-        hint = hint or Hint(f"Write {one_of(TYPES)}, or a <grammar>.")
+        name = kind.partition("?")[0].rpartition("/")[2]
+        hint = Hint(f"Write {one_of(TYPES)}{', or a <grammar>' if attribute == 'type' else ''}.")
+        if name not in TYPES:
+            hint = suggestion(name, TYPES, *value_span(node, attribute, name)) or hint
         text = f"{hint.text} At run time it is error.unsupported.builtin."
         yield UNKNOWN_TYPE.at(place, hint._replace(text=text), wrong=error)
 
