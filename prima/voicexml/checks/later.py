@@ -95,10 +95,7 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
 def _check_node(node: Node, lang: str) -> Iterator[Problem]:
     if node.key == "grammar" and not {"src", "srcexpr"} & node.attributes.keys():
         yield from grammar_problems(node, lang)
-    if node.key == "field" and node.get("type"):
-        yield from _type_problems(node, "type")
-    if node.key == "grammar" and node.get("src").startswith("builtin:"):
-        yield from _type_problems(node, "src")
+    yield from _type_problems(node)
     if node.key in ("prosody", "voice") and not node.attributes:
         yield NO_EFFECT.at(node.place, tag=node.tag)  # SSML 1.0, 3.2.1 and 3.2.4
     yield from check_name(node)
@@ -162,11 +159,14 @@ def _property_problems(node: Node) -> Iterator[Problem]:
         yield BAD_PROPERTY.at(place, hint, name=name, value=value[:LONGEST_VALUE])
 
 
-def _type_problems(node: Node, attribute: str) -> Iterator[Problem]:
+def _type_problems(node: Node) -> Iterator[Problem]:
     """An unknown built-in type: the field throws error.unsupported.builtin (2.3.1)."""
     from prima.grammar.builtin import TYPES, Conflict, built_in
 
+    attribute = "type" if node.key == "field" else "src"
     kind, place = node.get(attribute), node.attribute_place(attribute)
+    if not kind or (node.key != "field" and not kind.startswith("builtin:")):
+        return
     try:
         built_in(kind, "voice", "en")
     except Conflict as error:
