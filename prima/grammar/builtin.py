@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 from urllib.parse import unquote
 
 from prima.grammar import dates
@@ -102,6 +102,14 @@ def built_in(uri: str, mode: str, lang: str) -> BuiltIn:
     given = _parameters(name, match[2] or "")
     read = partial(_READERS[name], given, lang.split("-")[0].lower())
     return BuiltIn(name, read, partial(_open, name, given))
+
+
+def uri_mode(uri: str) -> Literal["voice", "dtmf", ""]:
+    """The mode that the URI of a built-in type names; empty if it names none."""
+    kind, mark, _ = uri.partition("?")[0].removeprefix("builtin:").partition("/")
+    if not mark or not uri.startswith("builtin:"):
+        return ""
+    return "dtmf" if kind == "dtmf" else "voice"
 
 
 def _parameters(name: str, text: str) -> dict[str, str]:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from urllib.parse import urlsplit
 
 from prima.errors import PrimaError, Span, suggestion
-from prima.grammar.builtin import built_in
+from prima.grammar.builtin import built_in, uri_mode
 from prima.grammar.errors import (
     GrammarError,
     Problems,
@@ -17,7 +17,7 @@ from prima.grammar.errors import (
 )
 from prima.grammar.legacy import FORMATS, settle
 from prima.grammar.media import check_form, media_type
-from prima.grammar.model import GrammarDocument, Reference, Rule
+from prima.grammar.model import GrammarDocument, Mode, Reference, Rule
 from prima.grammar.prefixes import index_choices
 from prima.markup.uris import join, parted
 
@@ -162,8 +162,7 @@ class Library:
         """A rule of another document: its root, or a public one."""
         note = self.problems.note
         if found.mode != document.mode:
-            message = f"A grammar for {document.mode} refers to one for {found.mode}."
-            note(reference.where, "mode", message, f"Refer to one for {document.mode}.")
+            self._other_mode(document, found.mode, reference)
             return None
         name, named = name or found.root, bool(name)
         rule = found.rules.get(name)
@@ -180,12 +179,21 @@ class Library:
             return None
         return rule
 
+    def _other_mode(self, document: GrammarDocument, mode: Mode, reference: Reference) -> None:
+        """Note a reference to a grammar of the other mode (SRGS 4.6)."""
+        message = f"A grammar for {document.mode} refers to one for {mode}."
+        remedy = f"Refer to one for {document.mode}."
+        self.problems.note(reference.where, "mode", message, remedy)
+
     def _built_in(self, document: GrammarDocument, reference: Reference) -> Rule | None:
         try:
             found = built_in(reference.uri, document.mode, document.lang)
         except ValueError as error:
             kind = UnsupportedBuiltIn
             self.problems.unsupported(kind, reference.where, "no-such-name", str(error))
+            return None
+        if (mode := uri_mode(reference.uri)) and mode != document.mode:
+            self._other_mode(document, mode, reference)
             return None
         home = GrammarDocument("", reference.where, dialect="literals")
         home.rules[found.name] = Rule(found.name, found, home)

@@ -8,7 +8,7 @@ from functools import partial
 from urllib.parse import urldefrag
 
 from prima.errors import DocumentError, Place, did_you_mean
-from prima.grammar.builtin import TYPES, Conflict, built_in
+from prima.grammar.builtin import TYPES, Conflict, built_in, uri_mode
 from prima.grammar.errors import GrammarError, UnsupportedBuiltIn, UnsupportedLanguage, refuse
 from prima.grammar.grammar import Grammar
 from prima.grammar.linking import Fetch, Library, Refusal, joined
@@ -98,9 +98,7 @@ def _language(library: Library, document: GrammarDocument, languages: Languages 
 
 def _named(uri: str, mode: Mode | None, lang: str) -> Grammar:
     """The grammar of a built-in type (VoiceXML 2.0 Appendix P)."""
-    kind, _, _ = uri.removeprefix("builtin:").partition("/")
-    if uri.startswith("builtin:") and kind in ("grammar", "voice", "dtmf"):
-        mode = "dtmf" if kind == "dtmf" else "voice"
+    mode = uri_mode(uri) or mode
     where = partial(Place, uri)
     try:
         found = built_in(uri, mode or "", lang)

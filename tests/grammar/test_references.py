@@ -158,6 +158,17 @@ def test_references_that_lead_to_no_rule(uri: str, code: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("header", "uri"),
+    [(ABNF, "builtin:dtmf/digits?length=2"), (ABNF + "mode dtmf; ", "builtin:grammar/digits")],
+)
+def test_a_built_in_type_of_the_other_mode_is_refused(header: str, uri: str) -> None:  # SRGS 4.6
+    with pytest.raises(GrammarError) as error:
+        load(f"{header}$r = $<{uri}>;")
+    assert codes(error) == ["mode"]
+    assert load(f"{header}$r = $<builtin:digits>;")
+
+
+@pytest.mark.parametrize(
     "source",
     [
         ABNF + "$r = $<http://[x>;",
