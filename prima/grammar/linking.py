@@ -16,7 +16,7 @@ from prima.grammar.errors import (
     refuse,
 )
 from prima.grammar.legacy import FORMATS, settle
-from prima.grammar.media import check_form, media_type
+from prima.grammar.media import check_form, check_known, media_type
 from prima.grammar.model import GrammarDocument, Mode, Reference, Rule
 from prima.grammar.prefixes import index_choices
 from prima.markup.uris import join, parted
@@ -70,6 +70,11 @@ class Library:
 
     def fetch(self, uri: str, media: str, where: Where) -> GrammarDocument | None:
         """The document of a URI, fetched on first use; problems are noted."""
+        try:
+            check_known(media_type(media), where(), "")
+        except GrammarError as error:
+            self._refused(error)
+            return None
         found = self.documents[uri] if uri in self.documents else self._first(uri, media, where)
         if found is not None:
             check_form(self.problems, media_type(media), found.form, uri, where)
@@ -99,13 +104,17 @@ class Library:
             return None
         return self._take(uri, data, media)
 
+    def _refused(self, error: GrammarError) -> None:
+        """Note what is wrong with another document; it determines the error unless more is wrong."""
+        if not self.problems.found:
+            self.problems.kind = type(error)
+        self.problems.extend(error.problems)
+
     def _take(self, uri: str, data: bytes, media: str) -> GrammarDocument | None:
         try:
             document = self._read(self, uri, data, media)
         except GrammarError as error:
-            if not self.problems.found:
-                self.problems.kind = type(error)
-            self.problems.extend(error.problems)
+            self._refused(error)
             return None
         self.documents[uri] = document
         self._unlinked.append(document)

@@ -6,6 +6,7 @@ import pytest
 
 from prima.grammar import (
     GrammarError,
+    UnsupportedFormat,
     load,
 )
 from tests.helpers.grammars import ABNF, inside, xml
@@ -61,3 +62,15 @@ def test_a_type_in_use_that_is_none_of_srgs_is_taken_with_a_warning() -> None:
         assert "read as application/srgs. Write application/srgs." in str(warning)
         assert grammar.match("x")
     assert not load(f"{ABNF}$r = x;", type="application/srgs").warnings()
+
+
+def test_a_type_that_is_not_supported_is_told_at_each_reference_that_gives_it() -> None:
+    def fetch(uri: str) -> bytes:
+        return f"{ABNF}public $r = x;".encode()
+
+    told = 'error: Grammars of type "a/b" are not supported.'
+    for rule in ("$r = $<b.gram>~<a/b>;", "$r = $<b.gram> | $<b.gram>~<a/b>;"):
+        with pytest.raises(UnsupportedFormat) as caught:
+            load(ABNF + rule, base="a.gram", fetch=fetch)
+        (one,) = caught.value.problems
+        assert str(one).startswith(f"a.gram:4:{rule.rindex('$') + 1}: {told}")
