@@ -23,6 +23,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 from prima.errors import UsageError, did_you_mean
 from prima.experiments.sweep import SweepQuestion
 from prima.language.values import read_value
+from prima.markup.encodings import byte_place
 from prima.markup.toml import parse_toml
 
 MOST_BYTES = 1_000_000
@@ -152,8 +153,9 @@ def _read(path: str) -> str:
         return data.decode("utf-8-sig")
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
-    except UnicodeDecodeError:
-        raise UsageError(f"{path}: not TOML: it is not UTF-8.") from None
+    except UnicodeDecodeError as error:
+        place = byte_place(path, "utf-8-sig", error)
+        raise UsageError(f"{place}: not TOML: it is not UTF-8.") from None
 
 
 def _parsed(path: str, text: str) -> dict[str, Any]:

@@ -105,7 +105,9 @@ def test_mistakes_have_their_line(old: str, new: str, where: str, why: str) -> N
 @pytest.mark.parametrize(
     ("data", "why"),
     [
-        (b"\xff\xfe", "it is not UTF-8"),
+        (b"\xff\xfe", "study.toml:1:1: not TOML: it is not UTF-8"),
+        (b"seeds = 1\r\n# caf\xe9", "study.toml:2:6: not TOML: it is not UTF-8"),
+        (b"\xef\xbb\xbf# \xe9", "study.toml:1:3: not TOML: it is not UTF-8"),
         (b"a = " + b"[" * 100_000, "not TOML"),
         (b"x" * 1_000_001, "larger than 1,000,000 bytes"),
         (b"", "a study needs scenarios"),
