@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from time import process_time
+
 import pytest
 
 from tests.helpers.dialogs import (
@@ -124,11 +126,24 @@ def test_a_grammars_weight_is_accepted() -> None:  # 3.1.1.4
 
 @pytest.mark.parametrize(
     ("weight", "wrong"),
-    [("2", []), ("2.", []), (".5", []), ("-1", ["bad-value"]), ("1e3", ["bad-value"])],
+    [
+        ("2", []),
+        ("٢", ["bad-value"]),
+        ("2.", []),
+        (".5", []),
+        ("-1", ["bad-value"]),
+        ("1e3", ["bad-value"]),
+    ],
 )
 def test_a_grammars_weight_has_neither_sign_nor_exponent(weight: str, wrong: list[str]) -> None:
     """3.1.1.3."""
     assert codes(ask(f'<grammar src="a.grxml" weight="{weight}"/>')) == wrong
+
+
+def test_a_long_weight_that_is_none_takes_no_longer() -> None:
+    began = process_time()
+    assert codes(ask(f'<grammar src="a.grxml" weight="{"1" * 50_000}x"/>')) == ["bad-value"]
+    assert process_time() - began < 2, "10 ms on a quiet machine"
 
 
 def test_a_grammar_in_another_language_is_taken() -> None:  # 3.1.1.4

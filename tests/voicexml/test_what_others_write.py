@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from time import process_time
 
 import pytest
 
@@ -110,6 +111,16 @@ def test_speech_that_no_voice_can_make_is_told(content: str, wrong: list[str]) -
     told = [one.message.split()[0] for one in warnings(text)]
     assert told == wrong
     assert run(text).said() == ["a"]
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    ["pitch='{}x'", "range='+{}x'", "volume='+{}x'", "pitch='١Hz'", "volume='١'", "volume='+١'"],
+)
+def test_a_number_that_is_none_is_told_however_long_it_is(wrong: str) -> None:
+    began = process_time()
+    (one,) = warnings(block(f"<prompt><prosody {wrong.format('1' * 20_000)}>a</prosody></prompt>"))
+    assert one.code == "bad-value" and process_time() - began < 2, "10 ms on a quiet machine"
 
 
 def test_identifiers_and_ages_that_are_none_are_told() -> None:
