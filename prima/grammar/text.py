@@ -21,7 +21,7 @@ UNSPACED = (
 _UNSPACED = f"[{UNSPACED}]"
 _LOOSE = f"(?<=[{UNSPACED}]) +| +(?=[{UNSPACED}])"
 # Patterns of so many letters take long to compile: these two are compiled on first use.
-_KEPT = re.compile(r"(\d+(?:[.,:]\d+)+|(?<=[^\W\d_])[+#]+(?![\w+#]))")
+_KEPT = re.compile(r"((?<!\d)\d++(?:[.,:]\d++)+|(?<=[^\W\d_])[+#]+(?![\w+#]))")
 _APOSTROPHE = re.compile(r"['\u2019\u2018`\u00b4]")
 _PLAIN = re.compile(r"[a-z0-9]+(?: [a-z0-9]+)*")
 _TOKEN = re.compile(r'"([^"]*)"|([^\s"]+)')
