@@ -32,7 +32,11 @@ _OWN = frozenset(["out", "rules", "meta"])
 """Names of SISR as identifiers; those of properties are ignored."""
 _NAMES = ("identifier", "shorthand_property_identifier")
 _GIVES = ("assignment_expression", "augmented_assignment_expression", "variable_declarator")
-_SLOT = re.compile(r"(?s)\s*([A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*)\s*=(?!=)\s*(.+?)\s*")
+MOST_PARENTS = 15
+"""How many objects a slot may be in; each is made by a script as long as its name."""
+_SLOT = re.compile(
+    rf"(?s)\s*([A-Za-z_]\w*(?:\.[A-Za-z_]\w*){{0,{MOST_PARENTS}}})\s*=(?!=)\s*(.+?)\s*"
+)
 _GSL = re.compile(r"<\s*([A-Za-z_]\w*)\s+([^<>]+?)\s*>")
 _ALL_GSL = re.compile(rf"(?:\s*{_GSL.pattern})+\s*")
 _PIECE = re.compile(rf"{_STRING}|(?P<open>[\[{{(])|(?P<close>[\]}})])|(?P<end>;)|[^\s]|\s+")

@@ -364,3 +364,13 @@ def test_a_token_of_many_digits_is_read_in_one_pass() -> None:
     began = process_time()
     assert not load(xml(f'<rule id="r">{digits} !</rule>')).match("1")
     assert process_time() - began < 2, "10 ms on a quiet machine"
+
+
+def test_a_slot_inside_very_many_objects_is_text() -> None:
+    tag = "a." * 20_000 + "b=1"
+    began = process_time()
+    (match,) = load(f"{ABNF}$r = go {{{tag}}};").match("go")
+    assert match.interpretation == tag
+    assert process_time() - began < 2, "50 ms on a quiet machine"
+    (match,) = load(f"{ABNF}$r = go {{{'a.' * 15}b=1}};").match("go")
+    assert str(match.interpretation).count("a") == 15
