@@ -92,12 +92,22 @@ def test_a_call_with_music_can_be_ended_by_the_caller(tmp_path: Path) -> None:
     assert "log: near_end_disconnect" in done.stdout, done.stdout + done.stderr
 
 
+CONTOURS = ("", "high", "(0%)", "(0%+20Hz)", "(0,+20Hz)", "(0%,loud)", "(0%,+20Hz", "0%,+20Hz")
+
+
 @pytest.mark.parametrize(
     ("content", "wrong"),
     [
         ('<prosody pitch="foo" volume="101" range="?">a</prosody>', ["pitch", "range", "volume"]),
         ('<prosody pitch="+5%" volume="+6dB" range="120Hz">a</prosody>', []),
         ('<prosody pitch="-2st" volume="100" range="x-low">a</prosody>', []),
+        ('<prosody contour="(0%,+20Hz) ( 10% , high )(.5%,120Hz)">a</prosody>', []),
+        *((f'<prosody contour="{one}">a</prosody>', ["contour"]) for one in CONTOURS),
+        ('<phoneme ph="x" alphabet="ipa">a</phoneme>', []),
+        ('<phoneme ph="x" alphabet="x-sampa">a</phoneme>', []),
+        ('<phoneme ph="x">a</phoneme>', []),
+        ('<phoneme ph="x" alphabet="IPA">a</phoneme>', ["alphabet"]),
+        ('<phoneme ph="x" alphabet="sampa">a</phoneme>', ["alphabet"]),
         ('<voice age="x" variant="0">a</voice>', ["age", "variant"]),
         ('<voice age="0" variant="1" gender="female">a</voice>', []),
         ("<voice>a</voice>", ["<voice>"]),
@@ -106,7 +116,7 @@ def test_a_call_with_music_can_be_ended_by_the_caller(tmp_path: Path) -> None:
     ],
 )
 def test_speech_that_no_voice_can_make_is_told(content: str, wrong: list[str]) -> None:
-    """SSML 1.0, 3.2.1 and 3.2.4: it is said all the same."""
+    """SSML 1.0, 3.1.9, 3.2.1 and 3.2.4: it is said all the same."""
     text = block(f"<prompt>{content}</prompt>")
     told = [one.message.split()[0] for one in warnings(text)]
     assert told == wrong
@@ -115,7 +125,15 @@ def test_speech_that_no_voice_can_make_is_told(content: str, wrong: list[str]) -
 
 @pytest.mark.parametrize(
     "wrong",
-    ["pitch='{}x'", "range='+{}x'", "volume='+{}x'", "pitch='١Hz'", "volume='١'", "volume='+١'"],
+    [
+        "contour='({}x)'",
+        "pitch='{}x'",
+        "range='+{}x'",
+        "volume='+{}x'",
+        "pitch='١Hz'",
+        "volume='١'",
+        "volume='+١'",
+    ],
 )
 def test_a_number_that_is_none_is_told_however_long_it_is(wrong: str) -> None:
     began = process_time()

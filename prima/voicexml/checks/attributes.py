@@ -110,6 +110,10 @@ DECIMAL = r"(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)"
 """A number without a sign; no digit is tried twice, so that a long one takes no longer."""
 PITCH = rf"x-low|low|medium|high|x-high|default|[+-]?{DECIMAL}(?:Hz|st|%)?"
 """A pitch, or a range of it (SSML 1.0, 3.2.4)."""
+CONTOUR = rf"(?:\s*+\(\s*+[+-]?{DECIMAL}%\s*+,\s*+(?:{PITCH})\s*+\))++\s*+"
+"""Times in a text, as shares of it, each with its pitch (SSML 1.0, 3.2.4)."""
+ALPHABET = r"ipa|x-\S+"
+"""An alphabet of pronunciations: that of the IPA, or a vendor's (SSML 1.0, 3.1.9)."""
 VOLUME = (
     rf"silent|x-soft|soft|medium|loud|x-loud|default|[+-]{DECIMAL}(?:dB|%)?"
     r"|100(?:\.0*)?|[0-9]{1,2}(?:\.[0-9]*)?"
@@ -130,6 +134,8 @@ REMEDIES = {
     "key": "Write one key: 0 to 9, *, # or A to D; or none.",
     "modes": "Write dtmf, voice, or both with a space between.",
     "pitch": 'Write x-low, low, medium, high, x-high or default, "120Hz", or a change such as "+10%".',
+    "contour": 'Write shares of the text with pitches, such as "(0%,+20Hz) (50%,high)".',
+    "alphabet": 'Write ipa, or a name that begins with x-, such as "x-sampa".',
     "volume": 'Write silent, x-soft, soft, medium, loud, x-loud or default, 0 to 100, or a change such as "+6dB".',
     "weight": 'Write a number such as "0.5".',
 }
@@ -175,6 +181,8 @@ FITS: Mapping[str, Callable[[str], bool]] = {
     "key": lambda text: not text or (KEYS.fullmatch(text) is not None and len(text) == 1),
     "modes": lambda text: {*text.split()} in ({"dtmf"}, {"voice"}, {"dtmf", "voice"}),
     "pitch": lambda text: re.fullmatch(PITCH, text) is not None,
+    "contour": lambda text: re.fullmatch(CONTOUR, text) is not None,
+    "alphabet": lambda text: re.fullmatch(ALPHABET, text) is not None,
     "volume": lambda text: re.fullmatch(VOLUME, text) is not None,
     "weight": lambda text: re.fullmatch(WEIGHT, text) is not None,
 }

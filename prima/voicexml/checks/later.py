@@ -47,7 +47,8 @@ LATER_VALUES = {
     "catch": {"event": "events"},
     "form": {"id": "name"},
     "menu": {"id": "name"},
-    "prosody": {"pitch": "pitch", "range": "pitch", "volume": "volume"},
+    "phoneme": {"alphabet": "alphabet"},
+    "prosody": {"pitch": "pitch", "range": "pitch", "contour": "contour", "volume": "volume"},
     "voice": {"age": "number", "variant": "integer"},
 }
 """Impossible keys, events that nothing throws or takes, and speech that no voice can produce."""
