@@ -90,7 +90,7 @@ def voicexml_problems(
     for page in pages:
         missing: set[int] = set()
         yield from (*page.problems, *page.warnings(), *_not_there(page, folder, answered, missing))
-        yield from _grammars_of(page, folder, missing)
+        yield from _grammars_of(page, folder, missing, answered)
         yield from check_variables(page, pages.root(page), script)
         yield from check_caught(page.root, pages.thrown)
         yield from check_listening(page, pages.root(page))
@@ -150,27 +150,59 @@ def _files_named(page: Page, answered: tuple[str, ...]) -> Iterator[tuple[Node, 
                 continue
             whole = page.resolve(uri, node)
             file = unquote(whole.partition("#")[0].partition("?")[0])
-            elsewhere = page.site is not None and page.site.whole(whole).startswith(answered)
-            if file and not elsewhere and not SCHEME.match(whole):
+            if file and not _is_elsewhere(whole, page, answered):
                 yield node, name, file
 
 
-def _grammars_of(page: Page, folder: Path, missing: set[int]) -> Iterator[Problem]:
-    """Problems of the existing grammar files that a VoiceXML document names."""
-    from prima.voicexml.checks import grammar_problems
-
+def _grammars_of(
+    page: Page, folder: Path, missing: set[int], answered: tuple[str, ...]
+) -> Iterator[Problem]:
+    """Problems of grammars with files, and of the existing files that a VoiceXML document names."""
     site = page.site
-    fetch, base = fetcher(folder, site), site.whole(page.base()) if site else page.base()
     for node in page.root.walk():
-        uri = node.get("src").strip()
-        if node.tag != "grammar" or not uri or node.index in missing:
+        if node.tag != "grammar" or node.index in missing:
             continue
-        if SCHEME.match(page.resolve(uri, node)):
-            continue
-        for problem in grammar_problems(node, page.lang, base, fetch):
+        for problem in _of_files(node, page, folder, answered):
             if problem.place.file != node.source.file:
                 file = problem.place.file
                 place = problem.place._replace(file=site.name(file) if site else file)
                 yield in_folder(folder, problem._replace(place=place))
-            elif problem.code != "no-such-file":  # which is reported already
+            elif problem.code != "no-such-file" or not node.get("src"):  # which is reported already
                 yield problem
+
+
+def _of_files(node: Node, page: Page, folder: Path, answered: tuple[str, ...]) -> list[Problem]:
+    """The problems of a grammar that are not found in its element alone."""
+    from prima.voicexml.checks import grammar_problems
+
+    site = page.site
+    fetch, base = fetcher(folder, site), site.whole(page.base()) if site else page.base()
+    uri = node.get("src").strip()
+    if uri.startswith("builtin:"):
+        return []
+    if uri:
+        elsewhere = SCHEME.match(page.resolve(uri, node))
+        return grammar_problems(node, page.lang, base, None if elsewhere else fetch)
+    files = [page.resolve(one, node) for one in _referred(node)]
+    if not files or any(_is_elsewhere(one, page, answered) for one in files):
+        return []
+    told = grammar_problems(node, page.lang)
+    return [one for one in grammar_problems(node, page.lang, base, fetch) if one not in told]
+
+
+REFERENCE = re.compile(r"\$<\s*+([^<>\s]*)")
+"""A reference in the ABNF form, up to its URI."""
+
+
+def _referred(node: Node) -> list[str]:
+    """The URIs of other grammars to which the rules of a grammar in a document refer."""
+    uris = [one.get("uri").strip() for one in node.walk() if one.tag == "ruleref"]
+    uris += REFERENCE.findall(node.own_text)
+    return [uri for uri in uris if uri and not uri.startswith(("#", "builtin:"))]
+
+
+def _is_elsewhere(whole: str, page: Page, answered: tuple[str, ...]) -> bool:
+    """Whether a URI names no file of the folder: a service answers it, or a host."""
+    if page.site is not None and page.site.whole(whole).startswith(answered):
+        return True
+    return SCHEME.match(whole) is not None

@@ -9,6 +9,7 @@ import pytest
 from prima import api, loading
 from prima.errors import DocumentError
 from tests import ROOT
+from tests.helpers.grammars import xml
 from tests.helpers.here import prima
 from tests.helpers.validating import VXML, told
 
@@ -174,6 +175,8 @@ def test_what_another_document_takes_is_fine(tmp_path: Path) -> None:
     assert told(tmp_path, content, second=CALLED) == []
 
 
+INLINE = '<grammar version="1.0" root="r"><rule id="r"><ruleref uri="{}"/></rule></grammar>'
+INLINE_ABNF = "<grammar><![CDATA[#ABNF 1.0;\nlanguage en; root $r; $r = $<{}>;]]></grammar>"
 SECOND = VXML.format(
     "", '<form><field name="x"><grammar src="gone.grxml"/><prompt>Hm?</prompt></field></form>'
 )
@@ -230,3 +233,31 @@ def test_a_grammar_in_the_place_of_a_document_is_told_to_be_one(tmp_path: Path) 
         api.stage([], [str(tmp_path / "g.gram")])
     with pytest.raises(DocumentError, match=told):
         api.load_scenario(tmp_path / "g.gram")
+
+
+@pytest.mark.parametrize(
+    ("grammar", "says"),
+    [
+        ('<grammar src="builtin:grammar/dat"/>', 'no-such-name There is no built-in type "builtin'),
+        ('<grammar src="builtin:dtmf/digits?length=2;minlength=1"/>', "exclusive length excludes"),
+        ('<grammar src="http://[/a"/>', 'bad-value "http://[/a" is not a URI'),
+        ('<grammar src="http://x.org/a" type="a/b"/>', 'format Grammars of type "a/b" are not'),
+        (INLINE.format("gone.grxml"), 'no-such-file The grammar "gone.grxml" cannot be'),
+        (INLINE.format("menu.grxml#tee"), 'no-such-rule There is no rule "tee" there.'),
+        (INLINE_ABNF.format("gone.gram"), 'no-such-file The grammar "gone.gram" cannot be'),
+        ('<grammar src="builtin:dtmf/digits?length=2"/>', ""),
+        ('<grammar src="http://x.org/a"/>', ""),
+        (INLINE.format("menu.grxml#tea"), ""),
+        (INLINE.format("http://x.org/a"), ""),
+        (INLINE.format("builtin:grammar/date"), ""),
+        (INLINE_ABNF.format("menu.grxml"), ""),
+    ],
+)  # fmt: skip
+def test_what_a_grammar_lacks_beyond_its_element_is_told(
+    tmp_path: Path, grammar: str, says: str
+) -> None:
+    (tmp_path / "menu.grxml").write_text(
+        xml('<rule id="r">x</rule><rule id="tea" scope="public">tea</rule>')
+    )
+    found = told(tmp_path, f'<form><field name="a"><prompt>Hm?</prompt>{grammar}</field></form>')
+    assert [one.startswith(f"main.vxml {says}") for one in found] == [True] * bool(says), found

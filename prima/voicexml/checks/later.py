@@ -165,7 +165,8 @@ def _type_problems(node: Node) -> Iterator[Problem]:
     from prima.grammar.builtin import TYPES, Conflict, built_in
 
     attribute = "type" if node.key == "field" else "src"
-    kind, place = node.get(attribute), node.attribute_place(attribute)
+    kind = node.get("type") if node.key == "field" else node.get("src").strip()
+    place = node.attribute_place(attribute)
     if not kind or (node.key != "field" and not kind.startswith("builtin:")):
         return
     try:
