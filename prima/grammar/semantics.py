@@ -55,6 +55,12 @@ class _Result:
     value: Json = None
     box: Any = None
     """The value inside an engine, if it is in one."""
+    tag: Tag | None = None
+    """The last tag that ran for it, if any."""
+
+    def place(self) -> Place:
+        """Where the value comes from."""
+        return self.tag.where() if self.tag is not None else self.home.where()
 
 
 class TagInterpreter:
@@ -137,7 +143,8 @@ class TagInterpreter:
             result.value = last.value
         else:
             inner = self._results[id(last)]
-            result.value, result.box, result.home = inner.value, inner.box, inner.home
+            result.value, result.box = inner.value, inner.box
+            result.home, result.tag = inner.home, inner.tag
 
     def _slots(self, values: list[RuleFrame | Value]) -> dict[str, Json] | None:
         """The slots that rules have filled, later ones over earlier ones; None if there are none."""
@@ -154,10 +161,10 @@ class TagInterpreter:
         try:
             return engine.json(result.box) if way == "json" else engine.carry(result.box)
         except EngineLost as error:
-            raise EngineLost(f"{result.home.where()}: {error}") from None
+            raise EngineLost(f"{result.place()}: {error}") from None
         except ScriptError as error:
-            place = result.home.where()
-            raise TagFailed(SemanticError(f"The value cannot be given: {error}.", place)) from None
+            failed = SemanticError(f"The value cannot be given: {error}.", result.place())
+            raise TagFailed(failed) from None
 
     def _script(self, frame: RuleFrame, result: _Result) -> None:
         """Run the tags of a rule with the values of the rules that it refers to."""
@@ -165,6 +172,7 @@ class TagInterpreter:
         legacy = result.document.dialect == "legacy"
         pieces: list[str] = []
         tags = [event for event in frame.events if isinstance(event, Tag)]
+        result.tag = tags[-1]
         codes = [translate(tag.code) if legacy else tag.code for tag in tags]
         numbered = enumerate(in_turn(codes))
         tagged = list(zip(tags, codes, strict=True))

@@ -63,3 +63,12 @@ def test_tags_that_are_no_script_are_warned_of(tag: str, warned: bool) -> None:
     for head in (SCRIPT, ABNF):
         found = load(f"{head}$r = x {{!{{{tag}}}!}};").warnings()
         assert [one.code for one in found] == ["bad-expression"] * warned
+
+
+@pytest.mark.parametrize("value", ["out.out = out", "out = 'x'.repeat(200000)", "out = 1n"])
+def test_a_value_that_cannot_be_given_has_the_place_of_its_tag(value: str) -> None:
+    text = f"{SCRIPT}$r = $s;\n$s = [b] {{out = 1}} $t {{out = rules.t}};\n$t = a {{{value}}};"
+    (match,) = load(text, base="g.gram").match("a")
+    assert match.error is not None and match.error.message.startswith("The value cannot be given")
+    line = text.splitlines().index("$s = [b] {out = 1} $t {out = rules.t};") + 1
+    assert str(match.error.place) == f"g.gram:{line}:23"
