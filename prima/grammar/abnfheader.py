@@ -21,10 +21,11 @@ def decode_abnf(file: str, data: bytes) -> str:
     Raises:
         GrammarError: the encoding is unknown, or the bytes are not in it.
     """
-    encoding = _encoding(data)
+    encoding, column = _encoding(data)
     if not _is_accepted(encoding):
         message = f'The encoding "{encoding[:40]}" is not accepted.'
-        raise refuse(GrammarError, Place(file), "encoding", message, "Save it as UTF-8.")
+        place = Place(file, 1, column)
+        raise refuse(GrammarError, place, "encoding", message, "Save it as UTF-8.")
     try:
         return with_line_feeds(data.decode(encoding))
     except UnicodeDecodeError as error:
@@ -54,14 +55,16 @@ def _is_accepted(encoding: str) -> bool:
     return name in {codecs.lookup(one).name for one in (*ENCODINGS, *more)}
 
 
-def _encoding(data: bytes) -> str:
-    """The encoding of a file by its first bytes or its header."""
+def _encoding(data: bytes) -> tuple[str, int]:
+    """The encoding of a file by its first bytes or its header, and the column that names it."""
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return "utf-16"
+        return "utf-16", 1
     if data.startswith((b"#\0", b"\0#")):
-        return "utf-16-le" if data[0] else "utf-16-be"
+        return "utf-16-le" if data[0] else "utf-16-be", 1
     header = HEADER.match(data[:200].decode("latin-1"))
-    return (header[2] or "utf-8").lower() if header else "utf-8-sig"
+    if header is None:
+        return "utf-8-sig", 1
+    return (header[2].lower(), header.start(2) + 1) if header[2] else ("utf-8", 1)
 
 
 def header_end(source: Source) -> int:

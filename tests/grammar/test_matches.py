@@ -238,6 +238,14 @@ def test_a_byte_that_is_none_is_told_with_its_place_and_a_remedy(data: bytes, pl
     assert problem.message == "A byte here is not UTF-8."
 
 
+@pytest.mark.parametrize("header", ["#ABNF 1.0 klingon;", "#ABNF\t 1.0 klingon ;"])
+def test_an_encoding_that_is_not_accepted_is_told_where_it_is_named(header: str) -> None:
+    with pytest.raises(GrammarError) as caught:  # SRGS 4.4
+        load(f"{header}\nlanguage en;\n$r = caf\xe9;\n".encode("latin-1"), base="a.gram")
+    (problem,) = caught.value.problems
+    assert str(problem.place) == f"a.gram:1:{header.index('klingon') + 1}"
+
+
 def test_what_stands_inside_of_words_does_not_cut_them() -> None:
     grammar = load(ABNF + "$r = cooperate;")
     assert grammar.match("co\u00adoperate") and grammar.match("co\u200doperate")
