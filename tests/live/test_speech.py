@@ -6,6 +6,7 @@ import asyncio
 import subprocess
 import sys
 from pathlib import Path
+from time import process_time
 
 import pytest
 
@@ -93,6 +94,26 @@ def test_options_and_types_are_written_and_what_nothing_can_be_said_of_is_not() 
     assert jsgf([], lambda _: True) == ""
     many = Answers({f"{'very ' * 2000}{word}": 1 for word in ("a", "b", "c", "d", "e", "f")})
     assert jsgf([many], lambda _: True) == ""
+
+
+TWICE = "".join(f"$x{at} = $x{at + 1} $x{at + 1};" for at in range(18))
+NESTED = "".join(f"$x{at} = {'(b | ' * 90}$x{at + 1}{')' * 90};" for at in range(35))
+
+
+@pytest.mark.parametrize(
+    "rules",
+    [
+        f"$r = $x0 | a; {TWICE} $x18 = ();",
+        f"$r = $x0 | a; {TWICE} $x18 = kidode;",
+        f"$r = {'(' * 6}a{')<40->' * 6};",
+        f"$r = $x0; {NESTED} $x35 = a;",
+    ],
+)
+def test_a_grammar_that_is_large_when_it_is_written_is_left_to_the_open_ear(rules: str) -> None:
+    grammar = load(f"#ABNF 1.0;\nlanguage en; root $r; {rules}")
+    began = process_time()
+    assert jsgf([Answers(grammars=[grammar])], lambda word: word != "kidode") == ""
+    assert process_time() - began < 2, "50 ms on a quiet machine"
 
 
 def test_words_are_spelt_as_dictionaries_spell_them() -> None:

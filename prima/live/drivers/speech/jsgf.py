@@ -11,9 +11,11 @@ from prima.grammar.model import Sequence as Row
 from prima.grammar.text import wide
 
 DEEP = 40
-"""The maximum depth of nested parts; recursive rules are omitted."""
+"""The maximum depth of rules inside rules, which recursive ones exceed: deeper ones are omitted."""
 MOST = 50_000
-"""Maximum length of a grammar in characters."""
+"""Maximum length of a grammar in characters, and number of parts, each as often as it is written."""
+MOST_INSIDE = 200
+"""Maximum number of parts inside one another, of all rules together."""
 APART = re.compile(r"[^\w']+")
 SPOKEN = re.compile(r"[a-z][a-z']*")
 """A word that can be added to a recogniser's dictionary."""
@@ -113,19 +115,33 @@ class Writer:
     def __init__(self, known: Callable[[str], bool]) -> None:
         self._known = known
         self._written = 0
+        self._parts = 0
+        self._inside = 0
 
     def words(self, text: str) -> str | None:
         """Words in the recogniser's spelling; None if it does not know one."""
         found = spelt(text)
         if not all(SPOKEN.fullmatch(word) and self._known(word) for word in found):
             return None
-        self._written += len(text)
+        self._add(len(text))
+        return " ".join(found)
+
+    def _add(self, letters: int) -> None:
+        self._written += letters
         if self._written > MOST:
             raise TooLarge
-        return " ".join(found)
 
     def part(self, part: Part, inside: tuple[Rule, ...]) -> str | None:
         """A part of a grammar, within some rules."""
+        self._parts += 1
+        self._inside += 1
+        if self._parts > MOST or self._inside > MOST_INSIDE:
+            raise TooLarge
+        made = self._made(part, inside)
+        self._inside -= 1
+        return made
+
+    def _made(self, part: Part, inside: tuple[Rule, ...]) -> str | None:
         match part:
             case Words(tokens=tokens):
                 return self.words(" ".join(tokens))
@@ -170,4 +186,5 @@ class Writer:
             row.append(f"( {body} )*")
         else:
             row += [f"[ {body} ]"] * min(part.high - part.low, DEEP)
+        self._add(len(body) * (len(row) - 1))
         return " ".join(row)
