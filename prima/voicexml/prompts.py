@@ -19,7 +19,7 @@ from prima.voicexml.evaluating import WORD, VoiceEvaluator
 from prima.voicexml.owner import MachineOwner
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
 from prima.voicexml.settings import setting
-from prima.voicexml.speech import Speech, read_markup
+from prima.voicexml.speech import Speech, language_of, read_markup
 from prima.voicexml.state import Context
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
@@ -126,11 +126,11 @@ class Speaker(VoiceEvaluator):
             speech.parts.append(item)
             return
         self.owner.app.count_step(item)
-        lang = item.get("xml:lang")
+        lang = language_of(item, speech.lang)
         if item.namespace == PRIMA_NAMESPACE:
             self.flush(speech)
             self.enqueue(item, context, local, speech.lang)
-        elif lang and lang != speech.lang:
+        elif lang != speech.lang:
             self.flush(speech)
             before, speech.lang = speech.lang, lang
             self.read_element(item, context, local, speech)

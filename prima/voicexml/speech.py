@@ -60,6 +60,16 @@ class Speech:
             self.parts.append(Cue(0, "end"))
 
 
+def language_of(node: Node, around: str) -> str:
+    """The language of an element in text of some language, which an unspoken one does not change.
+
+    Names of languages differ by more than capitals (RFC 3066, 2.1).
+    """
+    own = node.get("xml:lang")
+    same = not own or node.tag in SILENT or own.lower() == around.lower()
+    return around if same else own
+
+
 def read_markup(node: Node, speech: Speech, inner: Callable[[], None]) -> None:
     """Read an element that needs nothing but the document (SSML 1.0); ``inner`` reads its content."""
     match node.tag:

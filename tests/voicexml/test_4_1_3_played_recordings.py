@@ -38,6 +38,17 @@ def test_a_recording_of_the_folder_takes_its_own_time(played: Played, tmp_path: 
     assert takes(made) == [2500, 2500, plain("Listen:") + 2500, 2500]
 
 
+@pytest.mark.parametrize(
+    "inside", ["<desc xml:lang='fr'>cloche</desc>", "<s xml:lang='EN'>rings</s>"]
+)
+def test_a_description_in_another_language_divides_no_recording(
+    played: Played, tmp_path: Path, inside: str
+) -> None:  # SSML 1.0, 3.3.3; RFC 3066, 2.1
+    recording(tmp_path / "bell.wav", 2.5)
+    made = played(prompt(f'<audio src="bell.wav">A bell {inside} here.</audio>'))
+    assert (len(texts(made)), takes(made)) == (1, [2500])
+
+
 def test_a_recording_that_is_not_there_is_said(played: Played) -> None:
     made = played(
         """<form><block><prompt><audio src="none.wav">A <break time="1s"/> bell.</audio></prompt>

@@ -12,7 +12,7 @@ from prima.messages import Cue
 from prima.voicexml.elements import SILENT
 from prima.voicexml.inputs import words_of
 from prima.voicexml.prompts import UNKNOWN_MS
-from prima.voicexml.speech import Speech, read_markup
+from prima.voicexml.speech import Speech, language_of, read_markup
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 SAYS = "an expression gives a part of what it says"
@@ -58,8 +58,9 @@ class SpeechReader:
         if isinstance(piece, str):
             said.speech.parts.append(piece)
         elif piece.namespace != PRIMA_NAMESPACE:
-            before, lang = said.speech.lang, piece.get("xml:lang")
-            if lang and lang != before:
+            before = said.speech.lang
+            lang = language_of(piece, before)
+            if lang != before:
                 said.flush(lang)
             self._element(piece, said, menu)
             if said.speech.lang != before:
