@@ -110,6 +110,8 @@ CONTOURS = ("", "high", "(0%)", "(0%+20Hz)", "(0,+20Hz)", "(0%,loud)", "(0%,+20H
         ('<phoneme ph="x" alphabet="sampa">a</phoneme>', ["alphabet"]),
         ('<voice age="x" variant="0">a</voice>', ["age", "variant"]),
         ('<voice age="0" variant="1" gender="female">a</voice>', []),
+        ('<prosody pitch=" high " range=" +5% " volume=" loud ">a</prosody>', []),
+        ('<voice age=" 0 " variant=" 1 "><phoneme ph="x" alphabet=" ipa ">a</phoneme></voice>', []),
         ("<voice>a</voice>", ["<voice>"]),
         ("<prosody>a</prosody>", ["<prosody>"]),
         ('<voice xml:lang="en">a</voice>', []),

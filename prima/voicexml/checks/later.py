@@ -146,7 +146,7 @@ def _value_problems(node: Node) -> list[Problem]:
     return [
         bad_value(node, name, node.get(name), kind)._replace(severity="warning")
         for name, kind in {**FETCHED_VALUES, **LATER_VALUES.get(node.key, {})}.items()
-        if name in node.attributes and not fits(kind, node.get(name))
+        if name in node.attributes and not fits(kind, node.get(name).strip())
     ]
 
 
