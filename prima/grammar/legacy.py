@@ -37,8 +37,8 @@ MOST_PARENTS = 15
 _SLOT = re.compile(
     rf"(?s)\s*([A-Za-z_]\w*(?:\.[A-Za-z_]\w*){{0,{MOST_PARENTS}}})\s*=(?!=)\s*(.+?)\s*"
 )
-_GSL = re.compile(r"<\s*([A-Za-z_]\w*)\s+([^<>]+?)\s*>")
-_ALL_GSL = re.compile(rf"(?:\s*{_GSL.pattern})+\s*")
+_GSL = re.compile(r"<\s*+([A-Za-z_]\w*+)\s++([^<>]++)>")
+_ALL_GSL = re.compile(rf"(?:\s*+{_GSL.pattern})++\s*+")
 _PIECE = re.compile(rf"{_STRING}|(?P<open>[\[{{(])|(?P<close>[\]}})])|(?P<end>;)|[^\s]|\s+")
 _WORDS = re.compile(r"[^\W\d][\w' -]*")
 _CONSTANTS = {"true", "false", "null", "undefined"}
@@ -152,7 +152,7 @@ def _from_dollars(code: str) -> str:
 def _slots(code: str) -> list[tuple[str, str]]:
     """The slots that a tag fills, with their values; none if it is not a list of assignments."""
     if _ALL_GSL.fullmatch(code):
-        return [(match[1], match[2]) for match in _GSL.finditer(code)]
+        return [(match[1], match[2].strip()) for match in _GSL.finditer(code)]
     if "=" not in code:
         return []
     found: list[tuple[str, str]] = []
