@@ -186,8 +186,8 @@ def _of_files(node: Node, page: Page, folder: Path, answered: tuple[str, ...]) -
     files = [page.resolve(one, node) for one in _referred(node)]
     if not files or any(_is_elsewhere(one, page, answered) for one in files):
         return []
-    told = grammar_problems(node, page.lang)
-    return [one for one in grammar_problems(node, page.lang, base, fetch) if one not in told]
+    own = grammar_problems(node, page.lang)
+    return [one for one in grammar_problems(node, page.lang, base, fetch) if one not in own]
 
 
 REFERENCE = re.compile(r"\$<\s*+([^<>\s]*)")
