@@ -205,7 +205,7 @@ class FloorRules(Turn):
         """
         if self.halted:
             return
-        driven = self.driven or any("locomotion" in ab.devices for ab in self.running.values())
+        driven = self.driven or any(ab.drives for ab in self.running.values())
         due = set() if driven else set(self.halting)
         for name in self.ordered(due - self.stops):
             self.report(14, "F5", f"{name} is moved on by nobody and not stopped")

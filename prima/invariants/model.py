@@ -101,6 +101,11 @@ class AB:
         return self.phase != LINKED and self.outermost.phase != LINKED
 
     @property
+    def drives(self) -> bool:
+        """Whether it has the wheels itself: a unit leaves them to its Commands (F5)."""
+        return "locomotion" in self.devices and self.command != "iu"
+
+    @property
     def moves(self) -> bool:
         """Whether it is a feedback Command that moves the robot (F5)."""
         return self.feedback and "locomotion" in self.devices

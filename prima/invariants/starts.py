@@ -74,7 +74,7 @@ class Starts(Telling):
         ab.cause = ab.fresh_until = None
         ab.listening = False
         self.running[ab.name] = ab
-        self.driven = self.driven or "locomotion" in ab.devices
+        self.driven = self.driven or ab.drives
         ab.tree.started = self.place
         ab.tree.spoken = ab.tree.spoken or ("speaker" in ab.devices and ab.command != "iu")
         ab.tree.engaged = ab.tree.engaged or ab.engages

@@ -241,9 +241,17 @@ def _collide(mediation: Mediation, ab: Behavior) -> None:
 def f5(mediation: Mediation) -> None:
     """F5: stop the body if no further loop follows, unless something else takes the wheels."""
     ab, mediation.rolling = mediation.rolling, None
-    if ab is not None and "locomotion" not in mediation.memory.occupied:
+    if ab is not None and _driving(mediation) is None:
         mediation.order("stop", ab)
         mediation.recorder.behavior("stop", ab, rule="F5")
+
+
+def _driving(mediation: Mediation) -> Behavior | None:
+    """The Command that has the wheels; a unit owns them before a Command of it does (U5)."""
+    ab = mediation.memory.occupied.get("locomotion")
+    while ab is not None and ab.inside is not None:
+        ab = ab.inside.busy.get("locomotion")
+    return ab
 
 
 # Units --------------------------------------------------------------------------------------------

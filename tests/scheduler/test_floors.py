@@ -273,6 +273,20 @@ def test_f5_no_stop_where_something_else_takes_the_wheels_or_the_goal_is_met() -
     assert done.phases("stop") == []
 
 
+@pytest.mark.parametrize("turns_first, stops", [(False, ["ea#1.1"]), (True, [])])
+def test_f5_a_unit_takes_the_wheels_when_a_command_in_it_does(
+    turns_first: bool, stops: list[str]
+) -> None:
+    unit = (say(), command("turn", angle=9))
+    stage = Stage()
+    stage.request("ea", move())
+    stage.select()
+    stage.request("fa", Group(chain(*(reversed(unit) if turns_first else unit))), cause=EVENT)
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == ["fa#1", "fa#2"]
+    assert [r["behavior"] for r in stage.phases("stop")] == stops
+
+
 def test_f5_stops_a_search_that_now_cuts_short_without_moving_the_robot() -> None:
     # The search turns the robot. What is wanted now says something, and moves nothing.
     body = f'<form id="f1">{SEARCH}<on event="touch"><speak order="now">Wait.</speak></on></form>'
