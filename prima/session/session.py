@@ -157,11 +157,13 @@ class Session:
         """Whether nothing runs or waits in working memory."""
         return not self.mediator.memory.behaviors
 
-    def _class(self, value: Inbound) -> tuple[int, int]:
-        """V3: sort by class, and ends by application, the one whose stream is active first."""
+    def _class(self, value: Inbound) -> tuple[int, int, int]:
+        """V3: sort by class, and ends by application, the active stream's first, and by number."""
         if isinstance(value, Ended | Listening | Halted | Failed):
-            return 0, self._rank(value.behavior.partition("#")[0])
-        return 1, 0
+            ab = self.mediator.running(value.behavior)
+            rank = self._rank(value.behavior.partition("#")[0])
+            return 0, rank, ab.serial if ab is not None else 0
+        return 1, 0, 0
 
     def _rank(self, name: str) -> int:
         active = self.mediator.memory.active

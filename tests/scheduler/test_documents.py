@@ -343,6 +343,17 @@ def test_v3_ends_come_before_events() -> None:
     assert bench.logs() == ["true"]
 
 
+def test_v3_ends_of_one_application_come_in_the_order_of_their_numbers() -> None:
+    bench = pair(
+        """<form id="a"><block><par>
+          <speak>One.<on event="end"><log>speak</log></on></speak>
+          <gesture name="bow"><on event="end"><log>gesture</log></on></gesture>
+        </par></block></form>"""
+    )
+    bench.step(*map(Ended, sorted(bench.running(), reverse=True)))
+    assert bench.logs() == ["speak", "gesture"]
+
+
 def test_s5_the_same_inputs_give_the_same_records() -> None:
     def records() -> list[object]:
         bench = pair(
