@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from prima.messages import Order
 from prima.scheduler import rules
-from prima.scheduler.behavior import WAITING, Behavior, Wait
+from prima.scheduler.behavior import WAITING, Application, Behavior, Wait
 from prima.scheduler.interruption import Held, x2
 from prima.scheduler.mediation import Mediation
+from prima.scheduler.memory import WorkingMemory
 from prima.scheduler.policy import Ranked
 from prima.scheduler.preparation import join_first, note_words, prepare
 from prima.scheduler.rules import Rank, Refusal
@@ -52,10 +53,7 @@ def s4(mediation: Mediation) -> bool:
             _hold(mediation, ab, refusal)
         elif _start(mediation, rank, ab, ranked[index + 1 :], held):
             return True
-    # A start may change whose stream is active, and so how reactions rank (S2b).
-    return len(mediation.started) > before and any(
-        ab.reaction is not None for ab in memory.waiting.values()
-    )
+    return len(mediation.started) > before and _reactions_wait(memory)
 
 
 # Devices ------------------------------------------------------------------------------------------
@@ -143,6 +141,7 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
         held: the devices that ABs above it hold back.
     """
     policy, memory = mediation.policy, mediation.memory
+    active = memory.active
     # An AB that takes no device and no floor keeps no other from starting.
     taking = bool(ab.devices) or ab.reaction is not None
     rivals = able(mediation, lower, held) if taking else []
@@ -160,7 +159,16 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     mediation.recorder.decision(ab, rule, [loser.id for _, loser in losers])
     mediation.recorder.start(ab, rule, reaction)
     advance(mediation, ab)
-    return e4(mediation, ab) or changed or policy.turning
+    return e4(mediation, ab) or changed or policy.turning or _reranks(memory, active)
+
+
+def _reranks(memory: WorkingMemory, active: Application | None) -> bool:
+    """S2b: whether another's stream is active now, which may rank reactions to one event anew."""
+    return memory.active is not active and _reactions_wait(memory)
+
+
+def _reactions_wait(memory: WorkingMemory) -> bool:
+    return any(ab.reaction is not None for ab in memory.waiting.values())
 
 
 def _outdone(

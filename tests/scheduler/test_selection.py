@@ -79,6 +79,15 @@ def test_s2b_a_stream_that_has_ended_is_not_active_while_another_runs() -> None:
     assert stage.select() == ["one#2"], "the sentence is what is active"
 
 
+def test_s2b_a_stream_that_begins_in_the_same_selection_is_active_for_the_rest_of_it() -> None:
+    stage = Stage()
+    stage.request("ea", say())
+    stage.request("fa", move(), cause=EVENT)
+    stage.request("ea", move(), cause=EVENT)
+    assert stage.select() == ["ea#1", "ea#2.1"]
+    assert stage.rule("ea#2.1") == "S2b"
+
+
 def test_s2c_a_parent_that_has_just_ended_goes_before_others() -> None:
     stage = Stage()
     stage.request("ea", say("One."), say("Two."))
