@@ -142,9 +142,7 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     """
     policy, memory = mediation.policy, mediation.memory
     active = memory.active
-    # An AB that takes no device and no floor keeps no other from starting.
-    taking = bool(ab.devices) or ab.reaction is not None
-    rivals = able(mediation, lower, held) if taking else []
+    rivals = able(mediation, lower, held) if _takes(ab) else []
     composed = "x5" in mediation.policy.extensions and rules.x5(ab, memory)
     why = _admitted_by(mediation, ab, composed)
     reaction, ab.reaction, ab.stale = ab.reaction, None, None
@@ -160,6 +158,12 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     mediation.recorder.start(ab, rule, reaction)
     advance(mediation, ab)
     return e4(mediation, ab) or changed or policy.turning or _reranks(memory, active)
+
+
+def _takes(ab: Behavior) -> bool:
+    """Whether it may keep others from starting: on a device, by the floor, or in its topic (F6)."""
+    topic = ab.stream.spoken and rules.speaks_next(ab)
+    return bool(ab.devices) or ab.reaction is not None or topic
 
 
 def _reranks(memory: WorkingMemory, active: Application | None) -> bool:

@@ -142,6 +142,16 @@ def test_f6_a_topic_goes_on_through_all_that_is_silent() -> None:
     assert stage.holds("fa#1")[-1] == "F6"
 
 
+def test_f6_a_pause_in_a_topic_goes_before_those_who_would_have_spoken() -> None:
+    stage = Stage()
+    stage.request("ea", say("The answer is"), command("pause", time="1s"), say("forty two."))
+    stage.select()
+    stage.at(5).request("fa", say("I like trains."))
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["ea#2"]
+    assert (stage.rule("ea#2"), stage.losers("ea#2")) == ("S2c", ["fa#1"])
+
+
 def test_f6_a_topic_whose_end_was_deleted_may_be_spoken_into() -> None:
     stage = Stage()
     stage.request("ea", say("The answer is"), command("move-head", pan=30), say("forty two."))
