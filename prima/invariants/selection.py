@@ -170,9 +170,8 @@ class Selection(Patience):
         self._losers_told_rightly(ab, shown, decision, needed)
         named = {*decision["losers"], *needed}
         rivals = [other for other in rivals if other.shown in named]
-        self._rule_told_rightly(
-            ab, shown, decision["rule"], rivals or self._perhaps(ab, decision["losers"])
-        )
+        readings = [one[0] for one in (rivals, self._perhaps(ab, decision["losers"])) if one]
+        self._rule_told_rightly(ab, shown, decision["rule"], readings)
 
     def _perhaps(self, ab: AB, losers: Sequence[str]) -> list[AB]:
         """The losers of a decision to which F2 is open."""
@@ -196,18 +195,22 @@ class Selection(Patience):
         elif count > MANY and (len(losers) != MANY or not len(needed) <= count <= len(allowed)):
             self.report(13, "S2", f"{shown} is said to start before {count}, not {len(needed)}")
 
-    def _rule_told_rightly(self, ab: AB, shown: str, rule: str, rivals: list[AB]) -> None:
-        """S2: the rule that decided between the winner and the first possible rival, if any."""
-        if not rivals:
+    def _rule_told_rightly(self, ab: AB, shown: str, rule: str, readings: list[AB]) -> None:
+        """S2: the rule decided between the winner and the first rival, by a reading of F2."""
+        if not readings:
             expected = self.admitted_by(ab)
             if rule != expected:
                 self.report(13, "S2", f"{shown} starts by {rule}, without losers, not {expected}")
-            return
-        expected = self.rule_between(ab, rivals[0])
-        alike = ("S2e", "S2f") if rivals[0].app == ab.app else ()
-        if rule != expected and not {rule, expected} <= set(alike):
-            text = f"{shown} starts before {rivals[0].shown} by {expected}, not {rule}"
+        elif not any(self._decides(rule, ab, rival) for rival in readings):
+            expected = self.rule_between(ab, readings[0])
+            text = f"{shown} starts before {readings[0].shown} by {expected}, not {rule}"
             self.report(13, "S2", text)
+
+    def _decides(self, rule: str, ab: AB, rival: AB) -> bool:
+        """S2: whether it is the rule that decided between the two."""
+        expected = self.rule_between(ab, rival)
+        alike = ("S2e", "S2f") if rival.app == ab.app else ()
+        return rule == expected or {rule, expected} <= set(alike)
 
     # At the end of an instant -------------------------------------------------------
 

@@ -117,6 +117,27 @@ def test_f3_a_robot_that_guides_does_not_stop_for_every_sentence() -> None:
     assert stage.select() == ["ea#1.2"]
 
 
+def test_f2_leaves_open_who_reacts_to_what_the_floors_stream_reacted_to_before() -> None:
+    # The EA's stream goes on from event 2 to event 3, so F2 is open for what reacts to 2 (O2).
+    stage = Stage(apps={"other": "ea", "fa": "fa", "ea": "ea"})
+    bow = Command("gesture", {"name": "bow"}, now=True)
+    stage.request("other", say())
+    stage.select()
+    for event in (1, 2, 3):
+        stage.at(10 * event).recorder.add(
+            "event", "user", event="touch", serial=event, inbound=True
+        )
+        stage.request("fa", steps=[Step(say("One.")), Step(say("Two."))], cause=event)
+        if event > 1:
+            stage.request("ea", bow, cause=event)
+        stage.select()
+    for time, pressed in ((50, True), (60, False)):
+        stage.at(time).mediator.emergency(pressed, not pressed, time)
+        stage.select()
+    assert (stage.rule("fa#1"), stage.losers("fa#1")) == ("S2f", ["fa#2", "ea#2"])
+    assert check(stage.records, declared=("other", "fa", "ea")) == []
+
+
 def test_f6_a_topic_is_not_spoken_into() -> None:
     stage = Stage()
     stage.request("ea", say("The answer is"), command("move-head", pan=30), say("forty two."))
