@@ -151,10 +151,10 @@ class FloorRules(Turn):
     def note_floor(self, record: Record) -> None:
         """F3: the floor is a stack; only the named stream is pushed, or removed."""
         tree, recorded = record["tree"], list(record.get("floor") or ())
-        rest = [name for name in self.told_floor if name != tree]
+        rest = [name for name in self.recorded_floor if name != tree]
         if recorded != (rest if record["outcome"] == "returned" else [*rest, tree]):
-            self.report(13, "F3", f"the floor is {recorded}, after {self.told_floor}")
-        self.told_floor = recorded
+            self.report(13, "F3", f"the floor is {recorded}, after {self.recorded_floor}")
+        self.recorded_floor = recorded
         self.told_turns.append((tree, record["outcome"], record["rule"]))
 
     def note_suspend(self, record: Record) -> None:
@@ -172,9 +172,9 @@ class FloorRules(Turn):
     def floor_told_rightly(self) -> None:
         """After a start, and at an instant's end: the records show all changes, and no others."""
         names = [tree.name for tree in self.floor]
-        if names != self.told_floor:
-            self.report(13, "F3", f"the floor is {names}; the records say {self.told_floor}")
-            self.told_floor = names
+        if names != self.recorded_floor:
+            self.report(13, "F3", f"the floor is {names}; the records say {self.recorded_floor}")
+            self.recorded_floor = names
         self._turns_told_rightly()
         for tree, by in self.suspended_by.items():
             named = self.suspensions.pop(tree, None)

@@ -98,7 +98,7 @@ class Memory:
         """Whether events are recorded: some drivers request Commands without any."""
         self.turns: dict[str, int] = {}
         """When streams began to wait suspended, or resumed: their applications may be notified."""
-        self.told_floor: list[str] = []
+        self.recorded_floor: list[str] = []
         """The floor according to ``floor`` records."""
         self.extra_reactions = 0
         self.lacking: set[str] = set()

@@ -167,11 +167,11 @@ class Selection(Patience):
             return
         rivals = [other for other in self.competing(ab) if self.could_start(other, ab)]
         needed = {other.shown for other in rivals if self._keeps_from(ab, other)}
-        self._losers_told_rightly(ab, shown, decision, needed)
+        self._check_losers(ab, shown, decision, needed)
         named = {*decision["losers"], *needed}
         rivals = [other for other in rivals if other.shown in named]
         readings = [one[0] for one in (rivals, self._perhaps(ab, decision["losers"])) if one]
-        self._rule_told_rightly(ab, shown, decision["rule"], readings)
+        self._check_rule(ab, shown, decision["rule"], readings)
 
     def _perhaps(self, ab: AB, losers: Sequence[str]) -> list[AB]:
         """The losers of a decision to which F2 is open."""
@@ -182,7 +182,7 @@ class Selection(Patience):
         """S1: whether two cannot run at once."""
         return bool(other.devices & ab.devices) and not self.composes(ab, other)
 
-    def _losers_told_rightly(self, ab: AB, shown: str, decision: Record, needed: set[str]) -> None:
+    def _check_losers(self, ab: AB, shown: str, decision: Record, needed: set[str]) -> None:
         """S2: the losers could have started; all are named, up to the limit."""
         losers, count = set(decision["losers"]), decision["losers_count"]
         allowed = {other.shown for other in self.competing(ab) if self.kept_by_s3(other)}
@@ -195,7 +195,7 @@ class Selection(Patience):
         elif count > MANY and (len(losers) != MANY or not len(needed) <= count <= len(allowed)):
             self.report(13, "S2", f"{shown} is said to start before {count}, not {len(needed)}")
 
-    def _rule_told_rightly(self, ab: AB, shown: str, rule: str, readings: list[AB]) -> None:
+    def _check_rule(self, ab: AB, shown: str, rule: str, readings: list[AB]) -> None:
         """S2: the rule decided between the winner and the first rival, by a reading of F2."""
         if not readings:
             expected = self.admitted_by(ab)
