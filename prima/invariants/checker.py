@@ -245,7 +245,7 @@ class Checker(Starts):
             self.report(13, "E2", f"{app} is taken out, but its end is not recorded")
         self.taken_out.clear()
         if self.prima:
-            self._told_rightly()
+            self._check_records()
         for tree in self.resumed:
             tree.rank = tree.rank if tree.suspended else 0
         if self.halted:
@@ -258,12 +258,12 @@ class Checker(Starts):
             if self.in_view:
                 self.seen.add(ab.name)
 
-    def _told_rightly(self) -> None:
+    def _check_records(self) -> None:
         """Check the mediator's records of a finished instant."""
         if self.decision is not None:
             self.report(13, "S2", f"{self.decision['winner']} is selected, but does not start")
-        self.floor_told_rightly()
+        self.check_floor()
         self.stopped_rightly()
-        self.ends_told_rightly()
-        self.windows_told_rightly()
+        self.check_ends()
+        self.check_windows()
         self.left_waiting()

@@ -169,13 +169,13 @@ class FloorRules(Turn):
         """A record says that an AB that moves the robot is stopped (F5)."""
         self.stops.add(base(record["behavior"]))
 
-    def floor_told_rightly(self) -> None:
+    def check_floor(self) -> None:
         """After a start, and at an instant's end: the records show all changes, and no others."""
         names = [tree.name for tree in self.floor]
         if names != self.recorded_floor:
             self.report(13, "F3", f"the floor is {names}; the records say {self.recorded_floor}")
             self.recorded_floor = names
-        self._turns_told_rightly()
+        self._check_turns()
         for tree, by in self.suspended_by.items():
             named = self.suspensions.pop(tree, None)
             if named != by:
@@ -186,7 +186,7 @@ class FloorRules(Turn):
             self.report(13, "C2", f"{tree} does not resume, as a record says")
         self.suspensions, self.suspended_by, self.resumptions = {}, {}, {}
 
-    def _turns_told_rightly(self) -> None:
+    def _check_turns(self) -> None:
         """F1, F3, X3: which streams took the floor and gave it back, and by which rule.
 
         The stack shows their order; for several that end at once it is not defined.

@@ -230,7 +230,7 @@ class Selection(Patience):
         self.late(ab)
         self.waits_suspended(ab)
         if len(self.waiting) <= MANY:
-            self._reason_told(ab)
+            self._check_reason(ab)
 
     def late(self, ab: AB) -> None:
         """Invariants 5 and 6: an AB that could start by now does not wait."""
@@ -240,7 +240,7 @@ class Selection(Patience):
             if ab.cause is not None and not ab.leaves:
                 self.report(6, "S1", f"the reaction {ab.shown} is late")
 
-    def _reason_told(self, ab: AB) -> None:
+    def _check_reason(self, ab: AB) -> None:
         """An AB's latest ``hold`` says why it waits, and is true as long as it does."""
         if ab.said is None:
             if not ab.interrupted:  # its own record says it

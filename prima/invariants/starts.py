@@ -49,7 +49,7 @@ class Starts(Telling):
         if reaction is not None or not beside:
             self.take_floor(ab, reaction)
         self.note_words(ab)
-        self.floor_told_rightly()
+        self.check_floor()
 
     def _start_inside(self, ab: AB, record: Record) -> None:
         unit = ab.unit

@@ -42,7 +42,7 @@ class Streams(Extensions):
         tree.windows += 1
         self.windows.append(tree)
 
-    def windows_told_rightly(self) -> None:
+    def check_windows(self) -> None:
         """C3 at the end of an instant: all windows are closed; each end with a notice had one."""
         for tree in self.windows:
             self.report(15, "C3", f"a window of {tree.name} is not closed")
@@ -63,7 +63,7 @@ class Streams(Extensions):
             self.report(3, "C1", f"{ab.shown} is {ab.phase}, but its tree has ended: it is lost")
             self.remove(ab)
 
-    def ends_told_rightly(self) -> None:
+    def check_ends(self) -> None:
         """C1 at the end of an instant."""
         for name in self.ordered(self.ended_trees ^ self.told_ends):
             ended = "not told" if name in self.ended_trees else "told, but it has not ended"

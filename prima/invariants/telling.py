@@ -34,12 +34,12 @@ class Telling(LeavingRules):
         if phase == "request":
             self.requests.setdefault(name, record)
         elif name in self.requests:
-            self._told_as_requested(record, name)
+            self._check_repeated(record, name)
         tree = record.get("tree")
         if tree is not None and record["app"] != tree.rpartition(":")[0]:
             self.report(13, "C1", f"a {phase} of {tree} has the application {record['app']}")
 
-    def _told_as_requested(self, record: Record, name: str) -> None:
+    def _check_repeated(self, record: Record, name: str) -> None:
         request = self.requests[name]
         for field in SAME:
             value = record.get(field)
