@@ -112,13 +112,13 @@ def select_handler(
 ) -> T | None:
     """The handler of an event among those that take it (5.2.4).
 
-    Those whose condition does not hold are left out; of the rest, those with the highest
-    count that the occurrences have reached remain, and the first of them is selected.
+    Those whose condition does not hold are left out, whatever their count; of the rest, those
+    with the highest count that the occurrences have reached remain, and the first is selected.
     """
     fitting = (
         (one.least, one.handler)
         for one in candidates
-        if (one.least <= 1 or one.least <= max(map(seen, one.names))) and holds(one.handler)
+        if holds(one.handler) and (one.least <= 1 or one.least <= max(map(seen, one.names)))
     )
     return next(iter(of_highest_count(fitting)), None)
 
@@ -127,7 +127,7 @@ def select_prompts(
     prompts: Iterable[tuple[int, T]], asked: int, holds: Callable[[T], bool]
 ) -> list[T]:
     """The prompts of an item's ``asked``-th visit, from prompts with counts (4.1.6)."""
-    return of_highest_count((least, one) for least, one in prompts if least <= asked and holds(one))
+    return of_highest_count((least, one) for least, one in prompts if holds(one) and least <= asked)
 
 
 def of_highest_count(found: Iterable[tuple[int, T]]) -> list[T]:

@@ -55,6 +55,13 @@ case(
     """<form><block>One.<goto next="#t"/></block></form><form id="t"><block>Two.</block></form>""",
     said=["One.", "Two."],
 )
+case(
+    "the conditions of prompts are looked at before their counts",
+    "4.1.6",
+    f"""<form><field name="f"><prompt>One?</prompt><prompt count="9" cond="zz">Nine?</prompt>
+    {CITIES}<catch event="error.semantic">Oh.<exit/></catch></field></form>""",
+    said=["Oh."],
+)
 
 
 @pytest.mark.parametrize("one", case.made)

@@ -119,6 +119,14 @@ case(
     <catch event="a"><log>a</log></catch><block><throw event="a"/></block></form>""",
     logs=["a"],
 )
+case(
+    "conditions are looked at before counts",
+    "5.2.4",
+    """<form><catch event="a" count="9" cond="zz"><log>a</log></catch>
+    <catch event="error.semantic"><log expr="_event"/><exit/></catch>
+    <block><throw event="a"/></block></form>""",
+    logs=["error.semantic"],
+)
 
 
 @pytest.mark.parametrize("one", case.made)
