@@ -120,11 +120,9 @@ def _hold(mediation: Mediation, ab: Behavior, refusal: Refusal) -> None:
     """Record why a waiting AB may not start, if the reason has changed."""
     rule, by = refusal
     before, ab.wait.blocked = ab.wait.blocked, refusal
-    if before == refusal:
-        return
-    if before[0] == rule and before[1].partition(".")[0] == by.partition(".")[0]:
-        return  # only the next loop of the same feedback Command
-    mediation.recorder.hold(ab, rule, by)
+    # The next loop of the same feedback Command is the same reason.
+    if (before[0], before[1].partition(".")[0]) != (rule, by.partition(".")[0]):
+        mediation.recorder.hold(ab, rule, by)
 
 
 # Starting -----------------------------------------------------------------------------------------
@@ -142,7 +140,7 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     """
     policy, memory = mediation.policy, mediation.memory
     active = memory.active
-    rivals = able(mediation, lower, held) if _takes(ab) else []
+    rivals = able(mediation, lower, held)
     composed = "x5" in mediation.policy.extensions and rules.x5(ab, memory)
     why = _admitted_by(mediation, ab, composed)
     reaction, ab.reaction, ab.stale = ab.reaction, None, None
@@ -158,12 +156,6 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     mediation.recorder.start(ab, rule, reaction)
     advance(mediation, ab)
     return e4(mediation, ab) or changed or policy.turning or _reranks(memory, active)
-
-
-def _takes(ab: Behavior) -> bool:
-    """Whether it may keep others from starting: on a device, by the floor, or in its topic (F6)."""
-    topic = ab.stream.spoken and rules.speaks_next(ab)
-    return bool(ab.devices) or ab.reaction is not None or topic
 
 
 def _reranks(memory: WorkingMemory, active: Application | None) -> bool:
