@@ -171,6 +171,16 @@ def test_s2f_goes_by_the_declared_order_whoever_was_loaded_first() -> None:
     assert stage.rule("early#1") == "S2f"
 
 
+def test_s2_who_starts_beside_the_winner_has_not_lost() -> None:
+    stage = Stage(apps={"fa": "fa", "ea": "ea", "third": "ea"})
+    stage.request("fa", say("Hello."))
+    stage.request("ea", say("Good day."))
+    stage.request("third", command("turn", angle=90))
+    assert stage.select() == ["fa#1", "third#1"]
+    assert stage.losers("fa#1") == ["ea#1"]
+    assert stage.losers("third#1") == []
+
+
 def test_s2_a_decision_names_as_losers_only_what_could_have_started() -> None:
     stage = Stage()
     stage.request("ea", say("One."), say("Two."))
