@@ -106,10 +106,6 @@ NAMING_FILES = {
 """Attributes of VoiceXML elements that name a file, unless they name something else."""
 
 
-LEADING = ("goto", "link", "choice", "submit", "subdialog")
-"""Elements that lead to a dialog."""
-
-
 SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:|//")
 """URI schemes that do not name a file."""
 
@@ -121,6 +117,8 @@ def _not_there(
 
     The indices of the elements that name them are put into ``missing``.
     """
+    from prima.voicexml.pages import LEADING
+
     listed: dict[Path, list[Path]] = {}
     for node, name, file in _files_named(page, answered):
         if not file.startswith(("/", "../")) and exists(folder / file):
@@ -133,7 +131,7 @@ def _not_there(
         few = len(missing) <= LIMITS.problems  # problems that are not listed need no hint
         hint = nearby(folder / file, *spans, listed=listed) if few else Hint()
         dialog = node.get(name).strip()
-        if dialog in page.dialogs and node.tag in LEADING:
+        if dialog in page.dialogs and node.key in LEADING:
             text = f'It is a dialog: write "#{dialog}".'
             hint = replaced(text, f"#{dialog}", *value_span(node, name))
         yield NO_FILE_HERE.at(node.attribute_place(name), hint, file=file[:80])
