@@ -46,18 +46,25 @@ def heeding_signals(stop: Callable[[], object]) -> Iterator[None]:
             stops = True
             raise KeyboardInterrupt(_told(frame))
 
+    with handling_signals(hear):
+        yield
+
+
+@contextmanager
+def handling_signals(handler: Callable[[int, FrameType | None], object]) -> Iterator[None]:
+    """Let signals that end a run call a handler, if this is the main thread."""
     before = {}
     for name in NAMES:
         number = getattr(signal, name, None)
         if number is None or (name == "SIGHUP" and signal.getsignal(number) is signal.SIG_IGN):
             continue  # not on this system; or the run is to outlive its terminal (nohup)
         with suppress(ValueError):
-            before[number] = signal.signal(number, hear)
+            before[number] = signal.signal(number, handler)
     try:
         yield
     finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        for number, earlier in before.items():
+            signal.signal(number, earlier)
 
 
 def _told(frame: FrameType | None) -> str:

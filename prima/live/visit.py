@@ -24,7 +24,7 @@ from prima.live.journal import Journal, Redactor
 from prima.live.recordings import Recordings
 from prima.live.services import LiveServices
 from prima.live.shell import LATE_MS, Shell
-from prima.live.signals import heeding_signals
+from prima.live.signals import handling_signals, heeding_signals
 from prima.loading import Loaded
 from prima.loading.heads import chosen_policy, run_record
 from prima.messages import Record
@@ -120,24 +120,15 @@ class Visit:
                 self.journal.close()
 
     def run_anywhere(self, sink: Sink, warn: Callable[[str], None]) -> None:
-        """The same in a thread, which also works inside a running event loop, such as a notebook's.
-
-        Raises:
-            KeyboardInterrupt: Ctrl-C came meanwhile; the run has ended.
-        """
+        """The same in a thread, which also works inside a running event loop, such as a notebook's."""
         try:
             asyncio.get_running_loop()
         except RuntimeError:
             self.run(sink, warn)
             return
-        with ThreadPoolExecutor(1, "live") as pool:
-            running = pool.submit(self.run, sink, warn)
-            try:
-                running.result()
-            except KeyboardInterrupt:
-                self.stop()
-                running.result()
-                raise
+        # Signals must not interrupt the start of the thread: nobody could stop it any more.
+        with handling_signals(lambda *_: self.stop()), ThreadPoolExecutor(1, "live") as pool:
+            pool.submit(self.run, sink, warn).result()
 
     async def _run(self, warn: Callable[[str], None]) -> None:
         shell = Shell(self.loop, self.clock, warn, self.settings.late)

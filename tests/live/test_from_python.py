@@ -121,6 +121,34 @@ def test_an_interrupt_makes_the_robot_safe_and_is_raised(inside: bool, tmp_path:
     assert prima.run_live(resume=journal, speed=100, until=20_000).outcome == "quiet"
 
 
+def test_an_interrupt_while_the_thread_begins_ends_the_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "waits.xml").write_text(WAITS)
+    journal = tmp_path / "visit.jsonl"
+    start = threading.Thread.start
+
+    def interrupted(thread: threading.Thread) -> None:
+        start(thread)
+        while not (journal.exists() and journal.stat().st_size):
+            time.sleep(0.01)
+        signal.raise_signal(signal.SIGINT)
+
+    async def notebook() -> None:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        with monkeypatch.context() as slow:
+            slow.setattr("threading.Thread.start", interrupted)
+            prima.run_live(robot=ROBOT_PATH, eas=[tmp_path / "waits.xml"], output=journal)
+
+    before = signal.getsignal(signal.SIGINT)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            asyncio.run(notebook())
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert prima.run_live(resume=journal, speed=100, until=20_000).outcome == "quiet"
+
+
 def test_an_exception_of_the_sink_ends_the_run(hello: Path) -> None:
     def full(line: str) -> None:
         raise OSError("no room")
