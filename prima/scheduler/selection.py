@@ -64,8 +64,7 @@ def _wait_for_devices(mediation: Mediation, ab: Behavior, held: Held) -> Refusal
     refusal = s1(mediation, ab) or s3(mediation, ab, held)
     if refusal is None:
         return None
-    yielding = refusal[0] == "S1" and "x2" in mediation.policy.extensions
-    if yielding and x2(mediation, ab, in_the_way(mediation, ab), held):
+    if "x2" in mediation.policy.extensions and x2(mediation, ab, in_the_way(mediation, ab), held):
         return None
     _hold_back(mediation, ab, held)
     return refusal
@@ -83,8 +82,6 @@ def s1(mediation: Mediation, ab: Behavior) -> Refusal | None:
 
 def s3(mediation: Mediation, ab: Behavior, held: Held) -> Refusal | None:
     """S3: a device is held back for a reaction."""
-    if not held or not mediation.policy.exclusive:
-        return None
     return next((("S3", held[device].id) for device in ab.in_order if device in held), None)
 
 
@@ -141,17 +138,17 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     policy, memory = mediation.policy, mediation.memory
     active = memory.active
     rivals = able(mediation, lower, held)
-    composed = "x5" in mediation.policy.extensions and rules.x5(ab, memory)
+    composed = policy.composes(ab, memory)
     why = _admitted_by(mediation, ab, composed)
     reaction, ab.reaction, ab.stale = ab.reaction, None, None
     ab.reacted = goes_before(ab, reaction, memory)
     aside = rules.aside(ab, memory)
     beside = composed or aside or not rules.f3(ab, memory)
-    run(mediation, ab, aside)
+    run(mediation, ab, not aside)
     changed = f1(mediation, ab, reaction, beside)
     note_words(mediation, ab)
     losers = _outdone(mediation, rivals, ab, lower, held)
-    rule = policy.decided(rank, losers[0][0]) if losers and policy.exclusive else why
+    rule = policy.decided(rank, losers[0][0]) if losers else why
     mediation.recorder.decision(ab, rule, [loser.id for _, loser in losers])
     mediation.recorder.start(ab, rule, reaction)
     advance(mediation, ab)
@@ -171,10 +168,6 @@ def _outdone(
     mediation: Mediation, rivals: list[Ranked], ab: Behavior, lower: list[Ranked], held: Held
 ) -> list[Ranked]:
     """The ABs that could have started instead of an AB and cannot start beside it."""
-    if "x5" not in mediation.policy.extensions and all(
-        other.devices & ab.devices for _, other in rivals
-    ):
-        return rivals
     still = {other.name for _, other in able(mediation, lower, held)}
     return [one for one in rivals if one[1].name not in still]
 
@@ -188,17 +181,16 @@ def _admitted_by(mediation: Mediation, ab: Behavior, composed: bool) -> str:
         return "X5"
     if rules.third_turn(ab, mediation.memory) and rules.refusal(ab, mediation.memory) is not None:
         return "X7"
-    if policy.floor and holder is not None and holder.app is not ab.app:
+    if holder is not None and holder.app is not ab.app:
         return "F2"
     return "S4" if mediation.memory.running else "S1"
 
 
-def run(mediation: Mediation, ab: Behavior, aside: bool = False) -> None:
-    """Run an AB; one that runs ``aside`` (X7) does not resume its stream."""
+def run(mediation: Mediation, ab: Behavior, resumes: bool) -> None:
+    """Run an AB; if it ``resumes``, so does its stream (C2)."""
     memory, now = mediation.memory, mediation.now
     if not mediation.policy.exclusive:
         _collide(mediation, ab)
-    first = ab.started < 0 or ab.restarting
     ab.resumed = ab.restarting or (ab.loop > 0 and ab.freed != now)
     ab.restarting = False
     ab.wait = Wait()
@@ -207,20 +199,20 @@ def run(mediation: Mediation, ab: Behavior, aside: bool = False) -> None:
     if ab.feedback:
         ab.next_loop()
     mediation.started.append(ab)
-    beside = "x5" in mediation.policy.extensions and memory.conflict(ab) is not None
+    beside = mediation.policy.exclusive and memory.conflict(ab) is not None
     memory.start(ab, now)
-    _note_start(mediation, ab, aside)
+    _note_start(mediation, ab, resumes)
     if ab.command is not None:
         order = Order(
             "start", ab.id, ab.command, ab.devices, ab.loop, ab.resumed, beside, ab.app.name
         )
         order.data = ab.since if ab.resumed else None
         mediation.orders.append(order)
-    elif first and not ab.spans:
+    elif not ab.spans:
         u4(mediation, ab)
 
 
-def _note_start(mediation: Mediation, ab: Behavior, aside: bool) -> None:
+def _note_start(mediation: Mediation, ab: Behavior, resumes: bool) -> None:
     """F6, K1, C2, X4: what an AB's start changes for itself and its stream."""
     stream = ab.stream
     ab.connect = False  # its first word is said, though X7 may have let it start before the turn
@@ -230,7 +222,7 @@ def _note_start(mediation: Mediation, ab: Behavior, aside: bool) -> None:
         mediation.memory.engage(stream)
     if ab is mediation.memory.owed:
         mediation.memory.owed = None
-    if stream.suspended and ab.unit is None and not aside:
+    if stream.suspended and resumes:
         resume(mediation, stream, ab)
 
 
@@ -277,6 +269,6 @@ def advance(mediation: Mediation, unit: Behavior) -> None:
         occupied = mediation.policy.exclusive and mediation.memory.conflict(ab) is not None
         if ab.state is WAITING and not occupied:
             reaction, ab.reaction = ab.reaction, None
-            run(mediation, ab)
+            run(mediation, ab, resumes=False)
             mediation.recorder.start(ab, "U5" if unit.spans else "U4", reaction)
             advance(mediation, ab)
