@@ -208,7 +208,7 @@ def run(mediation: Mediation, ab: Behavior, resumes: bool) -> None:
         )
         order.data = ab.since if ab.resumed else None
         mediation.orders.append(order)
-    elif not ab.spans:
+    else:
         u4(mediation, ab)
 
 
@@ -230,7 +230,7 @@ def _collide(mediation: Mediation, ab: Behavior) -> None:
     """Without a mediator a later Command displaces an earlier one on its devices."""
     for device in ab.in_order:
         other = mediation.memory.occupied.get(device)
-        if other is not None and other is not ab and other is not ab.unit:
+        if other is not None and other is not ab.unit:
             mediation.recorder.behavior("collision", other, rule="none", by=ab.id, device=device)
 
 

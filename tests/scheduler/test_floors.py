@@ -217,6 +217,19 @@ def test_f6_a_stream_that_has_not_spoken_is_no_topic_yet() -> None:
     assert stage.select() == ["ea#1", "fa#1"]
 
 
+def test_f6_a_unit_in_which_nothing_was_said_makes_no_topic() -> None:
+    stage = Stage()
+    stage.open("ea", 1, "speaker", "arm", "neck")
+    stage.request("ea", command("gesture", name="nod"), unit=1)
+    stage.select()
+    stage.close("ea", 1)
+    stage.request("ea", command("gesture", name="nod"), say())
+    stage.at(10).end("ea#2")
+    stage.request("fa", say())
+    assert stage.select() == ["ea#3", "fa#1"]
+    assert len(stage.mediator.memory.streams) == 2, "the unit and what follows are one stream"
+
+
 def test_f6_who_holds_the_floor_may_speak_into_a_topic() -> None:
     stage = Stage()
     stage.request("ea", say("The answer is"), command("gesture", name="bow"), say("forty two."))

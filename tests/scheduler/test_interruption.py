@@ -12,7 +12,7 @@ from prima.messages import (
     Step,
 )
 from tests.helpers.generated.world import TABLE
-from tests.helpers.stage import Stage, ask, chain, command, move, restartable, say
+from tests.helpers.stage import TRACK, Stage, ask, chain, command, move, restartable, say
 
 EVENT = 7
 
@@ -260,3 +260,17 @@ def test_x2_what_is_linked_behind_what_waits_in_an_interrupted_unit_is_told_as_l
     outcomes = [r["outcome"] for r in stage.phases("cancel")]
     assert outcomes == ["running", "waiting", "linked"]
     assert check(stage.records, "prima+x2") == []
+
+
+def test_x2_only_the_loop_that_was_interrupted_starts_again() -> None:
+    stage = Stage("prima+x2")
+    stage.request("ea", restartable(TRACK))
+    stage.select()
+    stage.at(100).request("fa", command("turn", angle=3), cause=EVENT)
+    assert stage.select() == ["fa#1"]
+    stage.at(900).end("fa#1")
+    assert stage.select() == ["ea#1.2"]
+    stage.at(1200).end("ea#1.2", goal=False)
+    assert stage.select() == ["ea#1.3"]
+    resumed = [(r["behavior"], r.get("resumed")) for r in stage.phases("start")]
+    assert resumed == [("ea#1.1", None), ("fa#1", None), ("ea#1.2", True), ("ea#1.3", None)]

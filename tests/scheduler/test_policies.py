@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 
 from prima.messages import Group, Step
-from tests.helpers.stage import Stage, ask, command, move, say
+from tests.helpers.stage import Stage, ask, chain, command, move, say
 
 EVENT = 7
 
@@ -64,3 +64,39 @@ def test_none_does_not_let_a_unit_collide_with_itself() -> None:
     stage.request("ea", Group([Step(say()), Step(command("gesture", name="nod"), (0,))]))
     stage.select()
     assert stage.phases("collision") == []
+
+
+def test_fifo_knows_no_rules_of_prima() -> None:
+    stage = Stage("fifo")
+    stage.request("ea", say("One."), command("gesture", name="nod"), say("Two."))
+    stage.select()
+    stage.at(100).end("ea#1")
+    stage.request("fa", say())
+    assert stage.select() == ["ea#2", "fa#1"], "a pause in a topic keeps nobody from speaking"
+    assert (stage.rule("fa#1"), stage.losers("fa#1")) == ("S4", [])
+
+
+def test_none_lets_every_command_reach_its_devices_at_once() -> None:
+    stage = Stage("none")
+    stage.request("ea", Group([Step(say("One.")), Step(say("Two."))]))
+    stage.request("fa", say("Three."))
+    assert sorted(stage.select()) == ["ea#1", "ea#2", "ea#3", "fa#1"]
+    assert [order.beside for order in stage.orders] == [False, False, False]
+    assert [(stage.rule(name), stage.losers(name)) for name in ("ea#1", "fa#1")] == [
+        ("none", []),
+        ("none", []),
+    ]
+
+
+def test_none_displaces_a_command_inside_a_unit() -> None:
+    stage = Stage("none")
+    stage.request("ea", Group(chain(say("One."), say("Two."))))
+    stage.select()
+    stage.at(1).request("fa", say())
+    assert stage.select() == ["fa#1"]
+    stage.at(2).end("fa#1")
+    stage.at(3).end("ea#2")
+    assert stage.select() == ["ea#3"]
+    assert [(r["behavior"], r["rule"], r["by"]) for r in stage.phases("collision")] == [
+        ("ea#1", "none", "fa#1")
+    ]

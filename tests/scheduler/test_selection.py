@@ -88,6 +88,15 @@ def test_s2b_a_stream_that_begins_in_the_same_selection_is_active_for_the_rest_o
     assert stage.rule("ea#2.1") == "S2b"
 
 
+def test_s2b_ranks_anew_only_reactions_though_others_wait_as_well() -> None:
+    stage = Stage(apps={"fa": "fa", "ea": "ea", "third": "fa"})
+    stage.request("ea", say())
+    stage.request("fa", move(), cause=EVENT)
+    stage.request("third", say("Later."))
+    stage.request("ea", move(), cause=EVENT)
+    assert stage.select() == ["ea#1", "ea#2.1"]
+
+
 def test_s2c_a_parent_that_has_just_ended_goes_before_others() -> None:
     stage = Stage()
     stage.request("ea", say("One."), say("Two."))

@@ -6,7 +6,7 @@ import pytest
 
 from prima.language.commands import PATIENCE_MS
 from prima.messages import Step
-from tests.helpers.stage import TRACK, Stage, command, say
+from tests.helpers.stage import TRACK, Stage, command, restartable, say
 
 EVENT = 7
 TURN = command("turn", angle=3)
@@ -230,3 +230,19 @@ def test_e6_in_an_emergency_time_stands_still() -> None:
     assert stage.select() == ["ea#1"]
     assert turns(stage, 9999) == ["ea#2"]
     assert turns(stage, 10_000) == ["fa#1"], "3 s before it, and 2 s afterwards"
+
+
+def test_e6_a_turn_that_was_interrupted_has_waited_for_nobody() -> None:
+    apps = {"fa": "fa", "ea": "ea", "third": "fa"}
+    stage = Stage("prima+x2", apps=apps, patience=1000)
+    stage.request("ea", say())
+    stage.select()
+    stage.request("fa", restartable(say("One.")))
+    stage.request("third", say("Two."))
+    stage.select()
+    stage.at(1000).end("ea#1")
+    assert stage.select() == ["fa#1"]
+    stage.at(1100).request("ea", say("Oh!"), cause=7)
+    assert stage.select() == ["ea#2"]
+    stage.at(1500).end("ea#2")
+    assert (stage.select(), stage.rule("third#1")) == (["third#1"], "E6")

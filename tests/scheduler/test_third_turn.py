@@ -80,6 +80,34 @@ def test_x7_what_says_nothing_reacts_at_once_and_keeps_the_floor() -> None:
     assert check(stage.records, "prima+x7") == []
 
 
+def test_x7_a_response_takes_no_floor_from_a_stream_with_a_waiting_sentence() -> None:
+    stage = Stage("prima+x7")
+    stage.request("ea", ask())
+    stage.select()
+    reactions = [Step(TRACK), Step(say("That feels good."))]
+    stage.at(1000).request("fa", steps=reactions, cause=TOUCH)
+    assert stage.select() == ["fa#1.1"] and stage.floor == ["fa:1"]
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", say("Thank you.")))
+    assert (stage.select(), stage.rule("ea#2")) == (["ea#2"], "X7")
+    assert stage.floor == ["fa:1"]
+    assert check(stage.records, "prima+x7") == []
+
+
+def test_x7_a_response_that_was_interrupted_goes_before_nobody() -> None:
+    stage = Stage("prima+x2+x7", apps={"fa": "fa", "ea": "ea", "third": "fa"})
+    stage.request("ea", ask())
+    stage.select()
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", restartable(say("Thank you."))))
+    assert stage.select() == ["ea#2"]
+    stage.at(2100).request("fa", say("That feels good."), cause=TOUCH)
+    assert stage.select() == ["fa#1"], "it reacts to a later event"
+    stage.at(2200).request("third", say("Oh!"), cause=TOUCH + 1)
+    assert stage.select() == []
+    stage.at(3000).end("fa#1")
+    assert stage.select() == ["third#1"]
+    assert check(stage.records, "prima+x2+x7") == []
+
+
 @pytest.mark.parametrize("outcome", ["noinput", "nomatch"])
 def test_x7_only_an_answer_is_answered(outcome: str) -> None:
     stage = touched_while_asked()
