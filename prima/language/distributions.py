@@ -26,7 +26,7 @@ MOST_VALUES = 1_000_000
 """Maximum number of values in a distribution's file."""
 MOST_BYTES = 100_000_000
 """Maximum size of such a file."""
-RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^/]+)(?:/(?P<step>.+))?")
+RANGE = re.compile(r"(?P<low>.(?:(?!\.\.).)*)\.\.(?P<high>[^/]+)(?:/(?P<step>.+))?")
 CALL = re.compile(r"(?P<name>[a-z]+)\((?P<arguments>.*)\)")
 EDGE = 1e-9
 """How near shares come to 0 and 1."""

@@ -15,6 +15,7 @@ from tests.helpers.bad_input import (
     app,
     block,
     form,
+    process,
     robot,
     scenario,
     stage,
@@ -101,6 +102,14 @@ def test_worlds_and_robots(
 def test_a_run_of_no_time(prima: Prima, tmp_path: Path) -> None:
     path = stage(tmp_path, GOOD, attributes='until="0s"')
     assert "alive" not in prima("run", path).check(0).out
+
+
+@pytest.mark.parametrize("levels", ["." * 300_000 + "/", "a.." * 100_000 + "/"])
+def test_a_range_without_an_end(tmp_path: Path, levels: str) -> None:
+    write(tmp_path, "app.xml", GOOD)
+    write(tmp_path, "s.xml", scenario(PLAY + '<when at="1s"><say>x</say></when>'))
+    write(tmp_path, "study.toml", f'scenarios = ["s.xml"]\n[vary]\n"when.at" = "{levels}"\n')
+    process(tmp_path, "sweep", "study.toml", seconds=10).check(2, "when.at", "with its unit")
 
 
 def test_a_world_of_nothing(prima: Prima, tmp_path: Path) -> None:

@@ -95,6 +95,7 @@ def test_x5_a_dance_goes_on_together_with_a_move() -> None:
     stage = dancing("prima+x5")
     assert stage.select() == ["fa#1"]
     assert stage.running == {"ea#1.1", "fa#1"}
+    assert [order.beside for order in stage.orders] == [False, True]
     stage.at(500).end("ea#1.1", goal=False)
     assert stage.select() == ["ea#1.2"]
     assert stage.rule("ea#1.2") == "X5"
