@@ -46,7 +46,7 @@ OF_SCENARIOS = frozenset(
     ]
 )
 """Codes of warnings that may depend on the scenario, so that an ignore may be needed there."""
-ENTRY = re.compile(r"^\s*\[\[\s*ignore\s*\]\]", re.MULTILINE)
+ENTRY = re.compile(r"^[ \t]*\[\[[ \t]*ignore[ \t]*\]\]", re.MULTILINE)
 KEYS = ("code", "files", "reason")
 
 Position = tuple[int, int]

@@ -12,6 +12,7 @@ import pytest
 
 from tests import ROOT
 from tests.helpers import command
+from tests.helpers.bad_input import process
 from tests.helpers.here import prima
 
 GREETS = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="greets"><form id="a">
@@ -196,3 +197,9 @@ def test_a_time_beyond_all_is_no_time(tmp_path: Path) -> None:
     (tmp_path / "t.jsonl").write_text('{"time":1e300,"phase":"over","actor":"mediator"}\n')
     done = prima("graph", "t.jsonl", "--what", "streams", cwd=tmp_path)
     assert done.returncode == 2 and "t.jsonl:1" in done.stderr
+
+
+def test_settings_of_empty_lines(tmp_path: Path) -> None:
+    (tmp_path / "greets.xml").write_text(GREETS)
+    (tmp_path / "prima.toml").write_text("\n" * 200_000 + "[[ignore]]\n")
+    process(tmp_path, "validate", "greets.xml", seconds=10).check(0, "prima.toml:200001:1: warning")
