@@ -17,6 +17,7 @@ from prima.experiments.examine import Finding, Seen
 from prima.experiments.explore import Exploration, FoundOrder, FoundProblem
 from prima.experiments.lines import LinePiece, Point
 from prima.experiments.pools import Pool
+from prima.experiments.variants import discard
 from prima.loading.writing import write_whole
 from prima.messages import Json
 from prima.transcript.row import Row
@@ -201,10 +202,14 @@ class ExplorationFolder:
     def write(self, explored: Explored) -> None:
         """Write the results: orders and problems as scenarios with their transcripts.
 
+        Those of an earlier exploration are removed.
+
         Raises:
             UsageError: something cannot be written.
         """
         try:
+            for folder in (ORDERS, PROBLEMS):
+                discard(self.path / folder)
             for order in self.exploration.orders:
                 self._case(ORDERS, order.signature, order.point)
             for number, problem in enumerate(self.exploration.problems, 1):

@@ -36,8 +36,8 @@ from prima.transcript.row import Row
 
 MOST_LOADED = 64
 """Maximum number of combinations of documents, worlds and robots kept loaded."""
-SAVED = re.compile(r"[0-9a-f]{12}\.(jsonl|xml|robot\.xml)")
-"""The names of files that a sweep saves for an order."""
+SAVED = re.compile(r"([0-9a-f]{12}|[0-9]+-[a-z]+)\.(jsonl|xml|robot\.xml)")
+"""The names of files that are saved for an order, or for a problem of an exploration."""
 MOST_MESSAGE = 1_000
 """Maximum length of a run's messages (characters)."""
 
@@ -251,7 +251,7 @@ class Stage:
 
 
 def discard(folder: Path) -> None:
-    """Remove what an earlier sweep has saved in a folder, by the signatures of its orders.
+    """Remove what an earlier sweep or exploration has saved in a folder.
 
     Raises:
         OSError: a file cannot be removed.

@@ -152,6 +152,19 @@ def test_runs_are_used_again(visit: Path) -> None:
         )
 
 
+def test_a_new_exploration_replaces_the_cases_of_the_one_before() -> None:
+    prima("explore", "visit.xml", "-o", "out")
+    Path("out/orders/notes.txt").write_text("Mine.")
+    Path("out/problems").mkdir(exist_ok=True)
+    for name in ("1-expect.xml", "1-expect.jsonl", "1-expect.robot.xml"):
+        Path("out/problems", name).write_text("of another exploration")
+    prima("explore", "visit.xml", "-o", "out", "--runs", "1")
+    (order,) = json.loads(Path("out/explored.json").read_text())["orders"]
+    names = sorted(path.name for path in Path("out/orders").iterdir())
+    assert names == [f"{order['order']}.jsonl", f"{order['order']}.xml", "notes.txt"]
+    assert list(Path("out/problems").iterdir()) == []
+
+
 @pytest.mark.parametrize("content", ["", "[" * 10_000, '{"prima": "0.1"}\n', "\0\n"])
 def test_runs_of_something_else(content: str) -> None:
     Path("out").mkdir()
