@@ -41,7 +41,7 @@ class Policy:
         """Where a waiting AB ranks: the smallest goes first (S2)."""
         return (
             rules.s2a(ab),
-            0 if memory.owed is not None and rules.third_turn(ab, memory) else 1,
+            not rules.third_turn(ab, memory),
             rules.s2b(ab, memory),
             rules.e6(ab, memory, now),
             rules.s2c(ab, now),
