@@ -136,11 +136,6 @@ class Unmediated(Fifo):
 
     name: str = "none"
     exclusive: bool = False
-    rules: tuple[str, ...] = ("none", "S2f")
-
-    def holds_back(self, ab: Behavior, memory: WorkingMemory) -> bool:
-        """Nothing is ever held back."""
-        return False
 
 
 POLICIES: dict[str, type[Policy]] = {

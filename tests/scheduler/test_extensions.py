@@ -121,6 +121,7 @@ def test_x5_is_off_unless_it_is_asked_for() -> None:
     assert stage.select() == []
     stage.at(500).end("ea#1.1", goal=False)
     assert stage.select() == ["fa#1"]
+    assert stage.holds("ea#1.1") == ["F2"]
 
 
 def test_x5_what_is_no_move_waits_for_the_dance() -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import pytest
 
 from prima.messages import Group, Step
+from prima.scheduler.policy import BASELINES, POLICIES, USAGE, policy_named
 from tests.helpers.stage import Stage, ask, chain, command, move, say
 
 EVENT = 7
@@ -100,3 +101,45 @@ def test_none_displaces_a_command_inside_a_unit() -> None:
     assert [(r["behavior"], r["rule"], r["by"]) for r in stage.phases("collision")] == [
         ("ea#1", "none", "fa#1")
     ]
+
+
+@pytest.mark.parametrize("name", [*POLICIES, "prima+x1+x3"])
+def test_a_policy_has_the_name_by_which_it_is_chosen(name: str) -> None:
+    assert policy_named(name).name == name
+
+
+def test_the_table_of_policies_says_what_may_be_written() -> None:
+    assert BASELINES == ("fifo", "fair", "fixed", "none")
+    assert USAGE == "prima, fifo, fair, fixed, fixed:APP or none"
+
+
+@pytest.mark.parametrize(
+    ("policy", "later", "rules"),
+    [
+        ("fifo", 0, ["S2f", "S2f"]),
+        ("fifo", 1, ["fifo", "fifo"]),
+        ("fair", 0, ["S2f", "fair"]),
+        ("fair", 1, ["fifo", "fair"]),
+        ("fixed", 0, ["fixed", "fixed"]),
+        ("fixed:third", 0, ["S2f", "S2f"]),
+        ("fixed:third", 1, ["fifo", "fifo"]),
+    ],
+)
+def test_a_decision_names_the_rule_of_its_policy(policy: str, later: int, rules: list[str]) -> None:
+    stage = Stage(policy)
+    stage.request("fa", say("f1"), say("f2"))
+    stage.at(later).request("ea", say("e1"))
+    assert stage.select() == ["fa#1"]
+    stage.at(1000).end("fa#1")
+    (second,) = stage.select()
+    assert [stage.rule("fa#1"), stage.rule(second)] == rules
+
+
+def test_fifo_holds_devices_back_for_whoever_came_first() -> None:
+    stage = Stage("fifo", apps={"fa": "fa", "ea": "ea", "third": "ea"})
+    stage.request("ea", say())
+    stage.select()
+    stage.at(1).request("fa", command("face-human-and-speak", "You."))
+    stage.at(2).request("third", command("turn", angle=3))
+    assert stage.select() == []
+    assert (stage.holds("fa#1"), stage.holds("third#1")) == (["S1"], ["S3"])

@@ -108,6 +108,22 @@ def test_x7_a_response_that_was_interrupted_goes_before_nobody() -> None:
     assert check(stage.records, "prima+x2+x7") == []
 
 
+def test_x7_a_response_that_waits_for_another_device_holds_the_speaker_back() -> None:
+    stage = Stage("prima+x7", apps={"fa": "fa", "ea": "ea", "third": "fa"})
+    stage.request("ea", ask())
+    stage.select()
+    stage.at(500).request("fa", command("turn", angle=90))
+    stage.request("third", say("Oh!"))
+    assert stage.select() == ["fa#1"]
+    facing = command("face-human-and-speak", "Thank you.")
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", facing))
+    assert stage.select() == []
+    assert (stage.holds("ea#2"), stage.holds("third#1")[-1]) == (["S1"], "S3")
+    stage.at(2500).end("fa#1")
+    assert stage.select() == ["ea#2"]
+    assert check(stage.records, "prima+x7") == []
+
+
 @pytest.mark.parametrize("outcome", ["noinput", "nomatch"])
 def test_x7_only_an_answer_is_answered(outcome: str) -> None:
     stage = touched_while_asked()
