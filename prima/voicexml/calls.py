@@ -15,6 +15,7 @@ from prima.voicexml.arranging import take_last_said
 from prima.voicexml.fetching import gathered
 from prima.voicexml.owner import MachineOwner
 from prima.voicexml.questions import open_to_answers
+from prima.voicexml.results import marked_and_recorded
 from prima.voicexml.state import Context, Flow, HungUp, Resume, TakenUtterance, thrown_outside
 
 CONNECT_MS = 60_000
@@ -88,8 +89,9 @@ class Calls:
         lasted = 0 if call.connected is None else self.app.now - call.connected
         shadow: dict[str, Json] = {"duration": lasted / 1000}
         if call.heard is not None:
-            shadow |= {"inputmode": call.heard.mode, "utterance": call.heard.utterance}
             self.owner.items_of.remember(context, call.heard)
+            shadow |= {"inputmode": call.heard.mode, "utterance": call.heard.utterance}
+            shadow |= marked_and_recorded(call.heard)
         self.owner.items_of.fill(context, call.item, outcome, shadow)
         yield from self.owner.items_of.run_filled(context, [call.item])
 
@@ -103,6 +105,7 @@ class Calls:
         opened: list[Command] = []
         last = take_last_said(queue) if call.listens else None
         if last is not None:
+            last.cues = self.owner.content.question_cues(last, queue)
             question = self._question(context, call, "1ms", last)
             question.args["bargein"] = bool(last.hook)
             opened = open_to_answers(queue, question)
@@ -131,6 +134,8 @@ class Calls:
             raise thrown_outside(resume)
         if resume.data.get("outcome") == "filled":
             call.heard = self.app.heard
+            if call.heard is not None:
+                call.heard.take_mark(resume.data)
 
     # The call -------------------------------------------------------------------------
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from prima.interpreter.transfers import Thrown
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import BEEP, Command, Cue, Data, Event, Json
 from prima.voicexml.matching import KEYS
 from prima.voicexml.owner import MachineOwner
+from prima.voicexml.results import marked_and_recorded
 from prima.voicexml.settings import setting
 from prima.voicexml.state import Context, Flow, TakenUtterance
 
@@ -74,13 +77,15 @@ class RecordItems:
         """
         items = self.owner.items_of
         said, key = divided(heard, item)
-        if key:
-            items.remember(context, TakenUtterance(key, key, item, context.page, 1.0, "dtmf"))
-        elif heard.recognised:
+        if key and not heard.recognised:
+            heard = replace(heard, utterance=key, interpretation=key, confidence=1.0, mode="dtmf")
+        taken = bool(key) or heard.recognised
+        if taken:
             items.remember(context, heard)
         if not said:
             return
         more: dict[str, Json] = {"maxtime": bool(data.get("maxtime"))}
+        more |= marked_and_recorded(heard) if taken else {}
         more["termchar"] = key if key and item.get("dtmfterm") != "false" else None
         if not key and heard.recognised:
             more |= {"utterance": heard.utterance, "confidence": heard.confidence}

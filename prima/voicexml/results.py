@@ -15,12 +15,18 @@ RESULTS = """(function (all) {
 
 def shadow(heard: TakenUtterance) -> dict[str, Json]:
     """The shadow variables of an utterance."""
-    found: dict[str, Json] = {
+    return {
         "utterance": heard.utterance,
         "confidence": heard.confidence,
         "inputmode": heard.mode,
         "interpretation": heard.interpretation,
+        **marked_and_recorded(heard),
     }
+
+
+def marked_and_recorded(heard: TakenUtterance) -> dict[str, Json]:
+    """Those that every item shares with the last result (VoiceXML 2.1, 4 and 7)."""
+    found: dict[str, Json] = {}
     if heard.mark is not None:
         found["markname"] = heard.mark
     if heard.marktime is not None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.helpers.dialogs import grammar
 from tests.helpers.telephone import STOP, ZERO, ended, logs, record, run, shown
 from tests.helpers.voice import Call, vxml
 
@@ -158,3 +159,28 @@ def test_a_device_that_does_not_tell_how_long_it_heard_is_guessed_for() -> None:
     call = Call(record())
     call.answer("abcde")
     assert call.logs() == ["abcde,500,5,,false"]
+
+
+KEYS = """<script>var last; function note(found) { last = found; return true; }</script>
+<form><record name="r" cond="note(application.lastresult$)"><prompt>Speak.</prompt>GRAMMAR
+<noinput><log expr="last.utterance + last.interpretation + last.inputmode"/><exit/></noinput>
+</record></form>"""
+
+
+def test_keys_that_a_grammar_takes_have_its_meaning_in_the_last_result() -> None:  # 5.1.5
+    call = Call(KEYS.replace("GRAMMAR", grammar("7", "out = 'end';", 'mode="dtmf"')))
+    call.answer("7")
+    call.silent()
+    assert call.logs() == ["7enddtmf"]
+
+
+@pytest.mark.parametrize(
+    "item", ['record name="f"', 'transfer name="f" dest="tel:+1-555-1234" bridge="true"']
+)
+def test_words_that_end_an_item_are_recorded_for_it_too(item: str) -> None:  # 2.1, 7
+    call = Call(f"""<property name="recordutterance" value="true"/><form><{item}>
+    <prompt>Well?</prompt>{STOP}<filled><log expr="[f$.recording, f$.recordingsize,
+    f$.recordingduration == application.lastresult$.recordingduration].join()"/></filled>
+    </{item.partition(" ")[0]}></form>""")
+    call.answer("stop it")
+    assert call.logs() == ["stop it,7,true"]

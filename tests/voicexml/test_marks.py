@@ -8,6 +8,7 @@ import pytest
 
 from prima import api
 from tests.helpers.spoken import DEMO, SECOND, Played, logs, of, recording
+from tests.helpers.telephone import STOP
 from tests.helpers.voice import Call
 
 ASKED = f"""<field name="f"><prompt>{SECOND} <mark name="one"/> {SECOND} <mark name="two"/> {SECOND}</prompt>
@@ -63,6 +64,26 @@ def test_a_mark_in_a_recordings_text_is_not_passed(played: Played, tmp_path: Pat
     body = ASKED.replace(SECOND, '<audio src="bell.wav">a <mark name="x"/> bell</audio>', 1)
     assert logs(played(f"<form>{body}</form>", (1900, "yes")))[0] == "undefined undefined"
     assert logs(played(f"<form>{body}</form>", (2100, "yes")))[0] == "one 100"
+
+
+STOPPED = f"""<prompt>{SECOND} <mark name="one"/> {SECOND}</prompt>{STOP}
+<filled><log expr="[f$.markname, f$.marktime, application.lastresult$.markname,
+application.lastresult$.marktime].join(' ')"/></filled>"""
+
+
+def test_a_transfer_tells_the_mark_at_which_it_was_stopped(played: Played) -> None:
+    item = f'<transfer name="f" dest="tel:+1-555-1234" bridge="true">{STOPPED}</transfer>'
+    made = played(f"<form>{item}</form>", (1400, "stop it"))
+    assert logs(made) == ["one 400 one 400"]
+    before = f'<block><prompt>{SECOND} <mark name="zero"/> {SECOND}</prompt></block>'
+    made = played(f"<form>{before}{item}</form>", (2400, "stop it"))
+    assert logs(made) == ["zero 1400 zero 1400"]
+
+
+@pytest.mark.parametrize("said", ["stop it", "hello#"])
+def test_what_ends_a_recording_tells_the_mark(played: Played, said: str) -> None:
+    made = played(f'<form><record name="f">{STOPPED}</record></form>', (1400, said))
+    assert logs(made) == ["one 400 one 400"]
 
 
 def test_by_a_device_that_tells_of_no_marks_the_last_one_counts() -> None:
