@@ -25,6 +25,8 @@ STEP_BYTES = 200
 """How many bytes of a resource count as one step."""
 FETCH_TIMEOUT = 10_000
 """The default of ``fetchtimeout`` (ms)."""
+WITHOUT_AUDIO = ("grammar", "script")
+"""Elements whose resources are fetched without ``fetchaudio`` (6.3.5)."""
 HOSTS_ONLY = "what a host has sent names no file, only what hosts and services answer"
 
 
@@ -117,7 +119,7 @@ def _asked(
     data: Data = {"method": request.method or "get", "params": dict(request.values)}
     late = Fetched(owner.app.name, 0, "", problem="no answer within its fetchtimeout")
     owner.app.waits.ask(uri, data, late, timeout, node)
-    audio = _setting(owner, node, "fetchaudio")
+    audio = "" if node.tag in WITHOUT_AUDIO else _setting(owner, node, "fetchaudio")
     if audio and not owner.gone:
         said = Command("speak", text=f"[{audio.rpartition('/')[2]}]", source=source(node))
         queued = owner.unqueue()

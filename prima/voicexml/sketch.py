@@ -47,7 +47,7 @@ from prima.voicexml.elements import HANDLERS, ITEMS, handler_names, handler_numb
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 ASKING = ("field", "initial", "record", "menu")
-FETCHING = ("goto", "submit", "data", "script")
+FETCHING = ("goto", "submit", "data")
 """Elements of content whose fetch may play something."""
 LEADING = ("goto", "submit", "subdialog")
 FAILURES = ("error.badfetch", "error.unsupported.format", "error.unsupported.builtin")

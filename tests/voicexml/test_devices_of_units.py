@@ -93,6 +93,9 @@ def test_a_unit_that_says_nothing_does_not_own_the_speaker() -> None:
     assert devices_of(text) == {"locomotion"}
     music = "<block><data name='d' src='d.xml' fetchaudio='a.wav'/></block>"
     assert devices_of(vxml(unit(music))) == {"speaker"}
+    sets = '<property name="fetchaudio" value="a.wav"/>'
+    assert devices_of(vxml(sets + unit(music.replace(" fetchaudio='a.wav'", "")))) == {"speaker"}
+    assert devices_of(vxml(sets + unit("<block><script src='a.js'/></block>"))) == set()
 
 
 def test_a_unit_owns_what_a_handler_of_the_application_root_needs() -> None:

@@ -283,6 +283,22 @@ def test_an_answer_during_queued_prompts_waits_for_their_end() -> None:
     assert call.said() == ["One moment.", "Done."]
 
 
+@pytest.mark.parametrize(
+    ("fetched", "heard"),
+    [
+        (f'<block><data src="{SHOP}"/></block>', ["One moment."]),
+        (f'<block><script src="{SHOP}"/></block>', []),
+        (f'<field name="f"><prompt>Well?</prompt><grammar src="{SHOP}"/></field>', []),
+    ],
+)
+def test_scripts_and_grammars_are_fetched_without_fetch_audio(
+    fetched: str, heard: list[str]
+) -> None:  # 6.3.5
+    sets = '<property name="fetchaudio" value="hold.wav"/>'
+    call = Online({SHOP: None}, f"{sets}<form><block>One moment.</block>{fetched}</form>")
+    assert call.said() == heard
+
+
 def test_prompts_stay_queued_while_fetching_without_fetch_audio() -> None:
     call = Online({SHOP: None}, block(f'One moment.<submit next="{SHOP}"/>'))
     assert call.said() == []
