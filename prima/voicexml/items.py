@@ -155,9 +155,9 @@ class Items:
         check_depth(context.depth, item)
         params = self._params(context, item)
         uri = self.owner.content.word(item, "src", context, self.owner.local())
-        names = item.get("namelist").split()
+        names, method = item.get("namelist").split(), item.get("method")
         values = self.owner.content.sent(item, names, context, self.owner.local())
-        request = UriRequest(item.get("method"), values) if names else None
+        request = UriRequest(method, values) if names or method == "post" else None
         fetched, dialog = yield from self.owner.documents.find(context, uri, item, request)
         page = fetched or context.page
         if fetched is not None:

@@ -56,6 +56,15 @@ def test_null_is_submitted_as_its_text(element: str) -> None:  # 5.3.8
     assert asked == f"{SHOP}?x=null&y=undefined&z.a=null"
 
 
+def test_a_subdialog_is_requested_by_its_method_even_without_values() -> None:  # 2.3.4
+    called = vxml(block("<return/>"))
+    twice = f'<subdialog src="{SHOP}" method="post"/>' * 2
+    call = Online({SHOP: called}, f"<form>{twice}</form>")
+    sent = [record["data"] for record in call.phases("send")]
+    assert sent == [{"to": SHOP, "method": "post", "params": {}}] * 2
+    assert call.ended == "exit"
+
+
 def test_null_goes_along_with_a_subdialog_as_its_text() -> None:  # 2.3.4
     sends = f'<subdialog src="{SHOP}" namelist="x"/>'
     call = Online({}, REFUSED + f'<var name="x" expr="null"/><form>{sends}</form>')
