@@ -164,6 +164,7 @@ class Machine:
             yield from self.documents.enter(context, page, submitted)
         except (Thrown, ScriptError) as error:
             context.form = context.item = None
+            context.counters = Counters()  # those of the dialog that was left ended with it
             yield from self.events.handle(context, thrown_of(error))
 
     # Dialogs --------------------------------------------------------------------------

@@ -4,7 +4,19 @@ from __future__ import annotations
 
 import pytest
 
-from tests.helpers.dialogs import CITIES, GO, PASS, SILENT, Case, Cases, ask, logged, run, thrown
+from tests.helpers.dialogs import (
+    CITIES,
+    GO,
+    PASS,
+    SILENT,
+    Case,
+    Cases,
+    ask,
+    logged,
+    page,
+    run,
+    thrown,
+)
 from tests.helpers.voice import Call
 
 COUNTED = """<form><var name="n" expr="0"/>{handlers}<field name="f"><option>x</option></field>
@@ -236,6 +248,18 @@ case(
     <var name="x" expr="zz"/><form><block><log>no</log></block></form>
     <form id="t"><block><log>t</log></block></form>""",
     logs=["semantic", "t"],
+)
+case(
+    "an error in a document's variables does not count with those of the dialog before",
+    "5.2.2",
+    """<form><var name="x" expr="zz"/><catch event="error.semantic"><log>form</log></catch>
+    <block><goto next="other.vxml"/></block></form>""",
+    logs=["form", "first"],
+    files={
+        "other": page("""<var name="x" expr="zz"/>
+        <catch event="error.semantic"><log>first</log></catch>
+        <catch event="error.semantic" count="2"><log>second</log></catch><form/>""")
+    },
 )
 case(
     "a nomatch that is thrown counts with those that were heard",
