@@ -159,12 +159,12 @@ class Machine:
                 yield from self.events.unhandled(context, thrown)
 
     def _enter(self, context: Context, page: Page, submitted: bool) -> Flow:
-        """Set up a document's scopes; a failure is an event in it."""
+        """Set up a document's scopes; a failure is an event in it, where no dialog is active."""
+        context.form = context.item = None
+        context.counters = Counters()
         try:
             yield from self.documents.enter(context, page, submitted)
         except (Thrown, ScriptError) as error:
-            context.form = context.item = None
-            context.counters = Counters()  # those of the dialog that was left ended with it
             yield from self.events.handle(context, thrown_of(error))
 
     # Dialogs --------------------------------------------------------------------------

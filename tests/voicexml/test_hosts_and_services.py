@@ -313,6 +313,14 @@ def test_prompts_stay_queued_while_fetching_without_fetch_audio() -> None:
     assert call.said() == []
 
 
+def test_a_document_is_set_up_without_the_properties_of_the_dialog_before() -> None:  # 6.3
+    sets = '<property name="fetchaudio" value="hold.wav"/>'
+    leads = f'<form>{sets}<block>One moment.<goto next="other.vxml"/></block></form>'
+    other = f'{{}}<data name="d" src="{SHOP}"/>' + block("Done.")
+    assert Online({SHOP: None}, leads, other=vxml(other.format(""))).said() == []
+    assert Online({SHOP: None}, leads, other=vxml(other.format(sets))).said() == ["One moment."]
+
+
 # In a scenario -------------------------------------------------------------------------------
 
 SCENARIO = """<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="world.xml"
