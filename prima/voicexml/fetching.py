@@ -166,8 +166,6 @@ def held(owner: MachineOwner, uri: str, node: Node) -> bytes:
     found = owner.resources.get(whole)
     if found is None:
         raise Missing(whole, node)
-    if isinstance(found, Thrown):
-        raise found
     return found
 
 
@@ -192,10 +190,7 @@ def gathered(owner: MachineOwner, use: Callable[[], object]) -> Flow:
             return
         except Missing as missing:
             owner.app.count_step(missing.node)
-            try:
-                owner.resources[missing.uri] = yield from fetch(owner, missing.uri, missing.node)
-            except Thrown as thrown:
-                owner.resources[missing.uri] = thrown
+            owner.resources[missing.uri] = yield from fetch(owner, missing.uri, missing.node)
 
 
 def decoded(data: bytes, charset: str) -> str:

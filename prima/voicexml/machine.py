@@ -47,8 +47,8 @@ class Machine:
         self.engine = app.engine
         self.document = app.document
         self.pages: dict[str, Page] = {app.document.page.uri: app.document.page}
-        self.resources: dict[str, bytes | Thrown] = {}
-        """Resources of grammars that are not files: the bytes, or why they cannot be fetched."""
+        self.resources: dict[str, bytes] = {}
+        """Resources of grammars that are not files, once they have been fetched."""
         self.hosted: dict[str, str] = {}
         """Names and URIs that a real host, not a service, has answered, and where it did."""
         self.queue: list[Queued] = []

@@ -232,8 +232,8 @@ class MachineOwner(Protocol):
 
     pages: dict[str, Page]
     """Documents by their URIs."""
-    resources: dict[str, bytes | Thrown]
-    """Resources of grammars that are not files: the bytes, or why they cannot be fetched."""
+    resources: dict[str, bytes]
+    """Resources of grammars that are not files, once they have been fetched."""
     hosted: dict[str, str]
     """Names and URIs that a real host, not a service, has answered, and where it did."""
     queue: list[Queued]

@@ -6,6 +6,7 @@ from time import process_time
 
 import pytest
 
+from prima.messages import Fetched
 from tests.helpers.dialogs import (
     CITIES,
     GRAMMAR,
@@ -23,7 +24,7 @@ from tests.helpers.dialogs import (
     rule,
     run,
 )
-from tests.helpers.voice import Call
+from tests.helpers.voice import Call, Online
 
 case = Cases()
 
@@ -331,3 +332,16 @@ def test_parameters_that_exclude_each_other_are_badfetch() -> None:  # Appendix 
             f'<form><field name="q" type="{kind}"><prompt>Well?</prompt></field></form>'
         )
         assert call.logs() == ["refused"]
+
+
+def test_a_grammar_that_could_not_be_fetched_is_requested_again() -> None:  # 5.2.6
+    uri = "http://words.example/g.grxml"
+    call = Online(
+        {uri: None},
+        f"""<form><field name="f"><prompt>Well?</prompt><grammar src="{uri}"/>
+        <error><log expr="_event"/></error><filled><log expr="f"/></filled></field></form>""",
+    )
+    call.step(Fetched("app", 1, uri, status=503, problem="busy"))
+    call.step(Fetched("app", 2, uri, file("tea")))
+    call.answer("tea")
+    assert call.logs() == ["error.badfetch.http.503", "tea"]
