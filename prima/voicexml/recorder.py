@@ -76,7 +76,8 @@ class RecordItems:
         the keys are found in ``application.lastresult$``.
         """
         items = self.owner.items_of
-        said, key = divided(heard, item)
+        listens = "dtmf" in self.owner.inputs.modes(context)
+        said, key = divided(heard, listens and item.get("dtmfterm") != "false")
         if key and not heard.recognised:
             heard = replace(heard, utterance=key, interpretation=key, confidence=1.0, mode="dtmf")
         taken = bool(key) or heard.recognised
@@ -86,7 +87,7 @@ class RecordItems:
             return
         more: dict[str, Json] = {"maxtime": bool(data.get("maxtime"))}
         more |= marked_and_recorded(heard) if taken else {}
-        more["termchar"] = key if key and item.get("dtmfterm") != "false" else None
+        more["termchar"] = key or None
         if not key and heard.recognised:
             more |= {"utterance": heard.utterance, "confidence": heard.confidence}
         self._fill(context, item, said, data, more)
@@ -107,10 +108,9 @@ class RecordItems:
         self.owner.items_of.fill(context, item, said, shadow)
 
 
-def divided(heard: TakenUtterance, item: Node) -> tuple[str, str]:
-    """Divide an utterance into the words recorded and the keys that ended them."""
+def divided(heard: TakenUtterance, ends: bool) -> tuple[str, str]:
+    """Divide an utterance into the words recorded and the keys that ended them, if any may."""
     text = heard.utterance.strip()
-    ends = item.get("dtmfterm") != "false"
     if heard.recognised and heard.mode == "dtmf":
         return "", text
     if heard.recognised or not ends:

@@ -53,6 +53,11 @@ def test_without_dtmfterm_keys_end_nothing(place: Path) -> None:
     assert logs(run(place, record('dtmfterm="false"'), says("12")))[0].startswith("12,")
 
 
+def test_keys_end_nothing_where_voice_is_the_only_input(place: Path) -> None:  # 6.3.6
+    app = '<property name="inputmodes" value="voice"/>' + record()
+    assert logs(run(place, app, says(HELLO + "#")))[0].startswith(f"{HELLO}#,")
+
+
 def test_a_key_before_anything_is_said_leaves_the_record_unfilled(place: Path) -> None:
     app = """<form><var name="key"/><record name="r" cond="key = application.lastresult$, true">
     <prompt>Speak.</prompt><noinput><log>silence</log></noinput>
