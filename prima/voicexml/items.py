@@ -38,7 +38,6 @@ class Items:
         """Pass what the user said to the item, form, link or choice that took it."""
         owner = heard.owner
         self.owner.app.note(owner, "in" if owner.tag in ("link", "choice") else "heard")
-        self.remember(context, heard)
         dialog = _dialog_of(heard.page, owner)
         if dialog is not None and dialog is not context.form:
             page = heard.page if heard.page is not context.page else None

@@ -80,6 +80,7 @@ class Questions:
             if heard.owner is item and item.tag == "record":
                 yield from self.owner.items_of.recorder.take(context, item, heard, resume.data)
             else:
+                self.owner.items_of.remember(context, heard)
                 yield from self.owner.items_of.process(context, heard)
             return
         if outcome == "nomatch":

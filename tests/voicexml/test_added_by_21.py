@@ -410,6 +410,15 @@ def test_an_utterance_is_recorded_where_that_is_asked_for(cond: str) -> None:
     assert run(f'<form><field name="f">{field}</field></form>', "yes").logs() == ["fail"]
 
 
+def test_what_leads_to_another_dialog_is_recorded_where_it_was_said() -> None:  # 2.1, 7
+    on = '<property name="recordutterance" value="true"/>'
+    text = f"""<form>{{}}<field name="q"><prompt>Q?</prompt>{YES}</field></form>
+    <form scope="document">{{}}{grammar("go", "out.f = 1;")}
+    <field name="f"><filled><log expr="f$.recording"/></filled></field></form>"""
+    assert run(text.format(on, ""), "go").logs() == ["go"]
+    assert run(text.format("", on), "go").logs() == ["undefined"]
+
+
 def test_what_nobody_understood_is_recorded_and_played_back() -> None:
     text = f"""<property name="recordutterance" value="true"/><form><field name="f"><prompt>Q?</prompt>
         {YES}<nomatch>You said <audio expr="application.lastresult$.recording"/><exit/></nomatch>
