@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 from prima.interpreter.entering import ContentFacts, EnteredDocument, Entering, FormTarget
+from prima.interpreter.rings import rings
 
 Onward = Mapping[FormTarget, Sequence[FormTarget]]
 """The targets of forms, and the expressions that name forms."""
@@ -56,8 +57,11 @@ class Ways:
         return reached
 
     def _ranks_of(self, guess: bool) -> dict[FormTarget, int]:
+        """Equal numbers for targets that lead to each other; none leads to a higher one."""
         if guess not in self._ranks:
-            self._ranks[guess] = Ranks(self._guessed if guess else self._known).found
+            onward = self._guessed if guess else self._known
+            circles = rings(onward, lambda target: onward.get(target, ()))
+            self._ranks[guess] = {one: rank for rank, ring in enumerate(circles) for one in ring}
         return self._ranks[guess]
 
     @cached_property
@@ -86,58 +90,3 @@ class Ways:
         begin = bisect_left(self._names, target.name)
         end = bisect_left(self._names, f"{target.name}\U0010ffff")
         return [FormTarget(name) for name in self._names[begin:end]]
-
-
-class Ranks:
-    """Numbers of targets: equal for those that lead to each other; none leads to a higher one.
-
-    It is Tarjan's search for strongly connected components, without recursion.
-    """
-
-    def __init__(self, onward: Onward) -> None:
-        self.found: dict[FormTarget, int] = {}
-        self._onward = onward
-        self._entered: dict[FormTarget, int] = {}
-        """The order in which they were reached."""
-        self._lowest: dict[FormTarget, int] = {}
-        """The earliest one known to be reachable from each."""
-        self._edges: dict[FormTarget, Iterator[FormTarget]] = {}
-        self._path: list[FormTarget] = []
-        for root in onward:
-            if root not in self._entered:
-                self._search(root)
-
-    def _search(self, root: FormTarget) -> None:
-        calls = [self._enter(root)]
-        while calls:
-            node, into = calls[-1], self._next(calls[-1])
-            if into is not None:
-                calls.append(self._enter(into))
-                continue
-            calls.pop()
-            lowest = self._lowest[node]
-            if calls:
-                self._lowest[calls[-1]] = min(self._lowest[calls[-1]], lowest)
-            if lowest == self._entered[node]:
-                self._close(node)
-
-    def _enter(self, node: FormTarget) -> FormTarget:
-        self._entered[node] = self._lowest[node] = len(self._entered)
-        self._edges[node] = iter(self._onward.get(node, ()))
-        self._path.append(node)
-        return node
-
-    def _next(self, node: FormTarget) -> FormTarget | None:
-        """Unvisited nodes that a node leads to."""
-        for to in self._edges[node]:
-            if to not in self._entered:
-                return to
-            if to not in self.found:
-                self._lowest[node] = min(self._lowest[node], self._entered[to])
-        return None
-
-    def _close(self, node: FormTarget) -> None:
-        """Number the nodes that lead to a node and back."""
-        number = len(self.found)
-        while node not in self.found:
-            self.found[self._path.pop()] = number

@@ -122,7 +122,7 @@ INSIDE = {
         {"__init__"},
     ],
     "interpreter": [
-        {"acts", "diagnoses", "selection", "vocabulary"},
+        {"acts", "diagnoses", "rings", "selection", "vocabulary"},
         {"elements"},
         {"events", "places", "pyengine", "sensors"},
         {"naming", "transfers"},

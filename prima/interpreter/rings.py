@@ -11,6 +11,8 @@ Node = TypeVar("Node", bound=Hashable)
 def rings(starts: Iterable[Node], ways: Callable[[Node], Iterable[Node]]) -> Iterator[list[Node]]:
     """Sets of nodes that lead to each other (Tarjan's strongly connected components).
 
+    None leads to one that comes later.
+
     Args:
         starts: the nodes to begin with.
         ways: returns the successors of a node.
@@ -35,16 +37,17 @@ class _RingSearch(Generic[Node]):
         path = [] if start in self._number else [self._enter(start)]
         while path:
             name, left = path[-1]
-            to = next((one for one in left if one not in self._done), None)
-            if to is None:
+            for to in left:
+                if to not in self._number:
+                    path.append(self._enter(to))
+                    break
+                if to not in self._done:
+                    self._lower(name, self._number[to])
+            else:
                 path.pop()
                 if path:
                     self._lower(path[-1][0], self._lowest[name])
                 yield from self._ring(name)
-            elif to in self._number:
-                self._lower(name, self._number[to])
-            else:
-                path.append(self._enter(to))
 
     def _enter(self, name: Node) -> tuple[Node, Iterator[Node]]:
         self._number[name] = self._lowest[name] = len(self._number)
