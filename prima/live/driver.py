@@ -11,7 +11,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from prima.devices.goals import (
     RECORD,
@@ -66,6 +66,24 @@ class Refused(Exception):
     def __init__(self, reason: str, device: str = "") -> None:
         super().__init__(reason)
         self.device = device
+
+
+class OpenRequests(set[asyncio.Future[Any]]):
+    """Requests to a robot that have not been answered."""
+
+    def add_one(self) -> asyncio.Future[Any]:
+        """The future of a request, in the event loop in which this is called."""
+        future: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+        self.add(future)
+        future.add_done_callback(self.discard)
+        return future
+
+    def fail(self, reason: str) -> None:
+        """Give them up: the robot cannot be reached."""
+        for future in list(self):
+            if not future.done():
+                future.set_exception(Unreachable(reason))
+                future.exception()
 
 
 class Driver:

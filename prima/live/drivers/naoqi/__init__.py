@@ -12,7 +12,7 @@ from typing import Any, Final
 from prima.devices.goals import LISTEN, Begin
 from prima.devices.settings import Does
 from prima.errors import UsageError
-from prima.live.driver import Refused, Unreachable, Unusable, call_in
+from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in
 from prima.live.mapped import MappedDriver, refuse_unmapped
 from prima.messages import Data, Json
 
@@ -52,7 +52,7 @@ class NaoqiDriver(MappedDriver):
     _services: dict[str, Any]
     _links: list[tuple[Any, int]]
     """Signals, and what is connected to them."""
-    _pending: set[asyncio.Future[Any]]
+    _pending: OpenRequests
 
     # The connection -------------------------------------------------------------------------
 
@@ -64,7 +64,7 @@ class NaoqiDriver(MappedDriver):
             raise Unusable(INSTALL.format(error)) from None
         methods = self._methods()
         await self._leave()
-        self._services, self._links, self._pending = {}, [], set()
+        self._services, self._links, self._pending = {}, [], OpenRequests()
         self._session = session = qi.Session()
         url = _url(self.settings.address)
         try:
@@ -126,10 +126,7 @@ class NaoqiDriver(MappedDriver):
     def lose(self, reason: str) -> None:
         """Give up calls that have not been answered."""
         super().lose(reason)
-        for future in list(self._pending):
-            if not future.done():
-                future.set_exception(Unreachable(reason))
-                future.exception()
+        self._pending.fail(reason)
 
     async def ping(self) -> None:
         """Ask the service directory for its services."""
@@ -244,10 +241,7 @@ class NaoqiDriver(MappedDriver):
 
     def _future(self, asked: Any) -> asyncio.Future[Any]:
         """The future of a call, for this loop."""
-        loop = asyncio.get_running_loop()
-        future: asyncio.Future[Any] = loop.create_future()
-        self._pending.add(future)
-        future.add_done_callback(self._pending.discard)
+        future = self._pending.add_one()
 
         def settle(asked: Any) -> None:
             if future.done():
@@ -259,7 +253,7 @@ class NaoqiDriver(MappedDriver):
             else:
                 future.set_result(asked.value())
 
-        asked.addCallback(partial(call_in, loop, settle))
+        asked.addCallback(partial(call_in, asyncio.get_running_loop(), settle))
         return future
 
 

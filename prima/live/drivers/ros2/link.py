@@ -13,7 +13,7 @@ from typing import Any
 
 from prima.devices.settings import Senses
 from prima.errors import UsageError
-from prima.live.driver import Refused, Unreachable, Unusable, call_in
+from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in
 from prima.live.drivers.ros2.messages import fill, interface, paths, plain
 from prima.live.mapped import OFTEN
 from prima.live.ros import Outcome, RosDriver, RosUse, Sent
@@ -61,7 +61,7 @@ class RclpyLink:
         self._clients = Clients()
         self._untyped: list[RosUse] = []
         """Services whose types the robot has yet to report."""
-        self._pending: set[asyncio.Future[Any]] = set()
+        self._pending = OpenRequests()
         self._loop = asyncio.get_running_loop()
         self._context: Any = None
         self._executor: Any = None
@@ -224,12 +224,6 @@ class RclpyLink:
         if self._executor is not None and self._context.ok():
             self._executor.create_task(function)
 
-    def _future(self) -> asyncio.Future[Any]:
-        future: asyncio.Future[Any] = self._loop.create_future()
-        self._pending.add(future)
-        future.add_done_callback(self._pending.discard)
-        return future
-
     def _settle(self, future: asyncio.Future[Any], give: Callable[[], Any]) -> None:
         """Resolve a future with a result or the error of getting it, from any thread."""
         try:
@@ -240,13 +234,13 @@ class RclpyLink:
 
     async def _run(self, function: Callable[[], Any]) -> Any:
         """Call something in the node's thread."""
-        future = self._future()
+        future = self._pending.add_one()
         self._do(lambda: self._settle(future, function))
         return await future
 
     async def _answer(self, ask: Callable[[], Any]) -> Any:
         """Send a request to the robot in the node's thread, and wait for the answer."""
-        future = self._future()
+        future = self._pending.add_one()
 
         def begin() -> None:
             try:
@@ -261,10 +255,7 @@ class RclpyLink:
 
     def fail(self, reason: str) -> None:
         """Give up requests that have not been answered."""
-        for future in list(self._pending):
-            if not future.done():
-                future.set_exception(Unreachable(reason))
-                future.exception()
+        self._pending.fail(reason)
 
     async def close(self) -> None:
         """Remove the node from the network, and end its thread."""

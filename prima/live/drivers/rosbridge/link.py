@@ -10,7 +10,7 @@ from typing import Any, Final
 from urllib.parse import urlsplit
 
 from prima.devices.settings import Senses
-from prima.live.driver import Refused, Unreachable, Unusable, call_in
+from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in
 from prima.live.mapped import OFTEN
 from prima.live.ros import Outcome, RosDriver, RosUse, Sent
 from prima.messages import Json
@@ -51,7 +51,7 @@ class RosbridgeLink:
         self._longest = longest
         self._heartbeat = heartbeat
         self._loop = asyncio.get_running_loop()
-        self._pending: set[asyncio.Future[Any]] = set()
+        self._pending = OpenRequests()
         self._goals: dict[str, Any] = {}
         """The clients of actions with running goals, by the goals' names."""
         self._uses: list[RosUse] = []
@@ -148,7 +148,7 @@ class RosbridgeLink:
         from roslibpy import ActionClient, Goal
 
         client = ActionClient(self._ros, use.name, use.type)
-        end = self._future()
+        end = self._pending.add_one()
         over = partial(self._from_thread, end)
         feedback = partial(self._post, on)
         key = client.send_goal(Goal(values), over, feedback, over)
@@ -166,7 +166,7 @@ class RosbridgeLink:
         """Call a service; returns its answer."""
         from roslibpy import Service, ServiceRequest
 
-        future = self._future()
+        future = self._pending.add_one()
 
         def answer(values: Any) -> None:
             self._post(partial(_settle, future, dict(values)))
@@ -207,18 +207,9 @@ class RosbridgeLink:
     def _post(self, what: Callable[[], object], *_: object) -> None:
         call_in(self._loop, what)
 
-    def _future(self) -> asyncio.Future[Any]:
-        future: asyncio.Future[Any] = self._loop.create_future()
-        self._pending.add(future)
-        future.add_done_callback(self._pending.discard)
-        return future
-
     def fail(self, reason: str) -> None:
         """Give up requests that have not been answered."""
-        for future in list(self._pending):
-            if not future.done():
-                future.set_exception(Unreachable(reason))
-                future.exception()
+        self._pending.fail(reason)
 
     async def close(self) -> None:
         """End the connection."""
