@@ -50,6 +50,7 @@ from prima.interpreter.elements import (
     Unit,
     all_items,
 )
+from prima.interpreter.entering import goes_to_item, is_left
 from prima.interpreter.events import DEFAULTS
 from prima.language.commands import TABLE_4_2
 
@@ -278,22 +279,11 @@ def _leaves_at_its_end(items: Sequence[Item]) -> bool:
 def _leaves_state(item: Item) -> bool:
     match item:
         case Block():
-            return _never_ends(item.content)
+            return is_left(item.content, goes_to_item)
         case Unit():
             return _leaves_at_its_end(item.items)
         case Field() | Subdialog():
-            return any(_never_ends(filled.content) for filled in item.filled)
-    return False
-
-
-def _never_ends(content: Sequence[Act]) -> bool:
-    """Whether content always leaves its state."""
-    for act in content:
-        if isinstance(act, Goto | Exit | Return):
-            return not (isinstance(act, Goto) and act.item is not None)
-        complete = isinstance(act, If) and act.branches[-1][0] is None
-        if isinstance(act, If) and complete and all(_never_ends(one) for _, one in act.branches):
-            return True
+            return any(is_left(filled.content, goes_to_item) for filled in item.filled)
     return False
 
 

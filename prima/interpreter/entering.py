@@ -258,15 +258,20 @@ def is_open(act: Goto) -> bool:
     return isinstance(item, Expression) and not all(one.whole for one in choices(item.code))
 
 
-def is_left(content: Sequence[Act]) -> bool:
-    """Whether content always goes elsewhere."""
+def is_left(content: Sequence[Act], stays: Callable[[Act], bool] = lambda _: False) -> bool:
+    """Whether content always goes elsewhere, by an act that does not count as staying."""
     for act in content:
         if isinstance(act, Goto | Exit | Return):
-            return True
+            return not stays(act)
         complete = isinstance(act, If) and act.branches[-1][0] is None
-        if isinstance(act, If) and complete and all(is_left(one) for _, one in act.branches):
+        if isinstance(act, If) and complete and all(is_left(one, stays) for _, one in act.branches):
             return True
     return False
+
+
+def goes_to_item(act: Act) -> bool:
+    """Whether an act goes to an item of its own form."""
+    return isinstance(act, Goto) and act.item is not None
 
 
 def _waiting(form: Form, items: Iterable[Item]) -> dict[str, list[tuple[set[str], Filled]]]:

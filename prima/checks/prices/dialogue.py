@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from prima.checks.prices.contents import handlers_of, hooks_of, inside, own_contents, sent_by
-from prima.checks.prices.firsts import Firsts, asks_at_most, is_left, responds
+from prima.checks.prices.firsts import Firsts, asks_at_most, responds
 from prima.checks.prices.model import SPEECH, Gap, Outline, Price, PricedReaction, PricedState
 from prima.checks.prices.own import OwnEvents
 from prima.checks.prices.texts import words_of
@@ -20,10 +20,12 @@ from prima.interpreter.acts import (
     Foreach,
     Goto,
     Handler,
+    Return,
     SendOut,
     all_acts,
 )
 from prima.interpreter.elements import Document, Field, Form, Item, Link, Subdialog, Unit, all_items
+from prima.interpreter.entering import goes_to_item, is_left
 from prima.interpreter.rounds import EventLeads, raised_in
 from prima.interpreter.selection import takes
 
@@ -109,7 +111,7 @@ class _DialoguePrices(Times):
         if link.form:
             does.goes[link.form] = link.node
         begins = self._begins(content, form, link.form)
-        stays = None if link.form or is_left(content) else _name(form)
+        stays = None if link.form or is_left(content, goes_to_item) else _name(form)
         words = words_of(link.node)
         return PricedReaction((SPEECH,), link.node, *begins, does, stays, words, self._later())
 
@@ -233,7 +235,7 @@ class _DialoguePrices(Times):
         does = self._content(PricedState(handler.events[0], handler.node), [handler.content], form)
         begins = self._begins(handler.content, form)
         later = self._later()
-        stays = None if is_left(handler.content, back=False) else _name(form)
+        stays = None if is_left(handler.content, _stays) else _name(form)
         if foreign:
             made = self._made(foreign[0], handler) if rounds and not own else None
             yield PricedReaction(
@@ -263,6 +265,10 @@ class _DialoguePrices(Times):
 
 def _goes_on(act: SendOut) -> Gap:
     return Gap(act.node.place, f"its own event {act.event} makes it go on later")
+
+
+def _stays(act: Act) -> bool:
+    return isinstance(act, Return) or goes_to_item(act)
 
 
 def _name(form: Form | None) -> str:

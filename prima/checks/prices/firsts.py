@@ -21,6 +21,7 @@ from prima.interpreter.acts import (
     run_commands,
 )
 from prima.interpreter.elements import Block, Document, Field, Form, Item, Subdialog, all_items
+from prima.interpreter.entering import goes_to_item, is_left
 from prima.interpreter.rounds import raised_in
 from prima.interpreter.selection import prefixes
 from prima.markup.tree import Node
@@ -201,26 +202,13 @@ def _all_handlers(document: Document, form: Form | None) -> list[Handler]:
     return found
 
 
-def is_left(content: Sequence[Act], back: bool = True) -> bool:
-    """Whether content always leaves its state; with ``back``, a return counts."""
-    for act in content:
-        if isinstance(act, Exit) or (isinstance(act, Goto) and not act.item):
-            return True
-        if isinstance(act, Return):
-            return back
-        complete = isinstance(act, If) and act.branches[-1][0] is None
-        if isinstance(act, If) and complete and all(is_left(one, back) for _, one in act.branches):
-            return True
-    return False
-
-
 def asks_at_most(field: Field, form: Form, document: Document) -> int:
     """How often a question is asked until the user answers; 0 for endlessly."""
     scope = [*field.handlers, *form.handlers, *document.handlers]
     total = 0
     for event in ("noinput", "nomatch"):
         fitting = [one for one in scope if event in one.events and one.cond is None]
-        counts = [one.count for one in fitting if is_left(one.content)]
+        counts = [one.count for one in fitting if is_left(one.content, goes_to_item)]
         if not counts:
             return 0
         total += min(counts)
