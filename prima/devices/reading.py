@@ -6,10 +6,10 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING, Any
 
 from prima.errors import DocumentError, Hint, Problem, Severity, has_errors
-from prima.interpreter.surroundings import nearest as nearest_name
-from prima.language.values import DRAWABLE, nearest, outside, read_value, within
+from prima.interpreter.surroundings import nearest
+from prima.language.values import DRAWABLE, is_beyond, outside, read_value
 from prima.markup.reader import read_tree
-from prima.markup.spans import value_span
+from prima.markup.spans import nearest_allowed, value_span
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute, Vocabulary
 
@@ -40,12 +40,10 @@ class Reader:
             return None  # already reported as a schema problem
         if item.kind in DRAWABLE and isinstance(value, str):
             return self._quantile(node, item, value)
-        number = isinstance(value, int | float) and not isinstance(value, bool)
-        if number and not within(float(value), item.low, item.high):
+        if is_beyond(value, item.low, item.high):
             message = f'{name} "{text}" {outside(item.kind, item.low, item.high)}'
-            spans = value_span(node, name)
-            remedy = nearest(item.kind, float(value), item.low, item.high, *spans)
-            self.problem(node, "out-of-range", message, name, remedy)
+            hint = nearest_allowed(item, text, node, name)
+            self.problem(node, "out-of-range", message, name, hint)
         return value
 
     def _quantile(self, node: Node, item: Attribute, text: str) -> Quantile | None:
@@ -82,7 +80,7 @@ class Reader:
         word = node.get(name)
         if word and word not in words:
             message = f'There is no {what} "{word}".'
-            hint = nearest_name(word, words, *value_span(node, name))
+            hint = nearest(word, words, *value_span(node, name))
             self.problem(node, "no-such-name", message, name, hint)
 
     def finish(self) -> None:

@@ -27,8 +27,8 @@ from prima.language.arguments import (
     missing_argument,
 )
 from prima.language.commands import PATIENCE_MS, TABLE_4_2, CommandType, too_long
-from prima.language.values import XML_SPACE, BadValue, nearest, outside, read_value, within
-from prima.markup.spans import value_span
+from prima.language.values import XML_SPACE, BadValue, is_beyond, outside, read_value
+from prima.markup.spans import nearest_allowed
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute
 
@@ -93,11 +93,10 @@ class AttributeReader:
 
     def bounded(self, node: Node, name: str, item: Attribute, value: Json) -> None:
         """Note an attribute's number that is out of its bounds."""
-        if isinstance(value, int | float) and not within(float(value), item.low, item.high):
-            wrong = f'{item.name} "{node.get(name)}" {outside(item.kind, item.low, item.high)}'
-            spans = value_span(node, name)
-            hint = nearest(item.kind, float(value), item.low, item.high, *spans)
-            self.problem(BEYOND, node, name, hint, wrong=wrong)
+        if is_beyond(value, item.low, item.high):
+            text = node.get(name)
+            wrong = f'{item.name} "{text}" {outside(item.kind, item.low, item.high)}'
+            self.problem(BEYOND, node, name, nearest_allowed(item, text, node, name), wrong=wrong)
 
     def expression(self, node: Node, name: str = "expr") -> Expression | None:
         """An attribute as an expression, if it is given."""
@@ -211,8 +210,7 @@ class AttributeReader:
                 args[bare] = text  # read by the mediator, like the value of an expression
             except BadValue as error:
                 if error.beyond:
-                    value, spans = float(read_value(argument.kind, text)), value_span(node, key)
-                    hint = nearest(argument.kind, value, argument.low, argument.high, *spans)
+                    hint = nearest_allowed(argument, text, node, key)
                     self.problem(BEYOND, node, key, hint, wrong=error.wrong)
         return args
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 
 from prima.errors import did_you_mean, one_of
 from prima.language.commands import Argument, CommandType
-from prima.language.values import BadValue, Value, outside, quoted, read_value, within
+from prima.language.values import BadValue, Value, is_beyond, outside, quoted, read_value
 
 _A_KIND = {
     "number": "a number",
@@ -33,8 +33,7 @@ def check_argument(name: str, argument: Argument, value: object) -> Value:
         result = read_value(kind, value) if isinstance(value, str) else _converted(kind, value)
     except BadValue as error:
         raise BadValue(f"{said} {error.wrong}", error.remedy, right=error.right) from None
-    number = isinstance(result, int | float) and not isinstance(result, bool)
-    if number and not within(float(result), argument.low, argument.high):
+    if is_beyond(result, argument.low, argument.high):
         wrong = f"{said} {outside(argument.kind, argument.low, argument.high)}"
         raise BadValue(wrong, beyond=True)
     return result

@@ -14,8 +14,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, lru_cache
 
-from prima.errors import Hint, Span, replaced
-
 Value = str | int | float | bool
 
 
@@ -312,30 +310,23 @@ def quoted(value: object) -> str:
 def outside(kind: str, low: float | None, high: float | None) -> str:
     """The message for a number out of its bounds, which are in the unit that authors write."""
     if low is not None and high is not None:
-        return f"is out of range: from {_written(kind, low)} to {_written(kind, high)}."
+        return f"is out of range: from {written(kind, low)} to {written(kind, high)}."
     if low is not None:
-        return f"is out of range: at least {_written(kind, low)}."
+        return f"is out of range: at least {written(kind, low)}."
     return (
-        "is out of range." if high is None else f"is out of range: at most {_written(kind, high)}."
+        "is out of range." if high is None else f"is out of range: at most {written(kind, high)}."
     )
 
 
-def nearest(kind: str, value: float, low: float | None, high: float | None, *spans: Span) -> Hint:
-    """The allowed number nearest to one beyond its bounds; the fix writes it into some spans."""
-    bound = low if low is not None and value < low else high
-    if bound is None:
-        return Hint()
-    right = _written(kind, bound)
-    return replaced(f'The nearest is "{right}".', right, *spans)
-
-
-def _written(kind: str, value: float) -> str:
+def written(kind: str, value: float) -> str:
     """A number, or a time in ms with its unit."""
     if DRAWABLE.get(kind, kind) != "duration":
         return f"{value:g}"
     return f"{value / 1000:g}s" if value >= 1000 or not value else f"{value:g}ms"
 
 
-def within(value: float, low: float | None, high: float | None) -> bool:
-    """Whether a number is neither below ``low`` nor above ``high``, if given."""
-    return (low is None or value >= low) and (high is None or value <= high)
+def is_beyond(value: object, low: float | None, high: float | None) -> bool:
+    """Whether a value is a number below ``low`` or above ``high``, if given."""
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        return False
+    return (low is not None and value < low) or (high is not None and value > high)

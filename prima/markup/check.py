@@ -26,7 +26,7 @@ from prima.errors.diagnoses.structure import (
     WRONG_ROOT,
 )
 from prima.errors.diagnoses.values import BAD_VALUE
-from prima.language.values import KINDS, XML_SPACE, BadValue, outside, read_value, within
+from prima.language.values import KINDS, XML_SPACE, BadValue, is_beyond, outside, read_value
 from prima.markup.hints import TEXTS, meant_value, misplaced_remedy, text_remedy
 from prima.markup.spans import (
     added,
@@ -336,7 +336,7 @@ def _value_problem(item: Attribute, is_expression: bool, text: str) -> BadValue 
     if not bad or not right:
         return bad
     value = read_value(item.kind, right)
-    if isinstance(value, int | float) and not within(float(value), item.low, item.high):
+    if is_beyond(value, item.low, item.high):
         return BadValue(bad.wrong, f'"{right}" {outside(item.kind, item.low, item.high)}')
     return BadValue(bad.wrong, f'Write "{right}".', right=right)
 

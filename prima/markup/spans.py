@@ -7,6 +7,8 @@ from bisect import bisect_right
 from collections.abc import Iterable
 
 from prima.errors import Edit, Fix, Hint, Span, meant, nearest_word, replaced
+from prima.language.commands import Argument
+from prima.language.values import read_value, written
 from prima.markup.limits import LIMITS
 from prima.markup.tree import MARKUP, NAME, WORD, Node
 from prima.markup.vocabulary import Attribute
@@ -39,6 +41,16 @@ def value_span(node: Node, attribute: str, word: str = "") -> tuple[Span, ...]:
     if word and at < 0 and last - first <= LONG:
         at = _found(source.text, word, first, last)
     return (source.span(*((at, at + len(word)) if at >= 0 else (first, last))),)
+
+
+def nearest_allowed(item: Attribute | Argument, text: str, node: Node, attribute: str) -> Hint:
+    """The allowed number nearest to one beyond its bounds; the fix writes it as an attribute."""
+    low = item.low is not None and float(read_value(item.kind, text)) < item.low
+    bound = item.low if low else item.high
+    if bound is None:
+        return Hint()
+    right = written(item.kind, bound)
+    return replaced(f'The nearest is "{right}".', right, *value_span(node, attribute))
 
 
 def _found(text: str, word: str, first: int, last: int) -> int:

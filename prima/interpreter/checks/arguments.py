@@ -9,8 +9,8 @@ from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE, STRAY_TEXT
 from prima.errors.diagnoses.values import BAD_VALUE, OUT_OF_RANGE
 from prima.language.arguments import check_argument, missing_argument
 from prima.language.commands import Argument, CommandType
-from prima.language.values import BadValue, nearest, read_value
-from prima.markup.spans import value_span
+from prima.language.values import BadValue
+from prima.markup.spans import nearest_allowed
 from prima.markup.tree import Node
 
 MISSING_ARGUMENT = MISSING_ATTRIBUTE.says("{wrong}", 'Write {name}="...".')
@@ -61,6 +61,5 @@ def _argument(node: Node, name: str, argument: Argument, text: str) -> Iterator[
         if not error.beyond:
             yield BAD_ARGUMENT.at(place, wrong=error.wrong, remedy=error.remedy)
             return
-        value, spans = float(read_value(argument.kind, text)), value_span(holder, attribute)
-        hint = nearest(argument.kind, value, argument.low, argument.high, *spans)
+        hint = nearest_allowed(argument, text, holder, attribute)
         yield ARGUMENT_BEYOND.at(place, hint, wrong=error.wrong)
