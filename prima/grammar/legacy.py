@@ -14,7 +14,7 @@ from functools import lru_cache
 
 from prima.grammar.model import GrammarDocument
 from prima.script.names import script_names
-from prima.script.parse import Code, Node, inner, parse_expression, parse_script
+from prima.script.parse import Code, Node, inner, parse_expression, parse_script, spliced
 
 FORMATS = {
     "": "",
@@ -137,12 +137,9 @@ def translate(code: str) -> str:
 
 def _from_dollars(code: str) -> str:
     """Translate ``$`` (the rule's variable), ``$$`` (the last rule's value) and ``$name``."""
-    pieces, at = [], 0
-    for start, end, name in _signs(code):
-        value = {"$": "out", "$$": "rules.latest()"}.get(name, f"rules.{name[1:]}")
-        pieces += [code[at:start], value]
-        at = end
-    script = "".join([*pieces, code[at:]])
+    known = {"$": "out", "$$": "rules.latest()"}
+    signs = ((a, z, known.get(name, f"rules.{name[1:]}")) for a, z, name in _signs(code))
+    script = spliced(code, signs)
     parsed = parse_script(code)
     if parsed is not None and any(node.type in _GIVES for node in parsed.walk()):
         return script

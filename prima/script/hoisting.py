@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from prima.script.names import bound_names
-from prima.script.parse import Code, Node, parse_script
+from prima.script.parse import Code, Node, parse_script, spliced
 from prima.script.walk import FUNCTIONS
 
 HIDDEN = "$_"
@@ -81,7 +81,7 @@ class _Hoister:
         hidden = {f"{name}{HIDDEN}" for name in script.functions}
         if not (hidden.isdisjoint(self.names) and {*script.variables}.isdisjoint(script.others)):
             return None  # a name has two meanings
-        script.code = self._edited()
+        script.code = spliced(self.code.text, sorted(self.edits))
         return script
 
     def _outside(self) -> Iterator[Node]:
@@ -92,13 +92,6 @@ class _Hoister:
             yield node
             if node.type not in FUNCTIONS and node.type not in CLASSES:
                 waiting += reversed(node.named_children)
-
-    def _edited(self) -> str:
-        pieces, at, text = [], 0, self.code.text
-        for start, end, put in sorted(self.edits):
-            pieces += [text[at:start], put]
-            at = end
-        return "".join([*pieces, text[at:]])
 
     def _declaration(self, node: Node) -> None:
         """Handle a declaration; variables of ``var`` always belong to the scope.
@@ -181,10 +174,6 @@ def _functions(code: str) -> dict[str, tuple[int, int]]:
 
 def _assigned(code: str, places: dict[str, tuple[int, int]], counts: Counter[str]) -> str:
     """A script that first assigns those functions whose names other scripts declare as well."""
-    first, rest, at = [], [], 0
-    for name, (start, end) in sorted(places.items(), key=lambda one: one[1]):
-        if counts[name] > 1:
-            first.append(f"var {name} = {code[start:end]};")
-            rest.append(code[at:start])
-            at = end
-    return "".join([*first, *rest, code[at:]])
+    again = sorted((*places[name], name) for name in places if counts[name] > 1)
+    first = "".join(f"var {name} = {code[start:end]};" for start, end, name in again)
+    return first + spliced(code, ((start, end, "") for start, end, _ in again))

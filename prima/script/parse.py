@@ -7,14 +7,13 @@ The tree shows the structure of code; whether it is valid ECMAScript is decided 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import Literal
 
 import tree_sitter_javascript
-from tree_sitter import Language, Node, Parser, Tree
-
-__all__ = ["MOST_CODE", "Code", "Node", "parse_bracketed", "parse_expression", "parse_script"]
+from tree_sitter import Language, Parser, Tree
+from tree_sitter import Node as Node  # for those who walk the tree
 
 MOST_CODE = 300_000
 """Maximum length of code that is parsed."""
@@ -111,6 +110,15 @@ def parse_expression(code: str) -> Code | None:
 def parse_bracketed(code: str) -> Code | None:
     """The tree of any code in brackets; the last one is cached."""
     return _parse(code, f"({code}\n)", 1)
+
+
+def spliced(code: str, edits: Iterable[tuple[int, int, str]]) -> str:
+    """Code with edits in order: start, end and new text."""
+    pieces, at = [], 0
+    for start, end, text in edits:
+        pieces += [code[at:start], text]
+        at = end
+    return "".join([*pieces, code[at:]])
 
 
 def inner(code: Code) -> Node | None:

@@ -49,23 +49,21 @@ def shared(code: str) -> str:
     """
     if not any(word in code for word in ("let", "const", "class")):
         return code
-    from prima.script.parse import parse_script
+    from prima.script.parse import parse_script, spliced
 
     parsed = parse_script(code)
     if parsed is None or not parsed.sound:
         return code
-    pieces, at = [], 0
+    edits = []
     for node in parsed.root.children:
         name = node.child_by_field_name("name")
         if node.type == "lexical_declaration":
             word = node.children[0]
-            pieces += [code[at : parsed.start(word)], "var"]
-            at = parsed.end(word)
+            edits.append((parsed.start(word), parsed.end(word), "var"))
         elif node.type == "class_declaration" and name is not None:
             start, end = parsed.start(node), parsed.end(node)
-            pieces += [code[at:start], f"var {parsed.of(name)} = {code[start:end]};"]
-            at = end
-    return "".join([*pieces, code[at:]])
+            edits.append((start, end, f"var {parsed.of(name)} = {code[start:end]};"))
+    return spliced(code, edits)
 
 
 class TagEngine:
