@@ -12,7 +12,6 @@ from prima.errors.visible import visible
 from prima.lsp import naming
 from prima.lsp import outline as outlines
 from prima.lsp.complete import Proposal, complete
-from prima.lsp.fixes import fixes
 from prima.lsp.hover import hover as meaning
 from prima.lsp.paths import path_of
 from prima.lsp.problems import spot
@@ -216,10 +215,10 @@ def _quick_fixes(
     server: Server, page: ScannedText, problem: Problem, uri: str
 ) -> Iterator[lsp.CodeAction]:
     """The fixes of a problem, the preferred one first."""
-    for number, (title, changes) in enumerate(fixes(page.lines, problem)):
+    for number, (title, changes) in enumerate(problem.fixes):
         edits = [
-            lsp.TextEdit(server.range(page.lines, change.start, change.end), change.text)
-            for change in changes
+            lsp.TextEdit(server.range(page.lines, *page.lines.offsets(span)), text)
+            for span, text in changes
         ]
         yield lsp.CodeAction(
             visible(title),

@@ -6,6 +6,8 @@ import re
 from bisect import bisect_right
 from itertools import accumulate
 
+from prima.errors import Span
+
 LINE_END = re.compile(r"\r\n|\r|\n")
 UTF8, UTF16, UTF32 = "utf-8", "utf-16", "utf-32"
 """Units of columns: bytes, UTF-16 units (supported by every editor), characters."""
@@ -70,6 +72,11 @@ class Lines:
             self._wide = line, encoding, [at for at, _ in wide], [*accumulate(n for _, n in wide)]
         index = bisect_right(self._wide[2], column)
         return self._wide[3][index - 1] if index else 0
+
+    def offsets(self, span: Span) -> tuple[int, int]:
+        """The offsets at which a span starts and ends."""
+        start = self.place(span.line, span.column)
+        return start, self.place(span.end_line, span.end_column)
 
     def place(self, line: int, column: int) -> int:
         """The offset of a line and column that count characters from 1."""

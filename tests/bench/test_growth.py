@@ -20,7 +20,6 @@ from prima.errors.guesses import MANY_WORDS
 from prima.interpreter import reader
 from prima.lsp import naming
 from prima.lsp.complete import complete
-from prima.lsp.fixes import fixes
 from prima.lsp.hover import hover
 from prima.lsp.outline import outline
 from prima.lsp.problems import check, spots
@@ -88,7 +87,8 @@ def test_an_editors_questions_grow_with_the_size_of_a_document(name: str, tmp_pa
         for problem in spots(
             workspace, path, [one for some in check(workspace, path).values() for one in some]
         ):
-            fixes(page.lines, problem.problem)
+            for span, _ in (edit for fix in problem.problem.fixes for edit in fix.edits):
+                page.lines.offsets(span)
         for offset in (text.find('"', len(text) // 2) + 1, text.find("<", len(text) // 2) + 2):
             hover(workspace, path, offset)
             complete(workspace, path, offset)

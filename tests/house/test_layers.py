@@ -172,7 +172,7 @@ INSIDE = {
         {"names", "snippets"},
         {"workspace"},
         {"hover", "naming", "outline", "problems"},
-        {"complete", "fixes", "protocol"},
+        {"complete", "protocol"},
         {"answers"},
         {"server"},
         {"__init__"},

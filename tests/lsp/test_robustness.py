@@ -18,7 +18,6 @@ from lsprotocol import types as lsp
 
 from prima.lsp import naming, server
 from prima.lsp.complete import complete
-from prima.lsp.fixes import fixes
 from prima.lsp.hover import hover
 from prima.lsp.names import marks
 from prima.lsp.outline import links, outline
@@ -109,8 +108,9 @@ def everything(workspace: Workspace, path: Path, offset: int) -> None:
     links(workspace, path)
     for one in spots(workspace, path, check(workspace, path)[path]):
         assert 0 <= one.start <= one.end <= len(page.text)
-        for _, changes in fixes(page.lines, one.problem):
-            assert all(0 <= c.start <= c.end <= len(page.text) for c in changes)
+        for span, _ in (edit for fix in one.problem.fixes for edit in fix.edits):
+            start, end = page.lines.offsets(span)
+            assert 0 <= start <= end <= len(page.text)
 
 
 SAMPLES = [

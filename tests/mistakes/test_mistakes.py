@@ -18,7 +18,6 @@ from prima.errors import Diagnosis, Fix, Problem, UsageError
 from prima.errors.rendering import TOKEN
 from prima.handbook.examples import FOLDER, Example, beside, data, examples, shown
 from prima.loading.files import GivenFiles, in_place_of_files
-from prima.lsp.fixes import changes
 from prima.lsp.text import Lines
 from tests import ROOT
 from tests.helpers.here import prima
@@ -451,8 +450,9 @@ def mended(path: Path, fix: Fix) -> list[Problem]:
     """The problems of a document after a fix."""
     lines = Lines(path.read_text(encoding="utf-8"))
     text = lines.text
-    for change in sorted(changes(lines, fix), key=lambda one: -one.start):
-        text = text[: change.start] + change.text + text[change.end :]
+    for span, new in sorted(fix.edits, key=lambda one: one.span[:2], reverse=True):
+        start, end = lines.offsets(span)
+        text = text[:start] + new + text[end:]
     with in_place_of_files(GivenFiles({path.resolve(): text.encode()})):
         return problems_of(path)
 
