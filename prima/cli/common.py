@@ -141,8 +141,6 @@ TRANSCRIPTS = ("run", "replay", "journal")
 """Names of files that commands write and that may replace a transcript."""
 TRANSCRIPT = rb'{"time":[\d.]+,"phase":"run",'
 """How transcripts begin."""
-PATIENCE = "Longest time an application may keep another from the speaker; default 60s (rule E6)."
-"""The help of ``--patience``."""
 
 
 def duration_option(name: str, meaning: str) -> Callable[[Any], Any]:
@@ -157,6 +155,21 @@ def duration_option(name: str, meaning: str) -> Callable[[Any], Any]:
             raise UsageError(f'{name} "{text}" {error}') from None
 
     return click.option(name, metavar="TIME", callback=read, help=meaning)
+
+
+patience_option = duration_option(
+    "--patience",
+    "Longest time an application may keep another from the speaker; default 60s (rule E6).",
+)
+
+
+def policy_option(meaning: str, many: bool = False) -> Callable[[Any], Any]:
+    """An option for policies, which are checked later; its meaning lists them for ``{}``."""
+    from prima.scheduler.policy import POLICIES, USAGE
+
+    names = ("--policy", "policies") if many else ("--policy",)
+    known = suggesting(*POLICIES)
+    return click.option(*names, multiple=many, shell_complete=known, help=meaning.format(USAGE))
 
 
 def coloured() -> bool:
@@ -322,24 +335,6 @@ def _protected(path: Path, made: str) -> str:
         return "transcript"
     root = rb"<(?:[\w.-]+:)?(?:prima|scenario|world|robot|vxml)(?:[\s>/]|$)"
     return "document" if re.match(root, root_of(data)) or is_grammar(data) else ""
-
-
-def copy_folder(source: Path, folder: str) -> None:
-    """Copy a folder that comes with PRIMA to a new one.
-
-    Raises:
-        UsageError: the new one exists already, or cannot be written.
-    """
-    import shutil
-
-    if not folder:
-        raise UsageError("The folder has no name; name a new one.")
-    try:
-        shutil.copytree(source, folder)
-    except FileExistsError:
-        raise UsageError(f"{folder}: already exists; name a new folder.") from None
-    except OSError as error:
-        raise UsageError(f"{folder}: cannot be written: {error.strerror or error}.") from None
 
 
 def same_file(one: str | Path, other: str | Path) -> bool:

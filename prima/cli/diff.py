@@ -12,26 +12,19 @@ from prima.cli.common import (
     check_output,
     coloured,
     or_stdout,
-    suggesting,
+    policy_option,
     tell_cut,
     write_for_programs,
 )
 from prima.cli.failures import whoever_reads
 from prima.cli.runs import run_of
 from prima.errors import UsageError
-from prima.scheduler.policy import POLICIES, USAGE
 
 
 @click.command()
 @click.argument("before", type=click.Path())
 @click.argument("after", type=click.Path(), required=False)
-@click.option(
-    "--policy",
-    "policies",
-    multiple=True,
-    shell_complete=suggesting(*POLICIES),
-    help=f"Run a scenario under this policy; twice, once for each run: {USAGE}.",
-)
+@policy_option("Run a scenario under this policy; twice, once for each run: {}.", many=True)
 @click.option(
     "--format",
     "form",

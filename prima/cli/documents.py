@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import shutil
+from pathlib import Path
+
 import click
 
-from prima.cli.common import copy_folder, tell
+from prima.cli.common import tell
+from prima.errors import UsageError
 
 
 @click.command()
@@ -20,3 +24,19 @@ def documents(folder: str) -> None:
 
     copy_folder(api.documents_folder(), folder)
     tell(f"{folder}: applications, worlds, robots and scenarios")
+
+
+def copy_folder(source: Path, folder: str) -> None:
+    """Copy a folder that comes with PRIMA to a new one.
+
+    Raises:
+        UsageError: the new one exists already, or cannot be written.
+    """
+    if not folder:
+        raise UsageError("The folder has no name; name a new one.")
+    try:
+        shutil.copytree(source, folder)
+    except FileExistsError:
+        raise UsageError(f"{folder}: already exists; name a new folder.") from None
+    except OSError as error:
+        raise UsageError(f"{folder}: cannot be written: {error.strerror or error}.") from None

@@ -15,16 +15,15 @@ from prima.cli.common import (
     isolate_option,
     limit_option,
     on_option,
+    policy_option,
     put,
     raise_limits,
-    suggesting,
     tell,
     workers_option,
     write_for_programs,
 )
 from prima.cli.progress import ProgressBar
 from prima.errors import RunError, UsageError, counted
-from prima.scheduler.policy import POLICIES
 
 if TYPE_CHECKING:
     from prima.experiments.explore import Exploration
@@ -48,9 +47,7 @@ if TYPE_CHECKING:
     default=20_000,
     help="Runs at most, before shifts are minimised; default 20000.",
 )
-@click.option(
-    "--policy", default="", shell_complete=suggesting(*POLICIES), help="Run under this policy."
-)
+@policy_option("Run under this policy.")
 @click.option("-o", "--output", type=click.Path(), help="A folder for the orders and problems.")
 @workers_option
 @on_option
@@ -65,7 +62,7 @@ def explore(
     depth: int,
     step: int | None,
     runs: int,
-    policy: str,
+    policy: str | None,
     output: str | None,
     workers: int | None,
     address: str | None,
@@ -101,7 +98,7 @@ def explore(
         depth,
         step or 0,
         runs,
-        policy,
+        policy or "",
         isolate,
     )
     exploration = Exploration(plan)

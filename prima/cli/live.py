@@ -10,7 +10,6 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import (
-    PATIENCE,
     Number,
     bound_option,
     check_output,
@@ -25,8 +24,9 @@ from prima.cli.common import (
     isolate_option,
     limit_option,
     map_option,
+    patience_option,
+    policy_option,
     raise_limits,
-    suggesting,
     tell,
     tell_problems,
     why_option,
@@ -35,7 +35,6 @@ from prima.cli.common import (
 from prima.cli.failures import closed_pipe
 from prima.cli.interrupts import leave_to_python
 from prima.cli.progress import print_records
-from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.live.chosen import Chosen
@@ -81,11 +80,9 @@ FASTEST = 1000.0  # equals prima.api.live.FASTEST, which is slow to import
     type=click.Path(),
     help="Take drivers from this Python file, too; it is run.",
 )
-@click.option(
-    "--policy", shell_complete=suggesting(*POLICIES), help=f"The mediator's policy: {USAGE}."
-)
+@policy_option("The mediator's policy: {}.")
 @bound_option
-@duration_option("--patience", PATIENCE)
+@patience_option
 @why_option
 @hosts_option
 @isolate_option

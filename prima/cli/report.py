@@ -13,14 +13,13 @@ from click.exceptions import Exit
 from prima.cli.common import (
     SuggestingChoice,
     check_output,
-    suggesting,
+    policy_option,
     tell,
     tell_cut,
     write_for_programs,
 )
 from prima.cli.runs import GivenRun, is_markup, run_of
 from prima.errors import UsageError, counted, did_you_mean, one_of
-from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.loading import Loaded
@@ -32,13 +31,7 @@ if TYPE_CHECKING:
 @click.option(
     "-o", "--output", type=click.Path(), help="Write the page here, or a folder for figures."
 )
-@click.option(
-    "--policy",
-    "policies",
-    multiple=True,
-    shell_complete=suggesting(*POLICIES),
-    help=f"Run a scenario under this policy; twice to compare two runs: {USAGE}.",
-)
+@policy_option("Run a scenario under this policy; twice to compare two runs: {}.", many=True)
 @click.option(
     "--scenario",
     "scenarios",

@@ -12,12 +12,10 @@ from click.exceptions import Exit
 
 from prima.cli.common import (
     MAPS,
-    PATIENCE,
     Whole,
     bound_option,
     check_output,
     columns,
-    duration_option,
     ea_option,
     fa_option,
     format_option,
@@ -25,9 +23,10 @@ from prima.cli.common import (
     isolate_option,
     limit_option,
     map_option,
+    patience_option,
+    policy_option,
     put,
     raise_limits,
-    suggesting,
     tell,
     tell_problems,
     why_option,
@@ -36,7 +35,6 @@ from prima.cli.common import (
 )
 from prima.cli.progress import run_into
 from prima.errors import TOO_MUCH, RunError, UsageError, counted
-from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.api import Transcript
@@ -59,15 +57,9 @@ FOLDER_ENDINGS = ("/", os.sep)
     type=click.Path(),
     help="Write the transcript here as JSON lines; for several runs, a folder.",
 )
-@click.option(
-    "--policy",
-    "policies",
-    multiple=True,
-    shell_complete=suggesting(*POLICIES),
-    help=f"The mediator's policy: {USAGE}. Repeat for a run under each.",
-)
+@policy_option("The mediator's policy: {}. Repeat for a run under each.", many=True)
 @bound_option
-@duration_option("--patience", PATIENCE)
+@patience_option
 @click.option(
     "--seed",
     type=Whole(0, MOST_SEED),

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import click
 
-from prima.cli.common import copy_folder, tell
+from prima.cli.common import tell
+from prima.cli.documents import copy_folder
 
 
 @click.command()

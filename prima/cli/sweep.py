@@ -8,25 +8,23 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import (
-    PATIENCE,
     SuggestingChoice,
     Whole,
     bound_option,
     check_output,
-    duration_option,
     isolate_option,
     limit_option,
     on_option,
+    patience_option,
+    policy_option,
     put,
     raise_limits,
-    suggesting,
     tell,
     workers_option,
     write_for_programs,
 )
 from prima.cli.progress import ProgressBar
 from prima.errors import UsageError, counted
-from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.experiments.pools import Pool
@@ -45,13 +43,7 @@ MANY = 100_000
     multiple=True,
     help="A value of the scenario and its levels; may be repeated.",
 )
-@click.option(
-    "--policy",
-    "policies",
-    multiple=True,
-    shell_complete=suggesting(*POLICIES),
-    help=f"Run under this policy; may be repeated: {USAGE}.",
-)
+@policy_option("Run under this policy; may be repeated: {}.", many=True)
 @click.option("--seeds", type=Whole(1), help="Runs of each combination. By default 1.")
 @click.option(
     "--design",
@@ -72,7 +64,7 @@ MANY = 100_000
 )
 @click.option("--plan", is_flag=True, help="Only tell how many runs these are, and how long.")
 @bound_option
-@duration_option("--patience", PATIENCE)
+@patience_option
 @isolate_option
 @limit_option
 def sweep(

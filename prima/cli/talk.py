@@ -17,8 +17,8 @@ from prima.cli.common import (
     hosts_option,
     limit_option,
     map_option,
+    policy_option,
     raise_limits,
-    suggesting,
     tell,
     tell_problems,
     why_option,
@@ -28,7 +28,6 @@ from prima.cli.progress import print_records
 from prima.cli.screen import TerminalScreen
 from prima.cli.terminal import Keyboard, PausingClock, Piped, Typist, edit_lines, ending_well
 from prima.errors import TOO_MUCH, RunError, UsageError
-from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.loading import Loaded
@@ -52,9 +51,7 @@ if TYPE_CHECKING:
     "--save", "target", type=click.Path(), help="Write the session here as a scenario at its end."
 )
 @click.option("--scripted", is_flag=True, help="Carry out the scenario's user actions too.")
-@click.option(
-    "--policy", shell_complete=suggesting(*POLICIES), help=f"The mediator's policy: {USAGE}."
-)
+@policy_option("The mediator's policy: {}.")
 @why_option
 @hosts_option
 @map_option

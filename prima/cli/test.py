@@ -16,16 +16,15 @@ from prima.cli.common import (
     coloured,
     format_option,
     limit_option,
+    policy_option,
     print_json,
     put,
     raise_limits,
     same_file,
-    suggesting,
     tell,
 )
 from prima.cli.failures import whoever_reads
 from prima.errors import UsageError
-from prima.scheduler.policy import POLICIES, USAGE
 
 if TYPE_CHECKING:
     from prima.testing.coverage import Coverage
@@ -40,9 +39,7 @@ MOST_JOBS = 64
 @click.option(
     "-k", "word", metavar="WORD", default="", help="Only scenarios with WORD in the path."
 )
-@click.option(
-    "--policy", shell_complete=suggesting(*POLICIES), help=f"Run under this policy: {USAGE}."
-)
+@policy_option("Run under this policy: {}.")
 @click.option("-j", "--jobs", type=Whole(1, MOST_JOBS), default=1, help="Number of runs at once.")
 @click.option(
     "--compare",
