@@ -108,6 +108,13 @@ class Graph:
             else:
                 edge.labels[-1] = "and more"
 
+    def groups(self) -> dict[str, list[GraphNode]]:
+        """The nodes by their groups, in their order."""
+        found: dict[str, list[GraphNode]] = {}
+        for node in self.nodes.values():
+            found.setdefault(node.group, []).append(node)
+        return found
+
     def drop(self, edge: Edge) -> None:
         """Remove an edge."""
         del self._known[edge.source, edge.target, edge.kind, edge.where]

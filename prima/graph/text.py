@@ -52,14 +52,6 @@ def arrows(graph: Graph) -> Iterator[tuple[Edge, str, str]]:
         yield edge, number[edge.source], target
 
 
-def groups(graph: Graph) -> dict[str, list[GraphNode]]:
-    """The nodes by their groups, in their order."""
-    found: dict[str, list[GraphNode]] = {}
-    for node in graph.nodes.values():
-        found.setdefault(node.group, []).append(node)
-    return found
-
-
 # DOT --------------------------------------------------------------------------------------------
 
 
@@ -78,7 +70,7 @@ def dot(graph: Graph) -> str:
         '  node [shape=box, style="rounded", fontname="sans-serif", fontsize=11];',
         '  edge [fontname="sans-serif", fontsize=9];',
     ]
-    for index, (group, nodes) in enumerate(groups(graph).items(), 1):
+    for index, (group, nodes) in enumerate(graph.groups().items(), 1):
         inside = [f"  {number[node.key]} [{_attributes(node)}];" for node in nodes]
         made += _cluster(index, group, inside) if group else inside
     if starts := _starts(graph):
@@ -163,7 +155,7 @@ def mermaid(graph: Graph) -> str:
     number = numbered(graph)
     made = ["---", f"title: {json.dumps(graph.title)}", "---"]
     made.append(f"flowchart {'LR' if graph.across else 'TB'}")
-    for index, (group, nodes) in enumerate(groups(graph).items(), 1):
+    for index, (group, nodes) in enumerate(graph.groups().items(), 1):
         inside = [f"  {number[node.key]}{_shape(node)}" for node in nodes]
         if group:
             title = entity(f"stream {group}")

@@ -23,9 +23,7 @@ KINDS = (
 
 def draw(graph: Graph) -> str:
     """The trees as SVG."""
-    groups: dict[str, list[GraphNode]] = {}
-    for node in graph.nodes.values():
-        groups.setdefault(node.group, []).append(node)
+    groups = graph.groups()
     parts: list[str] = []
     x, y, low, wide = MARGIN, MARGIN + 30, 0.0, 420.0
     for name, nodes in groups.items():
