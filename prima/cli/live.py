@@ -32,7 +32,7 @@ from prima.cli.common import (
     why_option,
     write_for_programs,
 )
-from prima.cli.failures import closed_pipe
+from prima.cli.failures import INTERRUPTED, closed_pipe
 from prima.cli.interrupts import leave_to_python
 from prima.cli.progress import print_records
 
@@ -41,8 +41,6 @@ if TYPE_CHECKING:
     from prima.live.visit import LiveSettings, Visit
     from prima.messages import Record
 
-INTERRUPTED = 130
-"""The exit code after Ctrl-C."""
 FASTEST = 1000.0  # equals prima.api.live.FASTEST, which is slow to import
 
 

@@ -12,10 +12,9 @@ from prima.graph.transitions import Branches
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.voicexml.arranging import is_unit, parts_of
+from prima.voicexml.elements import HANDLERS, ITEMS
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, WORDED
 
-ITEMS = ("block", "field", "initial", "record", "transfer", "object", "subdialog")
-HANDLERS = ("catch", "error", "help", "noinput", "nomatch")
 LEAVING = frozenset(["goto", "submit", "exit", "return", "disconnect", "throw"])
 """Executable content behind which nothing is executed."""
 MOST_DEEP = 40

@@ -22,7 +22,6 @@ from prima.graph.model import GraphNode as Box
 from prima.graph.throws import Taker
 from prima.graph.transitions import ANY, Branches, Transitions
 from prima.graph.voicenodes import (
-    ITEMS,
     asked,
     divided,
     leaves_at_its_end,
@@ -36,12 +35,11 @@ from prima.markup.tree import Node
 from prima.markup.uris import parted
 from prima.voicexml.arranging import is_unit, parts_of
 from prima.voicexml.document import FetchError, Page, VoiceDocument
+from prima.voicexml.elements import ITEMS
+from prima.voicexml.pages import MOST_PAGES
 from prima.voicexml.reading import read_page
+from prima.voicexml.sketch import ASKING
 from prima.voicexml.vocabulary import NAMESPACE
-
-MOST_PAGES = 100
-"""Maximum number of documents of one application."""
-ASKING = ("field", "initial", "record", "menu")
 
 
 def states(document: VoiceDocument) -> Graph:

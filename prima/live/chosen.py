@@ -13,11 +13,9 @@ from prima.live.services import LiveServices
 from prima.loading import Loaded, load_scenario, load_services, stage
 from prima.loading.files import GivenFiles, in_place_of_files, read_file
 from prima.loading.heads import check_files
+from prima.loading.reading import STAGE
 from prima.messages import Json, Record
 from prima.sim.services import Web
-
-STAGE = "stage.xml"
-"""The name of a scenario that is made from applications instead of a file."""
 
 
 @dataclass(frozen=True, slots=True)

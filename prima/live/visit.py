@@ -14,7 +14,7 @@ from prima.devices.loop import Loop
 from prima.devices.profile import Profile
 from prima.errors import UsageError
 from prima.live.carried import uncarried
-from prima.live.chosen import STAGE, Chosen
+from prima.live.chosen import Chosen
 from prima.live.clock import Clock
 from prima.live.deadlines import run
 from prima.live.devices import LiveDevices
@@ -27,6 +27,7 @@ from prima.live.shell import LATE_MS, Shell
 from prima.live.signals import handling_signals, heeding_signals
 from prima.loading import Loaded
 from prima.loading.heads import chosen_policy, run_record
+from prima.loading.reading import STAGE
 from prima.messages import Record
 from prima.scheduler.policy import Policy
 from prima.sim.devices import sensors_watched, watches

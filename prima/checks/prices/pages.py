@@ -13,11 +13,10 @@ from prima.markup.tree import Node
 from prima.markup.uris import parted
 from prima.script.choices import choices
 from prima.voicexml.document import FetchError, Page, VoiceDocument
+from prima.voicexml.pages import MOST_PAGES
 from prima.voicexml.reading import read_page
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
 
-MOST_PAGES = 100
-"""Maximum number of documents of one application."""
 TARGETS = {
     "goto": ("next", "expr"),
     "submit": ("next", "expr"),

@@ -7,10 +7,9 @@ from collections.abc import Iterable, Iterator
 from prima.interpreter.selection import takes
 from prima.markup.tree import Node
 from prima.voicexml.arranging import UNIT
-from prima.voicexml.elements import HANDLERS
+from prima.voicexml.elements import HANDLERS, ITEMS
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
-ITEMS = ("block", "field", "initial", "record", "transfer", "object", "subdialog")
 HOLDING = frozenset([*ITEMS, *HANDLERS, "form", "menu", "filled", "if", "foreach"])
 """Elements whose text is spoken, or that contain such elements."""
 LEAVING = ("goto", "submit", "exit", "return", "disconnect")

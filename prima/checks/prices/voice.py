@@ -10,14 +10,14 @@ from prima.checks.prices.model import Gap, Outline, Price, PricedReaction, Price
 from prima.checks.prices.pages import TARGETS
 from prima.checks.prices.tags import holders, is_foreign, leaves, returns, thrown_by, to_item
 from prima.checks.prices.times import ASKED_AGAIN, OFTEN, QUESTION
-from prima.checks.prices.voicetimes import ASKING, VoiceTimes
+from prima.checks.prices.voicetimes import VoiceTimes
 from prima.devices.profile import Profile
 from prima.interpreter.selection import takes
 from prima.markup.tree import Node
 from prima.voicexml.arranging import UNIT
 from prima.voicexml.document import Page, VoiceDocument
 from prima.voicexml.elements import HANDLERS, handler_names
-from prima.voicexml.sketch import Sketch
+from prima.voicexml.sketch import ASKING, Sketch
 from prima.voicexml.vocabulary import SPOKEN
 
 SILENT_ACTS = ("assign", "var", "log", "script", "clear", "desc")

@@ -22,11 +22,10 @@ from prima.voicexml.document import VoiceDocument
 from prima.voicexml.elements import HANDLERS
 from prima.voicexml.events import WORDS
 from prima.voicexml.recorder import BEEP_MS
-from prima.voicexml.sketch import Sketch
+from prima.voicexml.sketch import ASKING, Sketch
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 SPEAKER = frozenset({"speaker"})
-ASKING = ("field", "initial", "record", "menu")
 TIMEOUT_MS = 5000
 LISTENING_MS = 600_000
 """How long a question during a call listens at most, before it is repeated."""
