@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from prima.errors import UsageError
-from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
+from prima.language.commands import PATIENCE_MS, CommandType
 from prima.messages import (
     ApplicationLoaded,
     ApplicationUnloaded,
@@ -85,8 +85,8 @@ def replay_records(
     records: Iterable[Record],
     documents: Iterable[AnyDocument],
     commands: Mapping[str, CommandType],
-    absence: int = ABSENCE_MS,
-    name: str = "",
+    absence: int,
+    name: str,
 ) -> Iterator[Record]:
     """Run the inbound records of a transcript through a session; times of both in s and ms.
 

@@ -71,9 +71,9 @@ class ConsoleDriver(Driver):
         if unknown:
             message = f'{self.settings.place}: there is no option "{unknown[0]}".'
             raise UsageError(f"{message} The options are speed, stdin and user.")
-        self._speed = self._number("speed", 1.0)
-        seen, source = self._flag("user", True), _standard_input()
-        if self._flag("stdin", True) and source is not None and self._lines is None:
+        self._speed = self._read_speed()
+        seen, source = self._flag("user"), _standard_input()
+        if self._flag("stdin") and source is not None and self._lines is None:
             self._lines = LineSource(source)
             self._task = asyncio.ensure_future(self._read(self._lines))
         if self._sees:
@@ -181,19 +181,19 @@ class ConsoleDriver(Driver):
 
     # Options ----------------------------------------------------------------------------
 
-    def _number(self, name: str, default: float) -> float:
-        text = self.settings.options.get(name, str(default))
+    def _read_speed(self) -> float:
+        text = self.settings.options.get("speed", "1.0")
         try:
             number = float(text)
         except ValueError:
             number = 0.0
         if not 0 < number <= FASTEST:
-            message = f'{self.settings.place}: {name} is "{text}".'
+            message = f'{self.settings.place}: speed is "{text}".'
             raise UsageError(f"{message} Write a number above 0, up to {FASTEST:g}.")
         return number
 
-    def _flag(self, name: str, default: bool) -> bool:
-        text = self.settings.options.get(name, str(default).lower())
+    def _flag(self, name: str) -> bool:
+        text = self.settings.options.get(name, "true")
         if text not in ("true", "false"):
             raise UsageError(f'{self.settings.place}: {name} is "{text}". Write true or false.')
         return text == "true"
