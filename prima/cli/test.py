@@ -246,7 +246,7 @@ def _write(
 
 def _update(results: list[Result], named: set[str], yes: bool) -> None:
     """Write the tables of runs without other failures; each has been shown before."""
-    from prima.testing.golden import write_golden
+    from prima.loading.writing import write_whole
 
     for result in results:
         new = result.golden == "" and result.path in named
@@ -259,7 +259,7 @@ def _update(results: list[Result], named: set[str], yes: bool) -> None:
             put(f"\n{result.table}")
         if not _agreed(result, yes):
             continue
-        write_golden(result.file, result.table)
+        write_whole(result.file, result.table)
         tell(f"{result.file}: written.")
         result.status, result.golden, result.difference = "passed", "same", ""
 

@@ -46,12 +46,7 @@ MOST_REPEATED = 999
 BAD_REPEAT = BAD_VALUE.says("{wrong}", 'Write one such as "0-1".')
 
 
-def read_grammar(note: Note, node: Node) -> Grammar:
-    """A grammar of rules, or of one expansion."""
-    return _DialogueGrammarReader(note, node).grammar()
-
-
-class _DialogueGrammarReader:
+class DialogueGrammarReader:
     """Reads one grammar, which has been checked by the schema."""
 
     def __init__(self, note: Note, node: Node) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from prima.errors import Problem
 from prima.errors.diagnoses.values import BAD_VALUE, EXCLUSIVE
-from prima.grammar.dialogue import read_grammar
+from prima.grammar.dialogue import DialogueGrammarReader
 from prima.markup.tree import Node
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def grammar_of(
 ) -> Grammar | None:
     """The grammar of an element; None if its file cannot be used, as ``found`` reports."""
     if "src" not in node.attributes:
-        return read_grammar(note, node)
+        return DialogueGrammarReader(note, node).grammar()
     if _contradicts(note, node):
         return None
     from prima.grammar import GrammarError, load  # few documents name files

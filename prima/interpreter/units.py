@@ -100,11 +100,6 @@ class Reach:
         return tuple(sorted({one.command.type for one in self.commands}))
 
 
-def reach_of(document: Document, form: Form, unit: Unit) -> Reach:
-    """Find all that may run in a unit: in its items and in every handler that they can reach."""
-    return Finder(document).reach(form, unit)
-
-
 def units_of(document: Document) -> Iterator[tuple[Form, Unit]]:
     """Every unit around form items, with its form."""
     for form in document.forms.values():

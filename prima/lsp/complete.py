@@ -16,8 +16,9 @@ from prima.lsp.names import dialect
 from prima.lsp.paths import name_for
 from prima.lsp.scan import Attr, ScannedTag, ScannedText
 from prima.lsp.snippets import opening, snippet
-from prima.lsp.tables import BY_NAMESPACE, attributes, children, is_code, roots, values
+from prima.lsp.tables import BY_NAMESPACE, children, is_code, roots, values
 from prima.lsp.workspace import FoundName, Text, Workspace
+from prima.markup.vocabulary import attributes_by_name
 
 MOST = 500
 """Maximum number of proposals."""
@@ -136,12 +137,11 @@ class _Completion:
     def _attributes(
         self, tag: ScannedTag, start: int, end: int, now: Attr | None
     ) -> Iterator[Proposal]:
-        element = tag.element
-        if element is None:
+        if (element := tag.element) is None:
             return
         given = {attr.name for attr in tag.attributes if attr is not now}
         bare = now is None or now.first < 0
-        for name, (item, _) in attributes(element).items():
+        for name, (item, _) in attributes_by_name(element).items():
             forms = {item.name, f"{item.name}-expr"} if item.dynamic else {name}
             if given.isdisjoint(forms):
                 detail = "required" if item.required else ""

@@ -8,12 +8,17 @@ from pathlib import Path
 
 from prima.language.commands import TABLE_4_2
 from prima.language.values import KINDS
-from prima.lsp.descriptions import EVENTS, RULES, SESSION, VOICEXML_EVENTS
+from prima.lsp.descriptions import (
+    EVENTS,
+    RULES,
+    SESSION,
+    VOICEXML_ATTRIBUTES,
+    VOICEXML_EVENTS,
+)
 from prima.lsp.names import Mark, mark_at
 from prima.lsp.scan import ScannedTag, ScannedText
-from prima.lsp.tables import about_attribute, attributes
 from prima.lsp.workspace import FoundName, Workspace
-from prima.markup.vocabulary import Attribute, Element
+from prima.markup.vocabulary import Attribute, Element, attributes_by_name
 
 NAMED = re.compile(r"\b([A-Z][0-9])\b")
 WORD = re.compile(r"[\w$.\-]+")
@@ -85,10 +90,10 @@ def _attribute(page: ScannedText, tag: ScannedTag, offset: int) -> Meaning | Non
 
 def attribute_text(element: Element, name: str) -> str:
     """The description of an attribute: meaning, kind, default and bounds."""
-    item, expression = attributes(element).get(name, (None, False))
+    item, expression = attributes_by_name(element).get(name, (None, False))
     if item is None:
         return ""
-    words = about_attribute(item)
+    words = item.doc or VOICEXML_ATTRIBUTES.get(item.name, "")
     if expression:
         return f"**`{name}`** An expression that gives {item.name}: {words}."
     kind = ", ".join(f"`{one}`" for one in item.choices) or KINDS[item.kind].doc

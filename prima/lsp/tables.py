@@ -8,10 +8,8 @@ from prima.devices.vocabulary.robot import ROBOT
 from prima.devices.vocabulary.services import SERVICES
 from prima.grammar.builtin import TYPES
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
-from prima.lsp.descriptions import VOICEXML_ATTRIBUTES
 from prima.lsp.scan import ScannedTag, ScannedText
 from prima.markup.vocabulary import (
-    Attribute,
     Element,
     Vocabulary,
     attribute,
@@ -218,19 +216,9 @@ def roots() -> list[AllowedElement]:
     ]
 
 
-def attributes(element: Element) -> dict[str, tuple[Attribute, bool]]:
-    """An element's attributes as written, and whether each is an expression."""
-    return attributes_by_name(element)
-
-
-def about_attribute(item: Attribute) -> str:
-    """The description of an attribute."""
-    return item.doc or VOICEXML_ATTRIBUTES.get(item.name, "")
-
-
 def values(vocabulary: Vocabulary, element: Element, name: str) -> tuple[str, ...]:
     """The possible values of an attribute, if they are few."""
-    item, expression = attributes(element).get(name, (None, False))
+    item, expression = attributes_by_name(element).get(name, (None, False))
     if item is None or expression:
         return ()
     if item.choices:
@@ -252,5 +240,5 @@ def is_code(tag: ScannedTag, name: str) -> bool:
         return False
     if tag.vocabulary is VOICEXML:
         return name in EXPRESSIONS
-    item, expression = attributes(element).get(name, (None, False))
+    item, expression = attributes_by_name(element).get(name, (None, False))
     return expression or (item is not None and item.kind == "expression")

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from prima.errors import DocumentError, UsageError
 from prima.loading.files import read_file
-from prima.loading.writing import write_whole
 from prima.transcript.diff import Difference, compare, format_difference
 from prima.transcript.row import Row
 from prima.transcript.table import format_rows, read_table, width
@@ -81,12 +80,3 @@ def _bounded(lines: list[str]) -> str:
     more = len(lines) - LONGEST_DIFFERENCE
     kept = [*lines[:LONGEST_DIFFERENCE], *([f"... and {more} more lines"] if more > 0 else [])]
     return "\n".join(kept)
-
-
-def write_golden(path: Path, table: str) -> None:
-    """Write an expected table.
-
-    Raises:
-        UsageError: it cannot be written.
-    """
-    write_whole(path, table)

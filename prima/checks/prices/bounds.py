@@ -81,11 +81,6 @@ def _after(outline: Outline, reaction: PricedReaction) -> list[PricedState]:
     return [reaction.does, *closure(outline, starts)]
 
 
-def busy_after(outline: Outline, reaction: PricedReaction) -> Busy:
-    """The longest activity caused by an event."""
-    return _busy(outline, _after(outline, reaction))
-
-
 def busy_after_each(outline: Outline, reactions: Sequence[PricedReaction]) -> list[Busy]:
     """The longest activity caused by each of some events.
 
@@ -93,7 +88,7 @@ def busy_after_each(outline: Outline, reactions: Sequence[PricedReaction]) -> li
     """
     if len(reactions) * size(outline) > MOST_COMPARED:
         return [busy_at_all(outline)] * len(reactions)
-    return [busy_after(outline, one) for one in reactions]
+    return [_busy(outline, _after(outline, one)) for one in reactions]
 
 
 def size(outline: Outline) -> int:

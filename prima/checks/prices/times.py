@@ -24,7 +24,7 @@ from prima.interpreter.acts import (
 )
 from prima.interpreter.elements import Block, Document, Field, Form, Item, Prompt, Unit
 from prima.interpreter.selection import takes
-from prima.interpreter.units import reach_of
+from prima.interpreter.units import Finder
 from prima.language.commands import TABLE_4_2
 
 ASKED_AGAIN = "the question is asked again until the user answers"
@@ -119,7 +119,7 @@ class Times:
     def unit(self, unit: Unit, form: Form) -> Price:
         """A unit around form items: its longest duration, and what then runs to its end (U5)."""
         inner = [price for one in inside(unit) for price in self._within(one, unit)]
-        reached = reach_of(self.document, form, unit).commands
+        reached = Finder(self.document).reach(form, unit).commands
         inner += [self.command(one.command) for one in reached if not one.inside]
         lasts = unit.longest + max((one.lasts for one in inner), default=0)
         if _runs_once(unit):
