@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 
+from prima.checks.prices.tags import leaves
 from prima.graph.labels import ASKED, sayings
 from prima.graph.model import clean
 from prima.graph.throws import Taker
@@ -76,18 +76,7 @@ def leaves_at_its_end(form: Node) -> bool:
         asked_for = item.attributes.keys() & {"cond", "expr"} or id(item) in conditional
         if item.tag in ITEMS and not asked_for:
             contents += [item] if item.tag == "block" else item.all("filled")
-    return any(_never_ends(content.nodes) for content in contents)
-
-
-def _never_ends(acts: Iterable[Node]) -> bool:
-    """Whether content always leaves its dialog."""
-    for act in acts:
-        if act.tag in LEAVING:
-            return not act.attributes.keys() & {"nextitem", "expritem"}
-        parts = divided(act) if act.tag == "if" else []
-        if parts and parts[-1][0] is None and all(_never_ends(part) for _, part in parts):
-            return True
-    return False
+    return any(leaves(content.nodes, throws=True) for content in contents)
 
 
 def asked(node: Node) -> str:

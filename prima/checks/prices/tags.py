@@ -61,13 +61,12 @@ def to_item(node: Node) -> bool:
     return bool(node.attributes.keys() & {"nextitem", "expritem"})
 
 
-def leaves(content: Iterable[Node | str]) -> bool:
-    """Whether content always leaves its dialog."""
-    nodes = [one for one in content if isinstance(one, Node)]
-    for node in nodes:
-        if node.tag in LEAVING and not to_item(node):
-            return True
-        if node.tag == "if" and _complete(node):
+def leaves(content: Iterable[Node | str], throws: bool = False) -> bool:
+    """Whether content always leaves its dialog; with ``throws``, an event does."""
+    for node in (one for one in content if isinstance(one, Node)):
+        if node.tag in LEAVING or (throws and node.tag == "throw"):
+            return not to_item(node)
+        if node.tag == "if" and _complete(node, throws):
             return True
     return False
 
@@ -77,7 +76,7 @@ def returns(node: Node) -> bool:
     return any(one.tag == "return" for one in node.walk())
 
 
-def _complete(node: Node) -> bool:
+def _complete(node: Node, throws: bool) -> bool:
     """Whether each branch of an ``if`` leaves its dialog, one of them being ``else``."""
     branches: list[list[Node | str]] = [[]]
     for one in node.content:
@@ -85,4 +84,5 @@ def _complete(node: Node) -> bool:
             branches.append([])
         else:
             branches[-1].append(one)
-    return any(one.tag == "else" for one in node.nodes) and all(map(leaves, branches))
+    complete = any(one.tag == "else" for one in node.nodes)
+    return complete and all(leaves(one, throws) for one in branches)
