@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
-from prima.checks.prices.tags import leaves
 from prima.graph.labels import ASKED, sayings
 from prima.graph.model import clean
 from prima.graph.throws import Taker
@@ -12,11 +9,17 @@ from prima.graph.transitions import Branches
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.voicexml.arranging import is_unit, parts_of
-from prima.voicexml.elements import HANDLERS, ITEMS
+from prima.voicexml.elements import (
+    HANDLERS,
+    ITEMS,
+    LEAVING,
+    branches,
+    handler_names,
+    handler_number,
+    leaves,
+)
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, WORDED
 
-LEAVING = frozenset(["goto", "submit", "exit", "return", "disconnect", "throw"])
-"""Executable content behind which nothing is executed."""
 MOST_DEEP = 40
 """Maximum depth of speech that is read."""
 
@@ -28,36 +31,23 @@ def takers(scope: Node) -> list[Taker[Node]]:
 
 def _taker(node: Node) -> Taker[Node]:
     named = node.tag == "catch"
-    events = _caught(node) if named else [node.tag]
+    events = handler_names(node)
     stays = _does_something(node) and not ASKED.issuperset(events)
-    return Taker(node.nodes, events, _count(node), node.get("cond").strip(), stays, named)
-
-
-def _caught(catch: Node) -> list[str]:
-    """The events that a ``catch`` takes; the empty name is for all."""
-    return [name if name != "." else "" for name in catch.get("event").split()] or [""]
-
-
-def _count(handler: Node) -> int:
-    """The occurrence from which a handler takes its events."""
-    count = handler.get("count", "1")
-    return int(count) if re.fullmatch("[0-9]{1,4}", count) else 1
+    return Taker(node.nodes, events, handler_number(node), node.get("cond").strip(), stays, named)
 
 
 def _does_something(handler: Node) -> bool:
     """Whether a handler has content, and none that leads away."""
     empty = not handler.nodes and not handler.text
-    return not empty and not any(one.tag in LEAVING for one in handler.walk())
+    return not empty and not any(one.tag in {*LEAVING, "throw"} for one in handler.walk())
 
 
 def divided(node: Node) -> Branches[Node]:
     """The parts of an ``if`` with their conditions; ``else`` has none."""
-    parts: list[tuple[str | None, list[Node]]] = [(node.get("cond"), [])]
-    for child in node.nodes:
-        if child.tag in ("elseif", "else"):
-            parts.append((child.get("cond") if child.tag == "elseif" else None, []))
-        else:
-            parts[-1][1].append(child)
+    parts: list[tuple[str | None, list[Node]]] = []
+    for head, part in branches(node):
+        cond = None if head.tag == "else" else head.get("cond")
+        parts.append((cond, [one for one in part if isinstance(one, Node)]))
     return parts
 
 

@@ -105,18 +105,6 @@ def spoken_pieces(content: Iterable[Node | str]) -> Iterator[tuple[list[Node | s
         yield loose, None
 
 
-def branches_of(node: Node) -> Iterator[tuple[Expression | None, list[Node | str]]]:
-    """The branches of an ``if``, each with its condition; ``else`` has none."""
-    cond, part = code_of(node, "cond"), list[Node | str]()
-    for child in node.content:
-        if isinstance(child, Node) and child.tag in ("elseif", "else"):
-            yield cond, part
-            cond, part = code_of(child, "cond"), []
-        else:
-            part.append(child)
-    yield cond, part
-
-
 # Acts of elements without content
 
 

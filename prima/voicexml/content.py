@@ -13,7 +13,7 @@ from prima.messages import Json, Say
 from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
 from prima.voicexml.access import host_of_page, may_read
 from prima.voicexml.dom import DOM, plain_tree
-from prima.voicexml.elements import INPUTS
+from prima.voicexml.elements import INPUTS, branches
 from prima.voicexml.evaluating import is_worded
 from prima.voicexml.fetching import decoded, fetch
 from prima.voicexml.owner import MachineOwner
@@ -202,16 +202,10 @@ class Content(Speaker):
 
     def branch(self, node: Node, context: Context, local: Scope) -> Flow:
         """Run the first branch whose condition holds (5.3.4)."""
-        chosen: list[Node | str] = []
-        taken = self.holds(node, context, local)
-        for item in node.content:
-            if isinstance(item, Node) and item.tag in ("elseif", "else"):
-                if taken:
-                    break
-                taken = self.holds(item, context, local)
-            elif taken:
-                chosen.append(item)
-        yield from self.run_all(chosen, context, local)
+        for head, part in branches(node):
+            if self.holds(head, context, local):
+                yield from self.run_all(part, context, local)
+                return
 
     def go(self, node: Node, context: Context, local: Scope) -> Flow:
         """Leave for an item, a dialog or a document (5.3.7)."""

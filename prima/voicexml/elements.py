@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+
 from prima.markup.tree import Node
 
 ITEMS = frozenset(["field", "block", "initial", "subdialog", "object", "record", "transfer"])
@@ -10,6 +12,8 @@ INPUTS = frozenset({"field", "record", "object", "subdialog", "transfer"})
 """Items that a result fills."""
 HANDLERS = ("catch", "error", "help", "noinput", "nomatch")
 """Elements that take events (5.2)."""
+LEAVING = frozenset(["goto", "submit", "exit", "return", "disconnect"])
+"""Content that leaves its dialog, unless it goes to an item of it."""
 SILENT = frozenset(["lexicon", "metadata", "meta", "desc"])
 """Elements of prompts that are not spoken."""
 
@@ -25,3 +29,36 @@ def handler_number(handler: Node) -> int:
     """The count of a handler or a prompt; 1 if it is not a number."""
     count = handler.get("count", "1")
     return max(int(count), 1) if count.isdecimal() else 1
+
+
+def branches(node: Node) -> Iterator[tuple[Node, list[Node | str]]]:
+    """The branches of an ``if`` (5.3.4), each with the element that has its condition."""
+    head, part = node, list[Node | str]()
+    for one in node.content:
+        if isinstance(one, Node) and one.tag in ("elseif", "else"):
+            yield head, part
+            head, part = one, []
+        else:
+            part.append(one)
+    yield head, part
+
+
+def to_item(node: Node) -> bool:
+    """Whether a goto leads to an item of its own dialog."""
+    return bool(node.attributes.keys() & {"nextitem", "expritem"})
+
+
+def leaves(content: Iterable[Node | str], throws: bool = False) -> bool:
+    """Whether content always leaves its dialog; with ``throws``, an event does."""
+    for node in (one for one in content if isinstance(one, Node)):
+        if node.tag in LEAVING or (throws and node.tag == "throw"):
+            return not to_item(node)
+        if node.tag == "if" and _complete(node, throws):
+            return True
+    return False
+
+
+def _complete(node: Node, throws: bool) -> bool:
+    """Whether each branch of an ``if`` leaves its dialog, the last of them being ``else``."""
+    found = [*branches(node)]
+    return found[-1][0].tag == "else" and all(leaves(part, throws) for _, part in found)

@@ -32,7 +32,6 @@ from prima.messages import Json
 from prima.script.choices import PossibleText, choices
 from prima.voicexml.acting import (
     ACTS,
-    branches_of,
     code_of,
     commands_in,
     run_of,
@@ -43,7 +42,7 @@ from prima.voicexml.acting import (
 )
 from prima.voicexml.arranging import is_unit, longest_of
 from prima.voicexml.document import Page
-from prima.voicexml.elements import HANDLERS, ITEMS, handler_names, handler_number
+from prima.voicexml.elements import HANDLERS, ITEMS, branches, handler_names, handler_number
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 ASKING = ("field", "initial", "record", "menu")
@@ -159,8 +158,9 @@ class Sketch:
         if node.tag in FETCHING and self._plays(node):
             yield run_of([speak((Expression("", node, "fetchaudio"),), node)])
         if node.tag == "if":
-            branches = [(cond, self._acts(node, part)) for cond, part in branches_of(node)]
-            yield If(tuple(branches), node)
+            parts = branches(node)
+            found = [(code_of(head, "cond"), self._acts(node, part)) for head, part in parts]
+            yield If(tuple(found), node)
         elif node.tag == "foreach":
             array = Expression(node.get("array"), node, "array")
             yield Foreach(node.get("item"), array, self._acts(node, node.content), node)

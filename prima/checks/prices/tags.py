@@ -12,7 +12,6 @@ from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 HOLDING = frozenset([*ITEMS, *HANDLERS, "form", "menu", "filled", "if", "foreach"])
 """Elements whose text is spoken, or that contain such elements."""
-LEAVING = ("goto", "submit", "exit", "return", "disconnect")
 SERVICES = "error.service"
 OWN = ("noinput", "nomatch", "help", "cancel", "exit", "error", "maxspeechtimeout")
 """VoiceXML's own events: handling them is not a reaction."""
@@ -56,33 +55,6 @@ def thrown_by(root: Node) -> Iterator[str]:
                 yield ""
 
 
-def to_item(node: Node) -> bool:
-    """Whether a goto leads to an item of its own dialog."""
-    return bool(node.attributes.keys() & {"nextitem", "expritem"})
-
-
-def leaves(content: Iterable[Node | str], throws: bool = False) -> bool:
-    """Whether content always leaves its dialog; with ``throws``, an event does."""
-    for node in (one for one in content if isinstance(one, Node)):
-        if node.tag in LEAVING or (throws and node.tag == "throw"):
-            return not to_item(node)
-        if node.tag == "if" and _complete(node, throws):
-            return True
-    return False
-
-
 def returns(node: Node) -> bool:
     """Whether there is a return in an element."""
     return any(one.tag == "return" for one in node.walk())
-
-
-def _complete(node: Node, throws: bool) -> bool:
-    """Whether each branch of an ``if`` leaves its dialog, one of them being ``else``."""
-    branches: list[list[Node | str]] = [[]]
-    for one in node.content:
-        if isinstance(one, Node) and one.tag in ("elseif", "else"):
-            branches.append([])
-        else:
-            branches[-1].append(one)
-    complete = any(one.tag == "else" for one in node.nodes)
-    return complete and all(leaves(one, throws) for one in branches)

@@ -8,7 +8,7 @@ from itertools import chain
 from prima.checks.prices.firsts import responds
 from prima.checks.prices.model import Gap, Outline, Price, PricedReaction, PricedState
 from prima.checks.prices.pages import TARGETS
-from prima.checks.prices.tags import holders, is_foreign, leaves, returns, thrown_by, to_item
+from prima.checks.prices.tags import holders, is_foreign, returns, thrown_by
 from prima.checks.prices.times import ASKED_AGAIN, OFTEN, QUESTION
 from prima.checks.prices.voicetimes import VoiceTimes
 from prima.devices.profile import Profile
@@ -16,7 +16,7 @@ from prima.interpreter.selection import takes
 from prima.markup.tree import Node
 from prima.voicexml.arranging import UNIT
 from prima.voicexml.document import Page, VoiceDocument
-from prima.voicexml.elements import HANDLERS, handler_names
+from prima.voicexml.elements import HANDLERS, handler_names, leaves, to_item
 from prima.voicexml.sketch import ASKING, Sketch
 from prima.voicexml.vocabulary import SPOKEN
 
