@@ -64,11 +64,10 @@ class Policy:
 
     def refusal(self, ab: Behavior, memory: WorkingMemory) -> Refusal | None:
         """What, other than a device, keeps the AB from starting (F2, F6, K1, X7)."""
-        if memory.owed is not None:
-            if rules.third_turn(ab, memory):
-                return None
-            if (kept := rules.x7(ab, memory)) is not None:
-                return kept
+        if rules.third_turn(ab, memory):
+            return None
+        if (kept := rules.x7(ab, memory)) is not None:
+            return kept
         if self.composes(ab, memory):
             return rules.k1(ab, memory)
         return rules.refusal(ab, memory)
@@ -182,7 +181,7 @@ def policy_named(text: str) -> Policy:
         UnknownPolicy: no policy or extension has that name.
     """
     base, *extensions = text.split("+")
-    if base == "prima" and extensions:
+    if base == "prima":
         return Policy(name=text, extensions=_extensions(extensions))
     name, colon, first = text.partition(":")
     if name == "fixed" and first:

@@ -188,6 +188,30 @@ def test_e6_after_an_answer_the_asker_has_the_first_word_but_no_question(
         assert stage.select() == ["fa#1"], "before its next sentence"
 
 
+def test_e6_a_unit_that_asks_behind_its_first_word_counts_as_a_word() -> None:
+    stage = Stage(patience=1000)
+    stage.request("ea", replace(BRIEF))
+    stage.select()
+    stage.at(1).request("fa", say("One."))
+    stage.select()
+    stage.at(5000).mediator.ended("ea#1", True, {"outcome": "filled"}, inbound=False)
+    unit = Group(chain(say("Thank you."), replace(BRIEF)))
+    stage.settle(lambda: stage.request("ea", unit))
+    assert stage.select()[0] == "ea#2"
+    assert check(stage.records, "prima", patience=1000) == []
+
+
+def test_e6_what_has_waited_beside_the_question_is_no_word_to_its_answer() -> None:
+    stage = Stage(patience=1000)
+    stage.request("ea", steps=[Step(replace(BRIEF)), Step(say("By the way."))])
+    stage.select()
+    stage.at(1).request("fa", say("One."))
+    stage.select()
+    stage.at(5000).mediator.ended("ea#1", True, {"outcome": "filled"}, inbound=False)
+    assert (stage.select(), stage.rule("fa#1")) == (["fa#1"], "E6")
+    assert check(stage.records, "prima", patience=1000) == []
+
+
 def test_e6_holds_other_devices_back_as_well() -> None:
     """Two devices that another application uses in turn are kept for it (S3)."""
     stage = Stage(patience=1000)
@@ -201,9 +225,12 @@ def test_e6_holds_other_devices_back_as_well() -> None:
     assert stage.select() == ["fa#1", "fa#2"]
 
 
-def test_e6_k1_stands_above_it() -> None:
+@pytest.mark.parametrize(("more", "rule"), [([], "K1"), (["speaker"], "F6")])
+def test_e6_k1_stands_above_it(more: list[str], rule: str) -> None:
     """What leaves the user waits for the conversation, however long that takes."""
-    stage = Stage(patience=1000)
+    row = TABLE_4_2["topological-move"]
+    going = {row.name: replace(row, devices=row.devices.union(more))}
+    stage = Stage(patience=1000, table={**TABLE_4_2, **going})
     stage.request("ea", *(replace(BRIEF) for _ in range(3)))
     stage.select()
     stage.at(1).request("fa", move())
@@ -211,7 +238,7 @@ def test_e6_k1_stands_above_it() -> None:
     for number in range(1, 3):
         stage.at(4000 * number).end(f"ea#{number}")
         assert stage.select() == [f"ea#{number + 1}"]
-    assert [r["rule"] for r in stage.phases("starve")] == ["K1"]
+    assert [r["rule"] for r in stage.phases("starve")] == [rule]
 
 
 @pytest.mark.parametrize(

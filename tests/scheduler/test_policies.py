@@ -8,7 +8,14 @@ from __future__ import annotations
 import pytest
 
 from prima.messages import Group, Step
-from prima.scheduler.policy import BASELINES, POLICIES, USAGE, policy_named
+from prima.scheduler.policy import (
+    BASELINES,
+    EXTENSIONS,
+    POLICIES,
+    USAGE,
+    UnknownPolicy,
+    policy_named,
+)
 from tests.helpers.stage import Stage, ask, chain, command, move, say
 
 EVENT = 7
@@ -143,3 +150,29 @@ def test_fifo_holds_devices_back_for_whoever_came_first() -> None:
     stage.at(2).request("third", command("turn", angle=3))
     assert stage.select() == []
     assert (stage.holds("fa#1"), stage.holds("third#1")) == (["S1"], ["S3"])
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "meant"),
+    [
+        ("prma", 'There is no policy "prma". Did you mean "prima"?', "prima"),
+        ("zzz", 'There is no policy "zzz". Write fair, fifo, fixed, none or prima.', ""),
+        ("fixed:", 'There is no policy "fixed:". Did you mean "fixed"?', "fixed"),
+        ("fifo:ea", 'There is no policy "fifo:ea". Did you mean "fifo"?', "fifo"),
+        ("fifo+x1", 'There is no policy "fifo+x1".', "fifo"),
+        ("prima+x11", 'There is no extension "x11". Did you mean "x1"?', "x1"),
+        ("prima+speed", 'There is no extension "speed". Write all, or one of x1 to x10.', ""),
+    ],
+)
+def test_an_unknown_policy_is_refused_with_a_remedy(text: str, message: str, meant: str) -> None:
+    with pytest.raises(UnknownPolicy) as caught:
+        policy_named(text)
+    assert str(caught.value).startswith(message)
+    assert f"{caught.value.wrong} {caught.value.remedy}" == str(caught.value)
+    assert caught.value.meant == meant
+    assert caught.value.word == (text.partition("+")[2] if text.startswith("prima+") else "")
+
+
+def test_all_extensions_are_chosen_at_once() -> None:
+    assert policy_named("prima+all").extensions == frozenset(EXTENSIONS)
+    assert policy_named("prima").extensions == frozenset()

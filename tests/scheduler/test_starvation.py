@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from prima.language.commands import PATIENCE_MS
-from prima.messages import Step
+from prima.messages import Command, Step
 from tests.helpers.stage import TRACK, Stage, command, restartable, say
 
 EVENT = 7
@@ -246,3 +246,23 @@ def test_e6_a_turn_that_was_interrupted_has_waited_for_nobody() -> None:
     assert stage.select() == ["ea#2"]
     stage.at(1500).end("ea#2")
     assert (stage.select(), stage.rule("third#1")) == (["third#1"], "E6")
+
+
+@pytest.mark.parametrize(
+    ("runs", "waits"),
+    [
+        ([say("Long."), command("turn", angle=90)], command("turn", angle=3)),
+        ([command("turn", angle=90)], command("turn-and-speak", "Here.", angle=3)),
+    ],
+)
+def test_e6_time_stands_still_while_only_another_device_is_missing(
+    runs: list[Command], waits: Command
+) -> None:
+    stage = Stage(apps={"fa": "fa", "ea": "ea", "third": "ea"}, patience=1000)
+    stage.request("ea", steps=[Step(one) for one in runs])
+    stage.select()
+    stage.at(1).request("fa", waits)
+    assert stage.select() == []
+    stage.at(2000).request("third", command("point-by-hand", angle=9))
+    assert stage.select() == ["third#1"]
+    assert [(r["behavior"], r["rule"]) for r in stage.phases("starve")] == [("fa#1", "S1")]

@@ -28,7 +28,7 @@ def touched_while_asked(
     policy: str = "prima+x7", table: Mapping[str, CommandType] = TABLE_4_2
 ) -> Stage:
     """The EA asks, and the user strokes the robot: the FA wants to say something to that."""
-    stage = Stage(policy, table=table)
+    stage = Stage(policy, {"fa": "fa", "ea": "ea", "third": "ea"}, table)
     stage.request("ea", ask())
     stage.select()
     stage.at(1000).request("fa", say("That feels good."), cause=TOUCH)
@@ -57,6 +57,8 @@ def test_x7_nobody_speaks_while_the_robot_turns_its_head_before_its_word() -> No
     answer(stage.at(2000), "ea#1", lambda: stage.request("ea", HEAD, say("Thank you.")))
     assert stage.select() == ["ea#2"]
     assert stage.holds("fa#1")[-1] == "X7"
+    stage.at(2400).request("third", command("turn", angle=3), cause=TOUCH + 1)
+    assert stage.select() == ["third#1"], "it says nothing"
     stage.at(2500).end("ea#2")
     assert stage.select() == ["ea#3"]
     stage.at(3000).end("ea#3")
@@ -167,6 +169,31 @@ def test_x7_nobody_waits_for_what_waits_for_a_device_itself() -> None:
     stage.at(1000).request("fa", say("That feels good."), cause=TOUCH)
     stage.select()
     answer(stage.at(2000), "ea#1", lambda: stage.request("ea", HEAD, say("Thank you.")))
+    assert stage.select() == ["fa#1"]
+    assert check(stage.records, "prima+x7") == []
+
+
+def test_x7_two_commands_before_the_response_come_before_it() -> None:
+    stage = touched_while_asked()
+    then = [HEAD, command("point-by-hand", angle=9), say("Thank you.")]
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", *then))
+    assert (stage.select(), stage.rule("ea#2")) == (["ea#2"], "S1")
+    assert stage.holds("fa#1")[-1] == "X7"
+    stage.at(2500).end("ea#2")
+    assert stage.select() == ["ea#3"]
+    assert stage.holds("fa#1")[-1] == "X7"
+    assert check(stage.records, "prima+x7") == []
+
+
+def test_x7_nobody_waits_if_the_first_of_two_commands_waits_for_a_device() -> None:
+    stage = Stage("prima+x7", {"fa": "fa", "ea": "ea", "eb": "ea"})
+    stage.request("ea", ask())
+    stage.request("eb", command("gesture", name="nod"))
+    stage.select()
+    stage.at(1000).request("fa", say("That feels good."), cause=TOUCH)
+    stage.select()
+    then = [HEAD, command("turn", angle=3), say("Thank you.")]
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", *then))
     assert stage.select() == ["fa#1"]
     assert check(stage.records, "prima+x7") == []
 
