@@ -163,13 +163,13 @@ patience_option = duration_option(
 )
 
 
-def policy_option(meaning: str, many: bool = False) -> Callable[[Any], Any]:
+def policy_option(meaning: str, many: bool = False, **more: Any) -> Callable[[Any], Any]:
     """An option for policies, which are checked later; its meaning lists them for ``{}``."""
     from prima.scheduler.policy import POLICIES, USAGE
 
     names = ("--policy", "policies") if many else ("--policy",)
-    known = suggesting(*POLICIES)
-    return click.option(*names, multiple=many, shell_complete=known, help=meaning.format(USAGE))
+    more["help"] = meaning.format(USAGE)
+    return click.option(*names, multiple=many, shell_complete=suggesting(*POLICIES), **more)
 
 
 def coloured() -> bool:

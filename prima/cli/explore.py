@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     default=20_000,
     help="Runs at most, before shifts are minimised; default 20000.",
 )
-@policy_option("Run under this policy.")
+@policy_option("Run under this policy.", default="")
 @click.option("-o", "--output", type=click.Path(), help="A folder for the orders and problems.")
 @workers_option
 @on_option
@@ -62,7 +62,7 @@ def explore(
     depth: int,
     step: int | None,
     runs: int,
-    policy: str | None,
+    policy: str,
     output: str | None,
     workers: int | None,
     address: str | None,
@@ -98,7 +98,7 @@ def explore(
         depth,
         step or 0,
         runs,
-        policy or "",
+        policy,
         isolate,
     )
     exploration = Exploration(plan)
