@@ -125,8 +125,7 @@ def outranks(priority: int, stream: Stream, memory: WorkingMemory) -> bool:
     stream would wait for the one that engages the user, and that one for the floor.
     """
     contending = stream.contending()
-    ways = [ab for ab in stream.members.values() if ab.inserted and not ab.dormant]
-    if any(k1(ab, memory) is not None for ab in ways):
+    if any(k1(ab, memory) is not None for ab in stream.present() if ab.inserted):
         contending = stream.present()
     return bool(contending) and all(priority > other.priority for other in contending)
 

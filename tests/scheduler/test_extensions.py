@@ -124,6 +124,28 @@ def test_x5_is_off_unless_it_is_asked_for() -> None:
     assert stage.holds("ea#1.1") == ["F2"]
 
 
+def test_x5_a_move_is_composed_with_no_stream_that_is_held() -> None:
+    stage = Stage("prima+x3+x5", table=DANCING)
+    stage.request("fa", say("Yes?"), cause=EVENT, hold=5000)
+    stage.select()
+    stage.at(1000).end("fa#1")
+    stage.request("ea", move())
+    assert stage.select() == []
+    assert stage.holds("ea#1") == ["F2"]
+
+
+def test_x5_a_move_is_composed_with_no_dance_that_waits() -> None:
+    stage = Stage("prima+x5", {"fa": "fa", "ea": "ea", "third": "ea"}, DANCING)
+    stage.request("third", command("point-by-hand", angle=9))
+    stage.select()
+    stage.request("fa", steps=[Step(say("Look!")), Step(Command("dance"))], cause=EVENT)
+    assert stage.select() == ["fa#1"]
+    stage.at(1000).end("fa#1")
+    stage.request("ea", move())
+    assert stage.select() == []
+    assert (stage.holds("fa#2"), stage.holds("ea#1")) == (["S1"], ["F2"])
+
+
 def test_x5_what_is_no_move_waits_for_the_dance() -> None:
     stage = dancing("prima+x5")
     stage.select()

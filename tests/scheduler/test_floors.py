@@ -18,7 +18,7 @@ from prima.messages import (
 )
 from tests.helpers.generated.plays import perform
 from tests.helpers.plays import IN_ORDER, SEARCH, play
-from tests.helpers.stage import Stage, ask, chain, command, move, say, search
+from tests.helpers.stage import Stage, ask, chain, command, inserted, move, say, search
 
 EVENT = 7
 
@@ -79,6 +79,20 @@ def test_f2_a_higher_priority_than_some_of_the_floors_stream_is_not_enough() -> 
     assert stage.holds("fa#1") == ["F2"]
     stage.at(10).end("ea#2")
     assert stage.select() == ["fa#1"]
+
+
+def test_f2_words_of_resumption_have_the_highest_priority_of_what_follows_them() -> None:
+    stage = Stage("prima+x9")
+    steps = [Step(say("One.")), Step(say("Two."), (0,)), Step(move(), (0,))]
+    stage.request("ea", steps=steps, words=say("As I said."))
+    stage.select()
+    stage.at(100).request("fa", say("Oh!"), move(), cause=EVENT)
+    stage.select()
+    stage.at(500).end("ea#1")
+    assert stage.select() == ["fa#1"]
+    stage.at(1000).end("fa#1")
+    assert stage.select() == ["ea#4", "fa#2.1"]
+    assert inserted(stage) == [("X9", "speak")]
 
 
 def test_f3_the_floor_falls_back_when_its_holder_ends() -> None:
