@@ -25,7 +25,7 @@ Ranked = tuple[Rank, Behavior]
 class Policy:
     """The thesis's policy, ``prima``."""
 
-    name: str = "prima"
+    name: str
     floor: bool = True
     """Whether reactions take the floor (F1) and the channel is kept (K1)."""
     exclusive: bool = True
@@ -85,7 +85,6 @@ class Policy:
 class Fifo(Policy):
     """Waiting ABs in the order of their requests; no floor, channel or reactivity."""
 
-    name: str = "fifo"
     floor: bool = False
     rules: tuple[str, ...] = ("fifo", "S2f")
 
@@ -106,7 +105,6 @@ class Fifo(Policy):
 class Fair(Fifo):
     """Like ``fifo``, but the application whose last turn is longest ago goes first."""
 
-    name: str = "fair"
     turning: bool = True
     rules: tuple[str, ...] = ("fair", "fifo", "S2f")
 
@@ -119,7 +117,6 @@ class Fair(Fifo):
 class Fixed(Fifo):
     """One application, named, always outranks the other (a subsumption architecture)."""
 
-    name: str = "fixed"
     rules: tuple[str, ...] = ("fixed", "fifo", "S2f")
     first: str = ""
 
@@ -133,7 +130,6 @@ class Fixed(Fifo):
 class Unmediated(Fifo):
     """No mediator: every Command reaches its devices at once."""
 
-    name: str = "none"
     exclusive: bool = False
 
 
@@ -185,12 +181,12 @@ def policy_named(text: str) -> Policy:
         return Policy(name=text, extensions=_extensions(extensions))
     name, colon, first = text.partition(":")
     if name == "fixed" and first:
-        return Fixed(first=first)
+        return Fixed(name, first=first)
     if name not in POLICIES or colon:
         wrong, meant = f'There is no policy "{text}".', nearest_word(name, POLICIES)
         remedy = f'Did you mean "{meant}"?' if meant else f"Write {one_of(POLICIES)}."
         raise UnknownPolicy(wrong, meant, f"{remedy} fixed:APP prefers the application APP.")
-    return POLICIES[name]()
+    return POLICIES[name](name)
 
 
 def _extensions(names: list[str]) -> frozenset[str]:
