@@ -121,14 +121,24 @@ class Visit:
                 self.journal.close()
 
     def run_anywhere(self, sink: Sink, warn: Callable[[str], None]) -> None:
-        """The same in a thread, which also works inside a running event loop, such as a notebook's."""
+        """The same in a thread, which also works inside a running event loop, such as a notebook's.
+
+        Raises:
+            KeyboardInterrupt: signals came again before the run had ended.
+        """
         try:
             asyncio.get_running_loop()
         except RuntimeError:
             self.run(sink, warn)
             return
-        # Signals must not interrupt the start of the thread: nobody could stop it any more.
-        with handling_signals(lambda *_: self.stop()), ThreadPoolExecutor(1, "live") as pool:
+
+        def hear(*_: object) -> None:
+            if self.stopped:  # only further signals leave a thread that a driver blocks
+                raise KeyboardInterrupt
+            self.stop()
+
+        # The first must not interrupt the start of the thread: nobody could stop it any more.
+        with handling_signals(hear), ThreadPoolExecutor(1, "live") as pool:
             pool.submit(self.run, sink, warn).result()
 
     async def _run(self, warn: Callable[[str], None]) -> None:

@@ -16,6 +16,7 @@ import pytest
 import prima
 from prima.errors import DocumentError, RunError, UsageError
 from prima.live.driver import Unreachable
+from prima.live.visit import Visit
 from tests.live.test_live import BROKEN_DRIVER, HELLO, ROBOT, ROOT, WAITS, robot_with
 from tests.live.test_live import prima as command
 
@@ -147,6 +148,34 @@ def test_an_interrupt_while_the_thread_begins_ends_the_run(
     finally:
         signal.signal(signal.SIGINT, before)
     assert prima.run_live(resume=journal, speed=100, until=20_000).outcome == "quiet"
+
+
+def test_a_blocked_run_is_left_by_further_interrupts(
+    hello: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    unblocked, left = threading.Event(), threading.Event()
+    ended: list[bool] = []
+    monkeypatch.setattr(Visit, "run", lambda *_: ended.append(unblocked.wait(20)))
+
+    def interrupt() -> None:
+        while not left.wait(0.1):
+            signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+
+    async def notebook() -> None:
+        prima.run_live(robot=ROBOT_PATH, eas=[hello])
+
+    before = signal.signal(signal.SIGINT, lambda *_: None)
+    sender = threading.Thread(target=interrupt)
+    sender.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            asyncio.run(notebook())
+        assert not ended
+    finally:
+        left.set()
+        unblocked.set()
+        sender.join()
+        signal.signal(signal.SIGINT, before)
 
 
 def test_an_exception_of_the_sink_ends_the_run(hello: Path) -> None:
