@@ -208,8 +208,8 @@ class ExplorationFolder:
             UsageError: something cannot be written.
         """
         try:
-            for folder in (ORDERS, PROBLEMS):
-                discard(self.path / folder)
+            discard(self.path / ORDERS)
+            discard(self.path / PROBLEMS, "[0-9]+-(endless|error|expect|invariant)")
             for order in self.exploration.orders:
                 self._case(ORDERS, order.signature, order.point)
             for number, problem in enumerate(self.exploration.problems, 1):

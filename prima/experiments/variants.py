@@ -36,8 +36,8 @@ from prima.transcript.row import Row
 
 MOST_LOADED = 64
 """Maximum number of combinations of documents, worlds and robots kept loaded."""
-SAVED = re.compile(r"([0-9a-f]{12}|[0-9]+-[a-z]+)\.(jsonl|xml|robot\.xml)")
-"""The names of files that are saved for an order, or for a problem of an exploration."""
+ORDER = "[0-9a-f]{12}"
+"""An order's signature, after which its files are named."""
 MOST_MESSAGE = 1_000
 """Maximum length of a run's messages (characters)."""
 
@@ -250,14 +250,18 @@ class Stage:
         write_whole(folder / f"{name}.jsonl", "".join(lines))
 
 
-def discard(folder: Path) -> None:
-    """Remove what an earlier sweep or exploration has saved in a folder.
+def discard(folder: Path, names: str = ORDER) -> None:
+    """Remove the cases that an earlier sweep or exploration has saved in a folder.
+
+    Args:
+        folder: the folder; other files in it stay.
+        names: the pattern of the cases' names.
 
     Raises:
         OSError: a file cannot be removed.
     """
     for path in list(folder.glob("*")):
-        if SAVED.fullmatch(path.name):
+        if re.fullmatch(rf"{names}\.(jsonl|xml|robot\.xml)", path.name):
             path.unlink()
 
 
