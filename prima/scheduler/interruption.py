@@ -17,7 +17,7 @@ def x2(mediation: Mediation, reaction: Behavior, ways: list[Behavior], held: Hel
     Args:
         mediation: what is shared.
         reaction: a waiting AB.
-        ways: the running ABs on its devices, at least one.
+        ways: the running ABs on its devices; none if only others hold devices back.
         held: devices that others hold back from it (S3).
 
     Returns:

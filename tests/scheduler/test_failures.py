@@ -164,6 +164,17 @@ def test_e6_a_reaction_goes_first() -> None:
     assert stage.select() == ["ea#2"]
 
 
+def answered_late(*branches: Command) -> Stage:
+    """The EA's question, beside other Commands, is answered when the FA has waited too long."""
+    stage = Stage(patience=1000)
+    stage.request("ea", steps=[Step(one) for one in branches])
+    stage.select()
+    stage.at(1).request("fa", say("One."))
+    stage.select()
+    stage.at(5000).mediator.ended("ea#1", True, {"outcome": "filled"}, inbound=False)
+    return stage
+
+
 @pytest.mark.parametrize(
     ("then", "started"),
     [
@@ -175,12 +186,7 @@ def test_e6_a_reaction_goes_first() -> None:
 def test_e6_after_an_answer_the_asker_has_the_first_word_but_no_question(
     then: Command, started: list[str]
 ) -> None:
-    stage = Stage(patience=1000)
-    stage.request("ea", replace(BRIEF))
-    stage.select()
-    stage.at(1).request("fa", say("One."))
-    stage.select()
-    stage.at(5000).mediator.ended("ea#1", True, {"outcome": "filled"}, inbound=False)
+    stage = answered_late(replace(BRIEF))
     stage.settle(lambda: stage.request("ea", replace(then), say("More.")))
     assert stage.select() == started
     if started == ["ea#2"]:
@@ -189,12 +195,7 @@ def test_e6_after_an_answer_the_asker_has_the_first_word_but_no_question(
 
 
 def test_e6_a_unit_that_asks_behind_its_first_word_counts_as_a_word() -> None:
-    stage = Stage(patience=1000)
-    stage.request("ea", replace(BRIEF))
-    stage.select()
-    stage.at(1).request("fa", say("One."))
-    stage.select()
-    stage.at(5000).mediator.ended("ea#1", True, {"outcome": "filled"}, inbound=False)
+    stage = answered_late(replace(BRIEF))
     unit = Group(chain(say("Thank you."), replace(BRIEF)))
     stage.settle(lambda: stage.request("ea", unit))
     assert stage.select()[0] == "ea#2"
@@ -202,12 +203,7 @@ def test_e6_a_unit_that_asks_behind_its_first_word_counts_as_a_word() -> None:
 
 
 def test_e6_what_has_waited_beside_the_question_is_no_word_to_its_answer() -> None:
-    stage = Stage(patience=1000)
-    stage.request("ea", steps=[Step(replace(BRIEF)), Step(say("By the way."))])
-    stage.select()
-    stage.at(1).request("fa", say("One."))
-    stage.select()
-    stage.at(5000).mediator.ended("ea#1", True, {"outcome": "filled"}, inbound=False)
+    stage = answered_late(replace(BRIEF), say("By the way."))
     assert (stage.select(), stage.rule("fa#1")) == (["fa#1"], "E6")
     assert check(stage.records, "prima", patience=1000) == []
 
