@@ -24,7 +24,7 @@ demo: $(VENV)/.runtime
 	@echo 'or, once in each shell: . $(BIN)/activate; then: prima --help'
 
 test: $(VENV)/.dev
-	$(BIN)/python -m pytest -n $(WORKERS)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
 # Drivers against the second parties of tests/parties, each in an environment of its own. They mostly
 # wait, so each file has a worker.

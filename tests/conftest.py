@@ -9,9 +9,11 @@ from tests.helpers.robot import close_sessions
 
 
 def pytest_configure() -> None:
-    """Let Ctrl-C reach what tests start, also where a shell runs them in the background."""
+    """Let signals reach what tests start, also in the background of a shell and under `nohup`."""
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def pytest_collection_finish() -> None:

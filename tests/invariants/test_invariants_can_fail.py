@@ -275,10 +275,9 @@ class Met(Exception):
 def test_generated_runs_meet_it_too(mutation: Mutation, monkeypatch: pytest.MonkeyPatch) -> None:
     mutation.patch(monkeypatch)
 
-    @seed(4)  # always the same runs; among these every violation is met soon
     @given(plays(), scripts())
     @settings(
-        max_examples=2000,
+        max_examples=100,  # the runs of one seed are alike, so that many seeds meet more
         phases=(Phase.generate,),
         deadline=None,
         database=None,
@@ -294,4 +293,5 @@ def test_generated_runs_meet_it_too(mutation: Mutation, monkeypatch: pytest.Monk
                 raise Met
 
     with pytest.raises(Met):
-        meet()
+        for number in range(11, 51):
+            seed(number)(meet)()
