@@ -22,6 +22,8 @@ from prima.sim.scenario import read_scenario
 VOICE = "en-us+f3"
 PAUSE_S = 1.0
 """How long the user thinks before they answer."""
+PATIENCE_S = 2.0
+"""The longest that the user, who does not walk, waits for anything else."""
 
 
 class HeardDriver(SpeechDriver):
@@ -64,11 +66,12 @@ class HeardDriver(SpeechDriver):
 
     def _do(self, when: When) -> None:
         """Let happen what the scenario says, later; each thing once."""
-        loop, after = asyncio.get_running_loop(), when.after.ms(1) / 1000
+        loop = asyncio.get_running_loop()
+        after = min(when.after.ms(1) / 1000, PATIENCE_S)
         for doing in when.doings:
             match doing.name:
                 case "wait":
-                    after += doing.values["for"].ms(1) / 1000
+                    after += min(doing.values["for"].ms(1) / 1000, PATIENCE_S)
                 case "touch":
                     data = {"sensor": doing.values["sensor"]}
                     touch = Occurred(f"touch.{data['sensor']}", "user", data)
