@@ -35,8 +35,6 @@ class Stream:
     """When one of its ABs started last, as a counter; 0 before the first (S2b, S2d)."""
     spoken: bool = False
     """Whether an AB of it has spoken (F6)."""
-    engaged: bool = False
-    """Whether an AB of it has engaged the user (K1)."""
     causes: set[int] = field(default_factory=set)
     """Serial numbers of the events that the stream has reacted to (F2)."""
     suspended: bool = False
@@ -189,7 +187,6 @@ class Behavior:
     freed: int = -1
     """The instant in which the AB's parent ended or its window opened (S2c)."""
     wait: Wait = field(default_factory=Wait)
-    started: int = -1
     loop: int = 0
     """The number of a feedback Command's loop that is running, or ran last (U2)."""
     last_loop: bool = False

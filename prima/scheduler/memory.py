@@ -61,41 +61,39 @@ class WorkingMemory:
     def wait(self, ab: Behavior) -> None:
         """Let the AB compete. Commands inside a unit compete only within it."""
         ab.state, ab.listening = WAITING, False
-        ab.wait.blocked = ("", "")
         if ab.unit is None:
             self.waiting[ab.name] = ab
 
-    def start(self, ab: Behavior, now: int) -> None:
+    def start(self, ab: Behavior) -> None:
         """Move a waiting AB to the running ones; it now occupies its devices."""
         self.waiting.pop(ab.name, None)
         ab.state = RUNNING
-        ab.started = now
         self.running[ab.name] = ab
         self._turns += 1
         ab.stream.turn = ab.app.last_turn = self._turns
-        unit = ab.unit
-        for device in ab.in_order:
-            if unit is not None and unit.inside is not None and device in unit.devices:
-                unit.inside.busy[device] = ab
-            else:
-                self.occupied[device] = ab
+        self._users(ab).update(dict.fromkeys(ab.devices, ab))
 
     def release(self, ab: Behavior) -> None:
         """Free the devices that a running AB occupies."""
         del self.running[ab.name]
-        occupied, unit = self.occupied, ab.unit
-        for device in ab.in_order:
-            if occupied.get(device) is ab:
-                del occupied[device]
-            if unit is not None and unit.inside and unit.inside.busy.get(device) is ab:
-                del unit.inside.busy[device]
+        users = self._users(ab)
+        for device in ab.devices:
+            if users.get(device) is ab:
+                del users[device]
         if ab.motion:
             self._leave_to_other_motion(ab)
+
+    def _users(self, ab: Behavior) -> dict[str, Behavior]:
+        """The running ABs by device: those of the AB's unit, which owns its devices (U4, U5)."""
+        if ab.unit is None:
+            return self.occupied
+        assert ab.unit.inside is not None
+        return ab.unit.inside.busy
 
     def _leave_to_other_motion(self, ab: Behavior) -> None:
         """X5: of two motions that were composed, the one that goes on keeps its devices."""
         for other in self.running.values():
-            if other.motion and other.unit is None:
+            if other.motion:
                 for device in other.devices & ab.devices:
                     self.occupied.setdefault(device, other)
 
@@ -117,12 +115,6 @@ class WorkingMemory:
         """The application's ABs, in the order of their requests."""
         return list(app.members.values())
 
-    def open(self, stream: Stream) -> None:
-        """Begin a stream, or continue one that was about to end."""
-        self.streams[stream.name] = stream
-        if stream.engaged:
-            self.engaged[stream.name] = stream
-
     def end(self, stream: Stream) -> None:
         """C1: a stream is over."""
         del self.streams[stream.name]
@@ -130,17 +122,15 @@ class WorkingMemory:
 
     def engage(self, stream: Stream) -> None:
         """K1: an AB of a stream engages the user."""
-        stream.engaged = True
         self.engaged[stream.name] = stream
 
     def conflicts(self, ab: Behavior) -> list[Behavior]:
-        """All running ABs that occupy one of the devices, in the order of their serial numbers."""
-        found = [
+        """All running ABs that occupy one of the devices, in the order in which they started."""
+        return [
             other
             for other in self.running.values()
             if other.unit is None and other.devices & ab.devices
         ]
-        return sorted(found, key=lambda other: other.serial)
 
     def unwait(self, ab: Behavior) -> None:
         """Link a waiting AB again: something has been inserted before it (X1, X4).
@@ -153,15 +143,8 @@ class WorkingMemory:
 
     def conflict(self, ab: Behavior) -> Behavior | None:
         """A running AB that occupies one of the devices (S1); a unit's own count within it."""
-        unit = ab.unit
-        for device in ab.in_order:
-            if unit is not None and unit.inside is not None and device in unit.devices:
-                other = unit.inside.busy.get(device)
-            else:
-                other = self.occupied.get(device)
-            if other is not None:
-                return other
-        return None
+        users = self._users(ab)
+        return next((users[device] for device in ab.in_order if device in users), None)
 
 
 def turn_of(stream: Stream) -> int:

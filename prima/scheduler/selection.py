@@ -200,7 +200,7 @@ def run(mediation: Mediation, ab: Behavior, resumes: bool) -> None:
         ab.next_loop()
     mediation.started.append(ab)
     beside = mediation.policy.exclusive and memory.conflict(ab) is not None
-    memory.start(ab, now)
+    memory.start(ab)
     _note_start(mediation, ab, resumes)
     if ab.command is not None:
         order = Order(

@@ -9,8 +9,7 @@ from prima.scheduler.mediation import Delivery, Mediation
 
 def opened(mediation: Mediation, stream: Stream) -> Stream:
     """Begin a stream, or continue one that was about to end."""
-    if stream.name not in mediation.memory.streams:
-        mediation.memory.open(stream)
+    mediation.memory.streams[stream.name] = stream
     return stream
 
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 import pytest
 
 from prima.invariants import check
-from prima.language.commands import TABLE_4_2
+from prima.language.commands import ABSENCE_MS, TABLE_4_2
 from prima.messages import (
     Command,
     Step,
@@ -105,6 +105,14 @@ def test_k1_a_stream_that_searches_engages_whom_it_looks_for(kind: str, engages:
     memory = stage.mediator.memory
     memory.absent = True
     assert rules.engages(memory.streams["ea:1"], memory) is engages
+
+
+def test_k1_a_user_who_was_never_sensed_is_absent_that_long_after_the_beginning() -> None:
+    stage = Stage()
+    stage.request("ea", ask("Hello?"))
+    stage.at(10).request("fa", move())
+    stage.select()
+    assert stage.mediator.deadline() == ABSENCE_MS
 
 
 @pytest.mark.parametrize("searches", [True, False])

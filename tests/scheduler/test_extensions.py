@@ -107,6 +107,15 @@ def test_x5_a_dance_goes_on_together_with_a_move() -> None:
     assert stage.select() == ["fa#2"]
 
 
+def test_x5_who_has_the_floor_is_active_though_a_loop_of_the_move_started_later() -> None:
+    stage = dancing("prima+x5")
+    stage.select()
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == ["ea#1.2"]
+    active = stage.mediator.memory.active
+    assert active is not None and active.name == "fa"
+
+
 def test_x5_when_the_dance_ends_the_move_keeps_the_wheels() -> None:
     stage = dancing("prima+x5")
     assert stage.select() == ["fa#1"]

@@ -129,9 +129,9 @@ def ended_is_active(patch: pytest.MonkeyPatch) -> None:
     latest: list[Stream] = []
     start = WorkingMemory.start
 
-    def note(memory: WorkingMemory, ab: Behavior, now: int) -> None:
+    def note(memory: WorkingMemory, ab: Behavior) -> None:
         latest.append(ab.stream)
-        start(memory, ab, now)
+        start(memory, ab)
 
     patch.setattr(WorkingMemory, "start", note)
     patch.setattr(

@@ -79,6 +79,16 @@ def test_s2b_a_stream_that_has_ended_is_not_active_while_another_runs() -> None:
     assert stage.select() == ["one#2"], "the sentence is what is active"
 
 
+def test_s2b_a_stream_is_not_active_once_its_last_ab_has_ended() -> None:
+    stage = Stage()
+    stage.request("ea", say())
+    stage.select()
+    active = stage.mediator.memory.active
+    assert active is not None and active.name == "ea"
+    stage.at(10).end("ea#1")
+    assert stage.mediator.memory.active is None, "before the next selection ends it"
+
+
 def test_s2b_a_stream_that_begins_in_the_same_selection_is_active_for_the_rest_of_it() -> None:
     stage = Stage()
     stage.request("ea", say())
