@@ -12,16 +12,19 @@ from prima.scheduler.behavior import (
     Application,
     AwaitedRun,
     Behavior,
+    Stream,
 )
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.memory import WorkingMemory
 
 
 def running_as(memory: WorkingMemory, name: str) -> Behavior | None:
-    """The AB with that name in the transcript, if it is still running."""
-    running = memory.running
-    ab = running.get(name) or running.get(name.partition(".")[0])
-    return ab if ab is not None and ab.id == name else None
+    """The AB of a Command with that name in the transcript, if it is still running.
+
+    A unit ends with its Commands: devices know nothing of it.
+    """
+    ab = memory.running.get(name.partition(".")[0])
+    return ab if ab is not None and ab.id == name and ab.command is not None else None
 
 
 def question(memory: WorkingMemory) -> Behavior | None:
@@ -45,7 +48,7 @@ def u2(mediation: Mediation, ab: Behavior, goal: bool, data: Data, inbound: bool
     if "x1" in mediation.policy.extensions:
         _note_effects(mediation, ab, data, ending)
     if not inbound:
-        _note_answer(mediation, ab, outcome)
+        _note_answer(mediation, ab.stream, outcome)
     if ending:
         _finish(mediation, ab, data)
     else:
@@ -54,12 +57,11 @@ def u2(mediation: Mediation, ab: Behavior, goal: bool, data: Data, inbound: bool
         mediation.memory.wait(ab)
 
 
-def _note_answer(mediation: Mediation, ab: Behavior, outcome: str) -> None:
+def _note_answer(mediation: Mediation, stream: Stream, outcome: str) -> None:
     """E6, X7: note that a question has ended by what the user said."""
-    if ab.type is not None and "speech-recognition" in ab.type.devices:
-        ab.stream.answered = mediation.now
-        if outcome == "filled":
-            mediation.memory.answered = ab.stream
+    stream.answered = mediation.now
+    if outcome == "filled":
+        mediation.memory.answered = stream
 
 
 def note_rolling(mediation: Mediation, ab: Behavior) -> None:
@@ -70,8 +72,7 @@ def note_rolling(mediation: Mediation, ab: Behavior) -> None:
 
 def _note_effects(mediation: Mediation, ab: Behavior, data: Data, ending: bool) -> None:
     """X1: note how a Command has changed the robot's state; its stream relies on it."""
-    if ab.type is None or ab.command is None:
-        return
+    assert ab.type is not None and ab.command is not None
     mediation.robot.moved(ab.type, ab.command, data)
     if ab.inserted != "X1" and (ending or "follow" in ab.type.effects):
         ab.stream.effects.add(ab.type, ab.command, data, mediation.robot)
@@ -81,7 +82,7 @@ def _finish(mediation: Mediation, ab: Behavior, data: Data, cause: int | None = 
     """Remove an AB that has ended and notify its application, which may react to ``cause``."""
     run = ab.run
     remove(mediation, ab)
-    if ab.silent or ab.app.gone or run is None:
+    if ab.silent or run is None:
         return
     run.left -= 1
     notices = []
@@ -101,8 +102,7 @@ def answered(mediation: Mediation, ab: Behavior, data: Data, rule: str, serial: 
     event with the number ``serial``.
     """
     mediation.recorder.behavior("cancel", ab, rule=rule, outcome="answered", data=dict(data))
-    ab.stream.answered = mediation.now
-    mediation.memory.answered = ab.stream
+    _note_answer(mediation, ab.stream, "filled")
     for child in ab.children:
         for name in ab.waits_for:  # what was to come before the question comes before the rest
             link(mediation.memory.behaviors[name], child)
@@ -139,7 +139,7 @@ def cancel(mediation: Mediation, behaviors: list[Behavior], devices: frozenset[s
 
 def tell_cancelled(mediation: Mediation, ab: Behavior) -> None:
     """Notify an application that one of its ABs was deleted."""
-    if ab.run is not None and not ab.app.gone:
+    if ab.run is not None:
         name = ab.command.type if ab.command else "iu"
         notice = Notice("cancelled", ab.run.number, ab.command, event=f"cancel.{name}")
         mediation.tell(ab.app, None, notice)
@@ -148,7 +148,7 @@ def tell_cancelled(mediation: Mediation, ab: Behavior) -> None:
 def withdraw(mediation: Mediation, behaviors: list[Behavior], rule: str) -> None:
     """O3, E2: delete ABs that have not started; running ones finish, and nobody is notified."""
     for ab in reversed(behaviors):
-        if ab.state is GONE or ab.in_group:
+        if ab.in_group:
             continue
         if ab.state is RUNNING:
             silence(ab)

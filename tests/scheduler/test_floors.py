@@ -6,10 +6,12 @@ Each rule by its number, on the smallest case that shows it.
 from __future__ import annotations
 
 from copy import deepcopy
+from dataclasses import replace
 
 import pytest
 
 from prima.invariants import check
+from prima.language.commands import TABLE_4_2
 from prima.messages import (
     Command,
     Group,
@@ -329,6 +331,17 @@ def test_f5_no_stop_where_something_else_takes_the_wheels_or_the_goal_is_met() -
     done.at(500).end("ea#1.1", goal=True)
     done.select()
     assert done.phases("stop") == []
+
+
+def test_f5_stops_nothing_that_has_no_wheels() -> None:
+    wave = replace(TABLE_4_2["tracking-human"], name="wave", devices=frozenset({"arm"}))
+    stage = Stage(table={**TABLE_4_2, "wave": wave})
+    stage.request("ea", Command("wave"))
+    stage.select()
+    stage.request("fa", command("point-by-hand", angle=9), cause=EVENT)
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == ["fa#1"]
+    assert stage.phases("stop") == []
 
 
 @pytest.mark.parametrize("turns_first, stops", [(False, ["ea#1.1"]), (True, [])])

@@ -145,6 +145,30 @@ def test_x8_what_follows_an_answered_question_reacts_to_the_answer() -> None:
     assert start["cause"] == TOUCH + 1
 
 
+def test_x8_what_is_requested_after_an_answered_reaction_reacts_to_the_answer() -> None:
+    stage = busy(ask("What's the matter?"))
+    question = stage.mediator.offered()
+    assert question is not None
+    stage.at(1500).mediator.answered(question, {"outcome": "filled"}, "X8", TOUCH + 1)
+    stage.settle()
+    assert [(n.what, n.cause) for _, n in stage.notices] == [("ended", None), ("done", TOUCH + 1)]
+
+
+def test_x8_what_waits_for_more_than_an_answered_question_reacts_to_nothing_new() -> None:
+    steps = [Step(ask("What's the matter?")), Step(say("Oh!")), Step(say("Well."), (0, 1))]
+    stage = busy(steps=steps)
+    question = stage.mediator.offered()
+    assert question is not None
+    stage.at(1500).mediator.answered(question, {"outcome": "filled"}, "X8", TOUCH + 1)
+    stage.select()
+    stage.at(2000).end("ea#1")
+    assert stage.select() == ["fa#2"]
+    stage.at(2500).end("fa#2")
+    assert stage.select() == ["fa#3"]
+    [start] = [r for r in stage.phases("start") if r["behavior"] == "fa#3"]
+    assert "cause" not in start
+
+
 def test_x8_nothing_is_offered_to_what_is_no_reaction() -> None:
     stage = Stage(POLICY)
     stage.request("ea", say("A long story."))

@@ -5,11 +5,13 @@ Each rule by its number, on the smallest case that shows it.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from prima.messages import (
     Group,
     Step,
 )
-from tests.helpers.stage import Stage, ask, command, move, say
+from tests.helpers.stage import Stage, ask, chain, command, move, say
 
 EVENT = 7
 
@@ -107,6 +109,30 @@ def test_o2_what_is_wanted_now_waits_for_nothing_of_its_own_application() -> Non
     assert stage.select() == ["ea#4"]
 
 
+def test_o2_a_unit_that_runs_on_other_devices_is_finished_whole() -> None:
+    stage = Stage()
+    point = command("point-by-hand", angle=0)
+    unit = Group(chain(say("One."), say("Two.")))
+    stage.request("ea", steps=[Step(unit), Step(point)])
+    assert stage.select() == ["ea#1", "ea#3", "ea#2"]
+    stage.request("ea", replace(point, now=True))
+    assert stage.select() == ["ea#5"]
+    stage.at(500).end("ea#3")
+    assert stage.select() == ["ea#4"]
+    assert stage.told("ea") == ["cancel.point-by-hand", "cancel.iu"]
+
+
+def test_o2_a_unit_that_is_left_ends_with_what_is_cancelled_in_it() -> None:
+    stage = Stage()
+    stage.open("ea", 1, "speaker")
+    stage.request("ea", say("Inside."), unit=1)
+    assert stage.select() == ["ea#1", "ea#2"]
+    stage.close("ea", 1)
+    stage.request("ea", replace(say("Wait!"), now=True))
+    assert stage.select() == ["ea#3"]
+    assert stage.running == {"ea#3"}
+
+
 def test_o2_of_several_streams_the_one_that_ran_goes_on() -> None:
     stage = Stage()
     stage.request("ea", move(), cause=EVENT)
@@ -137,6 +163,29 @@ def test_o3_leaving_a_state_deletes_what_has_not_started_and_ends_loops() -> Non
     assert stage.select() == []
     assert stage.running == set()
     assert stage.told("ea") == [], "nobody hears of its end"
+
+
+def test_o3_what_follows_is_deleted_before_it_could_wait_itself() -> None:
+    stage = Stage()
+    stage.request("fa", say("Long."))
+    stage.select()
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.leave("ea")
+    stage.select()
+    assert [(r["behavior"], r["outcome"]) for r in stage.phases("cancel")] == [
+        ("ea#2", "linked"),
+        ("ea#1", "waiting"),
+    ]
+
+
+def test_o3_a_unit_that_has_begun_is_finished_whole() -> None:
+    stage = Stage()
+    stage.request("ea", Group(chain(say("One."), say("Two."))))
+    assert stage.select() == ["ea#1", "ea#2"]
+    stage.leave("ea")
+    stage.at(500).end("ea#2")
+    assert stage.select() == ["ea#3"]
 
 
 def test_o3_a_question_that_listens_ends_at_once() -> None:

@@ -74,6 +74,38 @@ def test_x1_nothing_is_restored_where_the_robot_has_not_moved() -> None:
     assert stage.select() == ["ea#3"]
 
 
+def test_x1_a_stream_that_follows_the_user_relies_on_no_place() -> None:
+    stage = Stage("prima+x1")
+    follow = command("tracking-human")
+    steps = [Step(move()), Step(say("One."), (0,)), Step(say("Two."), (1,)), Step(follow, (0,))]
+    stage.request("ea", steps=steps)
+    stage.select()
+    stage.at(500).end("ea#1.1", x=1.0, y=1.0, heading=0.0)
+    assert stage.select() == ["ea#2", "ea#4.1"]
+    stage.request("fa", ask(), cause=EVENT)
+    stage.at(1000).end("ea#4.1", goal=False, x=5.0, y=5.0, heading=0.0)
+    stage.end("ea#2")
+    assert stage.select() == ["fa#1"]
+    stage.at(1500).end("fa#1")
+    assert stage.select() == ["ea#3", "ea#4.2"]
+    assert inserted(stage) == []
+
+
+def test_x1_the_way_back_changes_nothing_on_which_the_stream_relies() -> None:
+    stage = at_a_panel("prima+x1", say("Second."), say("Third."))
+    stage.select()
+    stage.leave("fa")
+    stage.at(1500).end("fa#1.1", goal=False, x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == ["ea#5.1"]
+    stage.at(2000).end("ea#5.1", x=4.4, y=1.0, heading=90.0)
+    assert stage.select() == ["ea#3"]
+    stage.request("fa", command("turn", angle=5), cause=EVENT + 1)
+    assert stage.select() == ["fa#2"]
+    stage.at(2500).end("fa#2", x=3.8, y=1.0, heading=90.0)
+    stage.end("ea#3")
+    assert stage.select() == ["ea#4"], "it is near to where the stream has led it"
+
+
 def test_x1_direction_and_head_are_restored() -> None:
     stage = Stage("prima+x1")
     stage.request(

@@ -40,6 +40,39 @@ def test_u2_a_feedback_command_makes_one_ab_a_loop_until_its_goal() -> None:
     assert stage.select() == ["ea#2"]
 
 
+def test_u2_the_end_of_a_loop_that_is_over_ends_no_other() -> None:
+    stage = Stage()
+    stage.request("ea", move(), say())
+    stage.select()
+    stage.at(500).end("ea#1.1", goal=False)
+    stage.select()
+    assert not stage.mediator.ended("ea#1.1", True, {})
+    assert stage.select() == [] and stage.running == {"ea#1.2"}
+
+
+def test_u2_what_makes_no_loops_ends_though_its_goal_is_not_reached() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.at(500).end("ea#1", goal=False)
+    assert stage.select() == ["ea#2"]
+
+
+def test_u4_a_unit_ends_with_its_commands_whatever_devices_report() -> None:
+    stage = Stage()
+    stage.request("ea", Group(chain(say("One."), say("Two."))))
+    assert stage.select() == ["ea#1", "ea#2"]
+    assert not stage.mediator.ended("ea#1", True, {})
+    stage.mediator.failed("ea#1", "speaker", "broken")
+    assert stage.select() == [] and stage.running == {"ea#1", "ea#2"}
+    stage.at(500).end("ea#2")
+    assert stage.select() == ["ea#3"]
+    stage.at(900).end("ea#3")
+    stage.select()
+    [end] = [r for r in stage.phases("end") if r["behavior"] == "ea#1"]
+    assert end["outcome"] == "done"
+
+
 def test_u2_a_feedback_command_that_was_interrupted_starts_afresh() -> None:
     stage = Stage()
     stage.request("ea", search("Where are you?"))
