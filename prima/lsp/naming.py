@@ -51,15 +51,9 @@ def _link_at(workspace: Workspace, path: Path, offset: int) -> tuple[Path, int, 
     return next((one for one in workspace.named(path) if one[1] <= offset <= one[2]), None)
 
 
-def mark_of(workspace: Workspace, path: Path, offset: int) -> Mark | None:
-    """The name at an offset."""
-    text = workspace.text(path)
-    return mark_at(text.marks, offset) if text is not None else None
-
-
 def definitions(workspace: Workspace, path: Path, offset: int) -> list[NameSpot]:
     """The definitions of the name at an offset, or the beginning of the file named there."""
-    mark = mark_of(workspace, path, offset)
+    mark = mark_at(workspace.marks(path), offset)
     if mark is not None:
         given = workspace.given(path, mark)
         if not given and mark.kind == ("event",):
@@ -87,7 +81,7 @@ def references(
     workspace: Workspace, path: Path, offset: int, declaration: bool = True
 ) -> list[NameSpot]:
     """All references to the name at an offset; of a file, in the whole workspace."""
-    mark = mark_of(workspace, path, offset)
+    mark = mark_at(workspace.marks(path), offset)
     if mark is not None:
         return [
             NameSpot(found.path, found.mark.start, found.mark.end)
@@ -106,7 +100,7 @@ def references(
 
 def renamable(workspace: Workspace, path: Path, offset: int) -> NameSpot | None:
     """The piece of text at an offset that can be renamed."""
-    mark = mark_of(workspace, path, offset)
+    mark = mark_at(workspace.marks(path), offset)
     if mark is not None:
         given = any(found.mark.defines for found in workspace.uses(path, mark))
         if given and not RENAMED.keys().isdisjoint(mark.kind):
@@ -128,7 +122,7 @@ def rename(
     """
     if renamable(workspace, path, offset) is None:
         return [], None
-    mark = mark_of(workspace, path, offset)
+    mark = mark_at(workspace.marks(path), offset)
     if mark is None:
         return _move(workspace, path, offset, new)
     kind = next(kind for kind in mark.kind if kind in RENAMED)
@@ -160,8 +154,7 @@ def _is_taken(workspace: Workspace, given: list[FoundName], new: str) -> bool:
     """Whether a name is already taken where one of some definitions is."""
     places = {(one.path, one.mark.scope, kind) for one in given for kind in one.mark.kind}
     for path in {one.path for one in given}:
-        text = workspace.text(path)
-        for one in text.marks if text is not None else ():
+        for one in workspace.marks(path):
             taken = one.defines and one.name == new
             if taken and any((path, one.scope, kind) in places for kind in one.kind):
                 return True

@@ -134,6 +134,11 @@ class Workspace:
         self._read[path] = made
         return made
 
+    def marks(self, path: Path) -> list[Mark]:
+        """The names in a document; none if it cannot be read."""
+        text = self.text(path)
+        return text.marks if text is not None else []
+
     def asked(self, uri: str) -> tuple[Path, Text] | None:
         """An open document by its URI."""
         path = path_of(uri)
@@ -229,8 +234,7 @@ class Workspace:
         if mark.is_state:
             form = self._form_of(path, mark)
             return self.uses(form.path, form.mark) if form is not None else []
-        text = self.text(path)
-        own = [FoundName(path, one) for one in (text.marks if text else ()) if one.names(mark)]
+        own = [FoundName(path, one) for one in self.marks(path) if one.names(mark)]
         if mark.shared:
             return own + self._shared(path, mark, all_scenes)
         if "form" in mark.kind or "rule" in mark.kind:
@@ -248,8 +252,7 @@ class Workspace:
             here = waiting.pop()
             for other in set().union(*(one for one in scenes if here in one)) - seen:
                 seen.add(other)
-                text = self.text(other)
-                same = [one for one in (text.marks if text else ()) if _is_same(one, mark)]
+                same = [one for one in self.marks(other) if _is_same(one, mark)]
                 found += [FoundName(other, one) for one in same]
                 waiting += [other] if same and all_scenes else []
         return sorted(found, key=lambda one: (one.path, one.mark.start))
@@ -257,11 +260,11 @@ class Workspace:
     def _elsewhere(self, path: Path, mark: Mark) -> list[FoundName]:
         """The uses of a name of another file."""
         target = self.target(path, mark.file)
-        text = self.text(target) if target is not None else None
-        for one in text.marks if text else ():
-            if target is not None and one.defines and _is_same(one, mark):
-                return self.uses(target, one)
-        return []
+        if target is None:
+            return []
+        own = (one for one in self.marks(target) if one.defines and _is_same(one, mark))
+        found = next(own, None)
+        return self.uses(target, found) if found is not None else []
 
     def _from_others(self, path: Path, mark: Mark) -> list[FoundName]:
         """Where other documents go to a dialog of this one."""
@@ -278,8 +281,7 @@ class Workspace:
     def _expected(self, path: Path, mark: Mark) -> Iterator[FoundName]:
         """Where scenarios expect an application to be in a form of this document."""
         for scene, belongs in self._scenes():
-            text = self.text(scene) if path in belongs else None
-            for one in text.marks if text else ():
+            for one in self.marks(scene) if path in belongs else ():
                 form = self._form_of(scene, one) if one.name == mark.name else None
                 if form is not None and form.path == path:
                     yield FoundName(scene, one)
@@ -317,10 +319,9 @@ class Workspace:
         They are those of its scenarios, or of the whole workspace if it is in none.
         """
         wanted = frozenset(kinds)
-        text = self.text(path)
         found = [
             FoundName(path, one)
-            for one in (text.marks if text else ())
+            for one in self.marks(path)
             if one.defines and not wanted.isdisjoint(one.kind)
         ]
         if not SHARED.isdisjoint(wanted):
@@ -339,7 +340,7 @@ class Workspace:
             text = self.text(path)
             own = dialect(text.top) if text else ""
             private = "event" if own in ("dialogue", "voicexml") else ""
-            for one in text.marks if text else ():
+            for one in self.marks(path):
                 if one.defines and wanted.intersection(one.kind) and private not in one.kind:
                     found.append(FoundName(path, one))
         return found
