@@ -188,10 +188,8 @@ def links(server: Server, params: lsp.DocumentLinkParams) -> list[lsp.DocumentLi
         return None
     path, text = found
     return [
-        lsp.DocumentLink(
-            server.range(text.lines, one.start, one.end), server.documents.uri(one.target)
-        )
-        for one in outlines.links(server.documents, path)
+        lsp.DocumentLink(server.range(text.lines, start, end), server.documents.uri(target))
+        for target, start, end in outlines.links(server.documents, path)
     ]
 
 

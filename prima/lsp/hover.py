@@ -16,7 +16,7 @@ from prima.lsp.descriptions import (
     VOICEXML_EVENTS,
 )
 from prima.lsp.names import Mark, mark_at
-from prima.lsp.scan import ScannedTag, ScannedText
+from prima.lsp.scan import ScannedTag
 from prima.lsp.workspace import FoundName, Workspace
 from prima.markup.vocabulary import Attribute, Element, attributes_by_name
 
@@ -51,7 +51,7 @@ def hover(workspace: Workspace, path: Path, offset: int) -> Meaning | None:
     mark = mark_at(text.marks, offset)
     if mark is not None:
         return Meaning(_name(workspace, path, mark), mark.start, mark.end)
-    return _attribute(page, tag, offset) if tag is not None else None
+    return _attribute(tag, offset) if tag is not None else None
 
 
 def _element(tag: ScannedTag | None, start: int, end: int) -> Meaning | None:
@@ -77,14 +77,11 @@ def _source(source: str) -> str:
     return f"VoiceXML {source}" if source[:1].isdigit() else source
 
 
-def _attribute(page: ScannedText, tag: ScannedTag, offset: int) -> Meaning | None:
+def _attribute(tag: ScannedTag, offset: int) -> Meaning | None:
     for attr in tag.attributes:
-        end = max(attr.end, attr.last)
-        if attr.start <= offset <= end and tag.element is not None:
+        if attr.start <= offset <= max(attr.end, attr.last) and tag.element is not None:
             text = attribute_text(tag.element, attr.name)
-            if text:
-                return Meaning(text, attr.start, attr.end)
-            return None
+            return Meaning(text, attr.start, attr.end) if text else None
     return None
 
 

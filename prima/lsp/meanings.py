@@ -20,6 +20,7 @@ class ReferenceUse:
 
 
 _FORM, _POINT = ReferenceUse(("form",), "#"), ReferenceUse(("place", "thing"))
+_DIALOG = ReferenceUse(("form",), "uri")
 _VARIABLES = ReferenceUse(("variable",), "list")
 _EXPECTED = {
     "state": ReferenceUse(("form",)),
@@ -112,24 +113,14 @@ REFERS: dict[tuple[str, str, str], ReferenceUse] = {
     **{("scenario", *one): ReferenceUse(("application",)) for one in NAMING_APPLICATIONS},
     ("scenario", "when", "person"): ReferenceUse(("person",)),
     ("scenario", "answer", "person"): ReferenceUse(("person",)),
-    ("voicexml", "goto", "next"): ReferenceUse(("form",), "uri"),
-    ("voicexml", "link", "next"): ReferenceUse(("form",), "uri"),
-    ("voicexml", "choice", "next"): ReferenceUse(("form",), "uri"),
-    ("voicexml", "submit", "next"): ReferenceUse(("form",), "uri"),
-    ("voicexml", "subdialog", "src"): ReferenceUse(("form",), "uri"),
+    **{("voicexml", key, "next"): _DIALOG for key in ("goto", "link", "choice", "submit")},
+    ("voicexml", "subdialog", "src"): _DIALOG,
     ("voicexml", "goto", "nextitem"): ReferenceUse(("variable",)),
     ("voicexml", "assign", "name"): ReferenceUse(("variable",), "code"),
     **{
         ("voicexml", key, "namelist"): _VARIABLES
         for key in (
-            "clear",
-            "return",
-            "filled",
-            "submit",
-            "subdialog",
-            "exit",
-            "disconnect",
-            "data",
+            *("clear", "return", "filled", "submit", "subdialog", "exit", "disconnect", "data"),
         )
     },
     ("voicexml", "catch", "event"): ReferenceUse(("event",), "list"),

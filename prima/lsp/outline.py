@@ -45,15 +45,6 @@ class OutlineElement:
     parts: list[OutlineElement] = field(default_factory=list)
 
 
-@dataclass(frozen=True, slots=True)
-class DocumentLink:
-    """A file's name in a document, and the file."""
-
-    start: int
-    end: int
-    target: Path
-
-
 def outline(page: ScannedText) -> list[OutlineElement]:
     """The outline of a document."""
     top: list[OutlineElement] = []
@@ -88,10 +79,7 @@ def _part(tag: ScannedTag) -> OutlineElement:
     )
 
 
-def links(workspace: Workspace, path: Path) -> list[DocumentLink]:
-    """The existing files that a document names."""
-    return [
-        DocumentLink(start, end, target)
-        for target, start, end in workspace.named(path)
-        if target.is_file() or target in workspace.open
-    ]
+def links(workspace: Workspace, path: Path) -> list[tuple[Path, int, int]]:
+    """The existing files that a document names, with the positions of their names."""
+    named = workspace.named(path)
+    return [one for one in named if one[0].is_file() or one[0] in workspace.open]
