@@ -64,13 +64,20 @@ def or_stdout(_context: click.Context, _option: click.Parameter, path: str | Non
 
 REFUSING = ("strict", "surrogateescape")
 """Python's error handlers that raise for characters that an encoding lacks."""
-format_option = click.option(
-    "--format",
-    "form",
-    type=SuggestingChoice(["text", "json"]),
-    default="text",
-    help="What to print.",
-)
+
+
+def formats_option(*words: str, meaning: str = "What to print.") -> Callable[[Any], Any]:
+    """An option for the format of the output, by default the first."""
+    choice = SuggestingChoice(words)
+    return click.option("--format", "form", type=choice, default=words[0], help=meaning)
+
+
+def output_option(meaning: str, **more: Any) -> Callable[[Any], Any]:
+    """An option for the file or folder to write."""
+    return click.option("-o", "--output", type=click.Path(), help=meaning, **more)
+
+
+format_option = formats_option("text", "json")
 limit_option = click.option(
     "--limit",
     "limits",

@@ -7,7 +7,7 @@ import sys
 
 import click
 
-from prima.cli.common import check_output, columns, put, tell
+from prima.cli.common import check_output, columns, output_option, put, tell
 from prima.cli.report import write_page
 
 SCENARIO = "follow-during-navigation.xml"
@@ -15,14 +15,7 @@ SCENARIO = "follow-during-navigation.xml"
 
 
 @click.command()
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(),
-    default="prima-demo.html",
-    show_default=True,
-    help="Write the report here.",
-)
+@output_option("Write the report here.", default="prima-demo.html", show_default=True)
 @click.option("--no-open", is_flag=True, help="Open no browser.")
 def demo(output: str, no_open: bool) -> None:
     """Run two applications on one robot, and show the run as a report.

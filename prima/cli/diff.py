@@ -8,10 +8,11 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import (
-    SuggestingChoice,
     check_output,
     coloured,
+    formats_option,
     or_stdout,
+    output_option,
     policy_option,
     tell_cut,
     write_for_programs,
@@ -25,20 +26,8 @@ from prima.errors import UsageError
 @click.argument("before", type=click.Path())
 @click.argument("after", type=click.Path(), required=False)
 @policy_option("Run a scenario under this policy; twice, once for each run: {}.", many=True)
-@click.option(
-    "--format",
-    "form",
-    type=SuggestingChoice(["text", "json", "html"]),
-    default="text",
-    help="What to print; html is a page for the browser.",
-)
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(),
-    callback=or_stdout,
-    help="Write the page here, with --format html.",
-)
+@formats_option("text", "json", "html", meaning="What to print; html is a page for the browser.")
+@output_option("Write the page here, with --format html.", callback=or_stdout)
 def diff(
     before: str, after: str | None, policies: tuple[str, ...], form: str, output: str | None
 ) -> None:

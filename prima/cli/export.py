@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import check_output, or_stdout, suggesting, tell
+from prima.cli.common import check_output, or_stdout, output_option, suggesting, tell
 from prima.errors import UsageError, counted, one_of
 from prima.exports import FORMATS
 
@@ -23,13 +23,7 @@ from prima.exports import FORMATS
     help=f"{one_of(f'{name} ({use})' for name, use in FORMATS.items())};"
     " by default according to OUTPUT's suffix.",
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(),
-    callback=or_stdout,
-    help="The file to write; else to stdout.",
-)
+@output_option("The file to write; else to stdout.", callback=or_stdout)
 @click.option(
     "--lang",
     "langs",

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from prima.cli.common import SuggestingChoice, check_output, or_stdout, tell, tell_cut
+from prima.cli.common import (
+    SuggestingChoice,
+    check_output,
+    or_stdout,
+    output_option,
+    tell,
+    tell_cut,
+)
 from prima.errors import UsageError
 
 if TYPE_CHECKING:
@@ -29,13 +36,7 @@ FORMATS = ["svg", "dot", "mermaid", "json"]
     " a world's map.",
 )
 @click.option("--row", type=int, help="Draw the tree as of this row of the transcript's table.")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(),
-    callback=or_stdout,
-    help="The file to write; else to stdout.",
-)
+@output_option("The file to write; else to stdout.", callback=or_stdout)
 def graph(file: str, to: str | None, what: str | None, row: int | None, output: str | None) -> None:
     """Draw the states of an application, the trees and streams of a run, or a world's map.
 
@@ -50,6 +51,7 @@ def graph(file: str, to: str | None, what: str | None, row: int | None, output: 
     prima graph documents/worlds/office.xml -o office.svg
     """
     from prima.graph import SUFFIXES, picture
+    from prima.loading.writing import write_whole
 
     form = to or SUFFIXES.get(Path(output or "").suffix.lower())
     if output and form is None:
@@ -67,17 +69,6 @@ def graph(file: str, to: str | None, what: str | None, row: int | None, output: 
     if output is None:
         click.echo(made.encode(), nl=False)
     else:
-        write(made, output)
+        write_whole(output, made)
+        tell(f"written: {output}")
     tell_cut(*read)
-
-
-def write(made: str, output: str) -> None:
-    """Write a picture to a file.
-
-    Raises:
-        UsageError: it cannot be written.
-    """
-    from prima.loading.writing import write_whole
-
-    write_whole(output, made)
-    tell(f"written: {output}")

@@ -44,21 +44,18 @@ def replay(transcript: str, scenario: str | None, output: str | None) -> None:
         write_whole(output, again.dumps())
     given, made = original.dumps(), again.dumps()
     if given != made and not (original.early and made.startswith(given)):
-        tell(_differs(original, _first_difference(given, made)))
+        tell(_differs(original, given, made))
         raise Exit(1)
     tell_cut(original)
     far = "" if given == made else ", as far as the transcript goes"
     tell(f"the same, byte for byte{far}")
 
 
-def _differs(original: Transcript, number: int) -> str:
+def _differs(original: Transcript, given: str, made: str) -> str:
     """The message that a replay differs from a line on, with the remedy where there is one."""
     from prima.live.journal import CHANGED, sound_above
 
+    pairs = zip_longest(given.splitlines(), made.splitlines())
+    number = next(number for number, (one, other) in enumerate(pairs, 1) if one != other)
     remedy = sound_above(original.name, number) if "live" in original.records[0]["data"] else ""
     return f"the replay differs from line {number}: {CHANGED} {remedy}".rstrip()
-
-
-def _first_difference(given: str, made: str) -> int:
-    pairs = zip_longest(given.splitlines(), made.splitlines())
-    return next(number for number, (one, other) in enumerate(pairs, 1) if one != other)

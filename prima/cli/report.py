@@ -13,6 +13,7 @@ from click.exceptions import Exit
 from prima.cli.common import (
     SuggestingChoice,
     check_output,
+    output_option,
     policy_option,
     tell,
     tell_cut,
@@ -28,9 +29,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("runs", metavar="TRANSCRIPT|SCENARIO...|TABLE", nargs=-1, type=click.Path())
-@click.option(
-    "-o", "--output", type=click.Path(), help="Write the page here, or a folder for figures."
-)
+@output_option("Write the page here, or a folder for figures.")
 @policy_option("Run a scenario under this policy; twice to compare two runs: {}.", many=True)
 @click.option(
     "--scenario",

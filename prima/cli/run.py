@@ -23,6 +23,7 @@ from prima.cli.common import (
     isolate_option,
     limit_option,
     map_option,
+    output_option,
     patience_option,
     policy_option,
     put,
@@ -51,12 +52,7 @@ FOLDER_ENDINGS = ("/", os.sep)
 @fa_option
 @ea_option
 @click.option("--say", "says", multiple=True, help="The user's answer to the next question.")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(),
-    help="Write the transcript here as JSON lines; for several runs, a folder.",
-)
+@output_option("Write the transcript here as JSON lines; for several runs, a folder.")
 @policy_option("The mediator's policy: {}. Repeat for a run under each.", many=True)
 @bound_option
 @patience_option
@@ -133,8 +129,13 @@ def run(
         paths = [*scenarios, *chain.from_iterable(map(listed, lists))]
         run_all(paths, policies, output or "", options, workers or 0, form)
         return
+    from prima import api
+
     scenario = next(iter(scenarios), None)
-    loaded = _load(scenario, fas, eas, says, maps)
+    if scenario is not None:
+        loaded = api.load_scenario(scenario)
+    else:
+        loaded = api.stage(fas, eas, says, maps=maps)
     if output == "-":
         output, form = None, "json"
     elif output is not None:
@@ -183,21 +184,6 @@ def _check_batch(applications: bool, why: bool, resume: bool, output: str | None
     is_file = output is not None and output.endswith(".jsonl") and not os.path.isdir(output)
     if output == "-" or is_file:
         raise UsageError(f"{output}: several transcripts go into a folder: -o runs/.")
-
-
-def _load(
-    scenario: str | None,
-    fas: tuple[str, ...],
-    eas: tuple[str, ...],
-    says: tuple[str, ...],
-    maps: tuple[str, ...],
-) -> Loaded:
-    """A scenario, or applications in an empty room."""
-    from prima import api
-
-    if scenario is not None:
-        return api.load_scenario(scenario)
-    return api.stage(fas, eas, says, maps=maps)
 
 
 def _check_file(output: str, folder: str, loaded: Loaded) -> None:

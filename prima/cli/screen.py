@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from prima.cli.common import clean, coloured, columns, put, tell
-from prima.cli.terminal import Typist
+from prima.cli.terminal import Keyboard
 
 if TYPE_CHECKING:
     from prima.talk import Game
@@ -23,7 +23,7 @@ class TerminalScreen:
 
     def __init__(self, game: Game, why: bool, json: bool, interactive: bool) -> None:
         self.interactive = interactive
-        self.typist: Typist | None = None
+        self.typist: Keyboard | None = None
         self._why = why
         self._json = json
         self._apps = game.names.applications

@@ -6,19 +6,13 @@ import sys
 
 import click
 
-from prima.cli.common import SuggestingChoice, print_json, put, write_for_programs
+from prima.cli.common import formats_option, print_json, put, write_for_programs
 
 
 @click.command()
 @click.argument("scenarios", nargs=-1, type=click.Path())
 @click.option("--policy", "policies", multiple=True, help="Only this policy; may be repeated.")
-@click.option(
-    "--format",
-    "form",
-    type=SuggestingChoice(["text", "json", "csv"]),
-    default="text",
-    help="What to print.",
-)
+@formats_option("text", "json", "csv")
 def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> None:
     """Run situations under every policy and measure the effects on units, streams and channel.
 

@@ -15,6 +15,7 @@ from prima.cli.common import (
     isolate_option,
     limit_option,
     on_option,
+    output_option,
     patience_option,
     policy_option,
     put,
@@ -51,9 +52,7 @@ MANY = 100_000
     help="All combinations (full), random ones, or a Latin hypercube (lhs).",
 )
 @click.option("--runs", type=Whole(1), help="Number of runs, for random and lhs.")
-@click.option(
-    "-o", "--output", type=click.Path(), help="Write the table here: a .csv or .parquet file."
-)
+@output_option("Write the table here: a .csv or .parquet file.")
 @workers_option
 @on_option
 @click.option("--resume", is_flag=True, help="Go on behind the rows that are there already.")
@@ -121,23 +120,18 @@ def sweep(
         return
     pool = pool_of(address, workers)
     if output is None or output == "-":
-        _print(made, pool)
-        return
-    check_output(output, "table", *scenarios, *question.scenarios)
-    out = Output(made, output, pool)
-    if bundle is None:
-        _write(out, resume)
-        return
-    check_output(bundle, "archive", *scenarios, *question.scenarios)
-    check_bundle(bundle, out)
-    ended = None
-    try:
-        _write(out, resume)
-    except Exit as not_fine:
-        ended = not_fine
-    tell(f"{bundle}: {counted(write_bundle(bundle, out), 'file')}")
-    if ended is not None:
-        raise ended
+        worst = _print(made, pool)
+    else:
+        check_output(output, "table", *scenarios, *question.scenarios)
+        out = Output(made, output, pool)
+        if bundle is not None:
+            check_output(bundle, "archive", *scenarios, *question.scenarios)
+            check_bundle(bundle, out)
+        worst = _write(out, resume)
+        if bundle is not None:
+            tell(f"{bundle}: {counted(write_bundle(bundle, out), 'file')}")
+    if worst:
+        raise Exit(worst)
 
 
 def _check_table(output: str | None, resume: bool, bundle: str | None) -> None:
@@ -182,12 +176,8 @@ def _tell_cost(made: Sweep, address: str | None, workers: int | None, plan: bool
             tell(line)
 
 
-def _print(made: Sweep, pool: Pool) -> None:
-    """Print the table.
-
-    Raises:
-        Exit: a run was not fine.
-    """
+def _print(made: Sweep, pool: Pool) -> int:
+    """Print the table; return the highest exit code of a run."""
     from prima.experiments.table import line
 
     write_for_programs()
@@ -199,16 +189,11 @@ def _print(made: Sweep, pool: Pool) -> None:
         code = row[exit_column]
         worst = max(worst, code if isinstance(code, int) else 0)
         click.echo(line(row), nl=False)
-    if worst:
-        raise Exit(worst)
+    return worst
 
 
-def _write(out: Output, resume: bool) -> None:
-    """Write the table, and report its contents.
-
-    Raises:
-        Exit: a run was not fine.
-    """
+def _write(out: Output, resume: bool) -> int:
+    """Write the table, and report its contents; return the highest exit code of a run."""
     total, begun = len(out.sweep), -1
     progress = ProgressBar(total)
     try:
@@ -235,5 +220,4 @@ def _write(out: Output, resume: bool) -> None:
     counts += [f"{bad} not fine"] if bad else []
     counts += [f"{failed} with failed expectations"] if failed else []
     put(f"{out.path}: {', '.join(counts)}")
-    if worst:
-        raise Exit(worst)
+    return worst

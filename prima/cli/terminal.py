@@ -35,12 +35,6 @@ class Typist(Protocol):
     def ready(self) -> None:
         """Allow the next line, after the last one has been carried out."""
 
-    def clear(self) -> None:
-        """Erase the line being typed from the screen."""
-
-    def restore(self) -> None:
-        """Show the line being typed again."""
-
 
 class Piped:
     """Lines of a pipe or file; too long ones are cut."""
@@ -79,12 +73,6 @@ class Piped:
 
     def ready(self) -> None:
         """Do nothing: no thread waits."""
-
-    def clear(self) -> None:
-        """Do nothing: no line is on the screen."""
-
-    def restore(self) -> None:
-        """Do nothing: no line is on the screen."""
 
 
 class Keyboard:
@@ -147,13 +135,13 @@ class Keyboard:
         self._asked.release()
 
     def clear(self) -> None:
-        """See :class:`Typist`."""
+        """Erase the line being typed from the screen."""
         if self._typing:
             sys.stdout.write("\r\x1b[K")
             sys.stdout.flush()
 
     def restore(self) -> None:
-        """See :class:`Typist`."""
+        """Show the line being typed again."""
         if self._typing:
             sys.stdout.write(self._prompt + _typed())
             sys.stdout.flush()

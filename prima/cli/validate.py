@@ -13,8 +13,8 @@ from click.exceptions import Exit
 
 from prima.checks.ignores import KINDS, SETTINGS
 from prima.cli.common import (
-    SuggestingChoice,
     coloured,
+    formats_option,
     limit_option,
     map_option,
     print_json,
@@ -33,12 +33,8 @@ MANY = 50
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, type=click.Path())
-@click.option(
-    "--format",
-    "form",
-    type=SuggestingChoice(["text", "short", "json", "sarif"]),
-    default="text",
-    help="What to print; short omits source lines.",
+@formats_option(
+    "text", "short", "json", "sarif", meaning="What to print; short omits source lines."
 )
 @click.option("--watch", is_flag=True, help="Check again whenever a file changes, until Ctrl-C.")
 @click.option("--strict", is_flag=True, help="Count warnings as problems: exit code 1.")
