@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from prima.errors import DocumentError, UsageError, did_you_mean, has_errors, one_of
 from prima.graph.model import Graph
-from prima.graph.run import NEVER, History
+from prima.graph.run import NEVER
 
 if TYPE_CHECKING:
     from prima.api import Transcript
@@ -23,6 +23,14 @@ SUFFIXES |= {".json": "json"}
 WHATS = ("states", "tree", "streams", "map")
 MOST_BOXES = 300
 """Maximum number of boxes in SVG; other formats have no limit."""
+OTHERS = {
+    "grammar": "this is a grammar; a graph is of an application, a transcript or a world.",
+    "robot": "this is a robot; a graph is of an application, a transcript or a world.",
+    "world": "this is a world, which has no states. Write --what map.",
+    "scenario": "this is a scenario. Draw its applications, or run it and draw the transcript:"
+    " prima run {path} -o FILE.jsonl",
+}
+"""Messages about documents without states, by their root tags."""
 
 
 def picture(
@@ -48,6 +56,8 @@ def picture(
         UsageError: the file cannot be read or does not fit, or the format is unknown.
         DocumentError: the application or the world has errors.
     """
+    from prima.loading.files import read_file
+
     for name, word, known in (("to", to, FORMATS), ("what", what or "states", WHATS)):
         if word not in known:
             hint = did_you_mean(word, known) or f"Write {one_of(known)}."
@@ -58,9 +68,7 @@ def picture(
         option = f"--what {what}" if what in ("tree", "streams") else "--row"
         remedy = "prima run SCENARIO -o FILE.jsonl writes one."
         raise UsageError(f"{path}: {option} needs a transcript; {remedy}")
-    if _root(path) == "world":
-        if what == "states":
-            raise UsageError(f"{path}: this is a world, which has no states. Write --what map.")
+    if what != "states" and _root(path, read_file(path)) == "world":
         return world_map(path, to)
     if what == "map":
         raise UsageError(f"{path}: --what map needs a world.")
@@ -84,14 +92,14 @@ def _run_picture(
     return streams(transcript, to) if what == "streams" else tree(transcript, row, to)
 
 
-def _root(path: str | Path) -> str:
-    """The root tag of a document of PRIMA; empty for others."""
+def _root(path: str | Path, data: bytes) -> str:
+    """The root tag of a document of PRIMA, or ``grammar``; empty for VoiceXML."""
     from prima.loading import is_grammar, is_voicexml
-    from prima.loading.files import read_file
     from prima.markup.reader import parse
 
-    data = read_file(path)
-    return "" if is_voicexml(data) or is_grammar(data) else parse(str(path), data).tag
+    if is_voicexml(data):
+        return ""
+    return "grammar" if is_grammar(data) else parse(str(path), data).tag
 
 
 def world_map(path: str | Path, to: str = "svg") -> str:
@@ -126,7 +134,8 @@ def states(path: str | Path) -> Graph:
     from prima.loading.files import read_file
 
     data = read_file(path)
-    _refuse_others(path, data)
+    if message := OTHERS.get(_root(path, data)):
+        raise UsageError(f"{path}: {message.format(path=path)}")
     document, problems = read_application(str(path), data)
     if has_errors(problems):
         raise DocumentError(problem for problem in problems if problem.severity == "error")
@@ -142,28 +151,6 @@ def states(path: str | Path) -> Graph:
         graph = voicexml.states(document)
     graph.description = _describe(graph)
     return graph
-
-
-def _refuse_others(path: str | Path, data: bytes) -> None:
-    """Raise an error for a document that is not an application."""
-    from prima.loading import is_grammar, is_voicexml
-    from prima.markup.reader import parse
-
-    if is_voicexml(data):
-        return
-    if is_grammar(data):
-        raise UsageError(
-            f"{path}: this is a grammar; a graph is of an application, a transcript or a world."
-        )
-    root = parse(str(path), data)
-    if root.tag == "scenario":
-        message = "this is a scenario. Draw its applications, or run it and draw the transcript:"
-        raise UsageError(f"{path}: {message} prima run {path} -o FILE.jsonl")
-    if root.tag == "world":
-        raise UsageError(f"{path}: this is a world, which has no states. Write --what map.")
-    if root.tag == "robot":
-        message = "this is a robot; a graph is of an application, a transcript or a world."
-        raise UsageError(f"{path}: {message}")
 
 
 def _is_transcript(path: str | Path) -> bool:
@@ -205,9 +192,14 @@ def streams(transcript: Transcript, to: str = "svg") -> str:
     Raises:
         UsageError: a record lacks a field of its phase, or there are too many streams.
     """
-    from prima.graph import run
+    from prima.graph import gantt, run, text
 
-    return _streams_shown(run.streams(transcript.run()), to, transcript.name)
+    history = run.streams(transcript.run())
+    if to == "svg" and len(history.streams) > MOST_BOXES:
+        message = f"{len(history.streams)} streams are too many: one picture holds {MOST_BOXES}."
+        raise UsageError(f"{transcript.name}: {message} Write --to json or mermaid.")
+    made = {"dot": text.dot_streams, "mermaid": text.mermaid_streams, "json": text.data_streams}
+    return made.get(to, gantt.draw)(history)
 
 
 def _time(transcript: Transcript, row: int) -> float:
@@ -248,16 +240,6 @@ def _shown(graph: Graph, to: str, path: str | Path) -> str:
     from prima.graph import cards, treepicture
 
     return cards.draw(graph) if graph.across else treepicture.draw(graph)
-
-
-def _streams_shown(history: History, to: str, path: str | Path) -> str:
-    from prima.graph import gantt, text
-
-    if to == "svg" and len(history.streams) > MOST_BOXES:
-        message = f"{len(history.streams)} streams are too many: one picture holds {MOST_BOXES}."
-        raise UsageError(f"{path}: {message} Write --to json or mermaid.")
-    made = {"dot": text.dot_streams, "mermaid": text.mermaid_streams, "json": text.data_streams}
-    return made.get(to, gantt.draw)(history)
 
 
 __all__ = ["FORMATS", "WHATS", "Graph", "picture", "states", "streams", "tree", "world_map"]

@@ -146,6 +146,11 @@ def line(x1: float, y1: float, x2: float, y2: float, kind: str = "line") -> str:
     return f'<path class="{kind}" d="M{x1:.1f} {y1:.1f}L{x2:.1f} {y2:.1f}"/>'
 
 
+def circle(x: float, y: float, radius: float, kind: str) -> str:
+    """A circle around a point."""
+    return f'<circle class="{kind}" cx="{x:.1f}" cy="{y:.1f}" r="{radius:.1f}"/>'
+
+
 def head(x: float, y: float, kind: str, turn: str) -> str:
     """An arrow's head at a point; ``turn`` is ``right``, ``left`` or ``down``."""
     shape = {"right": "l-8 -4v8z", "left": "l8 -4v8z", "down": "l-4 -8h8z"}[turn]

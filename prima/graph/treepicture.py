@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from html import escape
 from itertools import accumulate
 
@@ -14,6 +15,8 @@ GAP, STEP = 16.0, 26.0
 MARGIN = 18.0
 PAGE = 1240.0
 """Width of a row of streams before the next row begins."""
+Drawn = tuple[list[str], float, float]
+"""The parts of a drawing, its width and its height."""
 KINDS = (
     ("running", "runs or has run"),
     ("waiting", "waits"),
@@ -24,16 +27,9 @@ KINDS = (
 def draw(graph: Graph) -> str:
     """The trees as SVG."""
     groups = graph.groups()
-    parts: list[str] = []
-    x, y, low, wide = MARGIN, MARGIN + 30, 0.0, 420.0
-    for name, nodes in groups.items():
-        drawn, width, height = _frame(graph, name, nodes)
-        if x > MARGIN and x + width > PAGE:
-            x, y, low = MARGIN, y + low + 18, 0.0
-        parts += [f'<g transform="translate({x:.1f} {y:.1f})">', *drawn, "</g>"]
-        x, low = x + width + 18, max(low, height)
-        wide = max(wide, x)
-    y += low + 26
+    frames = (_frame(graph, name, nodes) for name, nodes in groups.items())
+    parts, wide, y = _in_rows(frames, MARGIN, MARGIN + 30, 18)
+    wide, y = max(wide, 420.0), y + 26
     if not groups:
         parts.append(text(MARGIN, y, "Nothing is in working memory."))
     else:
@@ -52,19 +48,25 @@ def _legend(y: float) -> tuple[list[str], float]:
     return parts, x
 
 
-def _frame(graph: Graph, name: str, nodes: list[GraphNode]) -> tuple[list[str], float, float]:
+def _in_rows(pieces: Iterable[Drawn], margin: float, top: float, gap: float) -> Drawn:
+    """Pieces side by side, in rows as wide as the page; their right and bottom edges."""
+    parts: list[str] = []
+    x, y, low, wide = margin, top, 0.0, 0.0
+    for drawn, width, height in pieces:
+        if x > margin and x + width > PAGE:
+            x, y, low = margin, y + low + gap, 0.0
+        parts += [f'<g transform="translate({x:.1f} {y:.1f})">', *drawn, "</g>"]
+        wide = max(wide, x + width + margin)
+        x, low = x + width + gap, max(low, height)
+    return parts, wide, y + low
+
+
+def _frame(graph: Graph, name: str, nodes: list[GraphNode]) -> Drawn:
     """A stream: its trees side by side, in rows; its width and its height."""
     title = f"stream {name}" if name else "no stream"
-    parts: list[str] = []
-    x, y, low, wide = 10.0, 30.0, 0.0, min(measure(title, 13, True) + 20, 400.0)
-    for tree in _trees(graph, nodes):
-        drawn, width, height = _tree(graph, tree)
-        if x > 10 and x + width > PAGE:
-            x, y, low = 10.0, y + low + GAP, 0.0
-        parts += [f'<g transform="translate({x:.1f} {y:.1f})">', *drawn, "</g>"]
-        x, low = x + width + GAP, max(low, height)
-        wide = max(wide, x - GAP + 10)
-    height = y + low + 10
+    trees = (_tree(graph, tree) for tree in _trees(graph, nodes))
+    parts, wide, bottom = _in_rows(trees, 10.0, 30.0, GAP)
+    wide, height = max(wide, min(measure(title, 13, True) + 20, 400.0)), bottom + 10
     frame = box(0, 0, wide, height, "frame", 8)
     top = text(10, 19, fit(title, wide - 20, 13, True), "name")
     return [frame, top, *parts], wide, height
@@ -98,7 +100,7 @@ def _linked(key: str, near: dict[str, list[str]]) -> set[str]:
     return found
 
 
-def _tree(graph: Graph, nodes: list[GraphNode]) -> tuple[list[str], float, float]:
+def _tree(graph: Graph, nodes: list[GraphNode]) -> Drawn:
     """ABs that are linked with each other: the parts, the width and the height."""
     number = {node.key: index for index, node in enumerate(nodes)}
     kinds = {

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from prima.graph import text as words
 from prima.graph.model import clean
-from prima.graph.svg import box, fit, line, measure, picture, text
+from prima.graph.svg import box, circle, fit, line, measure, picture, text
 from prima.transcript.colours import NOBODY, colours
 
 if TYPE_CHECKING:
@@ -116,10 +116,9 @@ def draw(world: Map) -> str:
     for a, b in world.ways:
         parts.append(line(*sheet.at(world.places[a]), *sheet.at(world.places[b]), "way"))
     for corner in world.corners:
-        x, y = sheet.at(corner.at)
-        parts.append(_round(x, y, corner.radius * sheet.scale, "corner"))
+        parts.append(circle(*sheet.at(corner.at), corner.radius * sheet.scale, "corner"))
     parts += [line(*sheet.at(a), *sheet.at(b), "wall") for a, b in world.walls]
-    parts += [_round(*sheet.at(at), 4.5, "place") for at in world.places.values()]
+    parts += [circle(*sheet.at(at), 4.5, "place") for at in world.places.values()]
     for at in world.things.values():
         x, y = sheet.at(at)
         parts.append(box(x - 4.5, y - 4.5, 9, 9, "thing", 1))
@@ -152,10 +151,6 @@ def _area(sheet: _Sheet, low: Point, high: Point, kind: str) -> str:
     return box(left, top, right - left, bottom - top, f"{kind} area", 0)
 
 
-def _round(x: float, y: float, radius: float, kind: str) -> str:
-    return f'<circle class="{kind}" cx="{x:.1f}" cy="{y:.1f}" r="{radius:.1f}"/>'
-
-
 def _ruler(sheet: _Sheet) -> list[str]:
     """A scale bar of one, ten or a hundred metres."""
     metres = next((one for one in (1, 2, 5, 10, 20, 50, 100) if one * sheet.scale >= 30), 1000)
@@ -180,9 +175,9 @@ def _legend(world: Map, y: float) -> list[str]:
             continue
         middle = y - 4
         marks = {
-            "place": _round(x + 11, middle, 4.5, kind),
+            "place": circle(x + 11, middle, 4.5, kind),
             "thing": box(x + 6.5, middle - 4.5, 9, 9, kind, 1),
-            "corner": _round(x + 11, middle, 7, kind),
+            "corner": circle(x + 11, middle, 7, kind),
             "area": box(x, middle - 6, 22, 12, f"s{NOBODY} area", 0),
         }
         parts.append(marks.get(kind) or line(x, middle, x + 22, middle, kind))

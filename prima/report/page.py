@@ -8,7 +8,7 @@ from string import Template
 from prima.errors import counted
 from prima.report.data import page_data
 from prima.report.lanes import LONGEST_NAME
-from prima.report.parts import json_text, part, policy_of, style_of, text
+from prima.report.parts import described, json_text, part, policy_of, style_of, text
 from prima.report.view import View
 from prima.transcript import colours
 from prima.transcript.colours import NOBODY
@@ -64,11 +64,7 @@ def _named(index: int, runs: int) -> str:
 
 
 def _head(view: View, index: int, runs: int) -> str:
-    facts = "".join(f"<div><dt>{text(a)}</dt><dd>{text(b)}</dd></div>" for a, b in view.facts)
-    measures = "".join(
-        f"<div><dt>{text(name)}</dt><dd>{text(value)}</dd></div>"
-        for name, value, _ in view.measures
-    )
+    measures = described((name, value) for name, value, _ in view.measures)
     meanings = "".join(f"<li>{text(a)}: {text(c)}</li>" for a, _, c in view.measures)
     listed = "".join(
         f"<li>{text(name)} <code>{text(digest[:12])}</code></li>" for name, digest in view.files
@@ -84,7 +80,7 @@ def _head(view: View, index: int, runs: int) -> str:
         f'<div class="strip" role="group" tabindex="0" aria-label="Measures of {text(lower)}">'
         f'<dl class="measures">{measures}</dl></div>'
         f'<details class="about"><summary>About {text(lower)}, and what is counted</summary>'
-        f'<dl class="facts">{facts}</dl><ul>{meanings}</ul>'
+        f'<dl class="facts">{described(view.facts)}</dl><ul>{meanings}</ul>'
         f"<p>Made from {text(view.name)}.</p>{held}</details>"
         "</section>\n"
     )
@@ -171,7 +167,7 @@ def _marks(row: Row) -> str:
     return f' <span class="marks">{" ".join(made)}</span>' if made else ""
 
 
-def _who(view: View, row: Row, shades: dict[str, int]) -> str:
+def _who(row: Row, shades: dict[str, int]) -> str:
     """The two cells for who does it: the actor, and the application."""
     who = WHO.get(row.actor, "")
     if not row.app:  # a narrow page has only the second
@@ -211,7 +207,7 @@ def _table(view: View, shades: dict[str, int]) -> str:
             row.number,
             f"who-{row.actor}",
             str(row.number),
-            f'<td role="cell" class="time">{row.time:.2f}</td>{_who(view, row, shades)}'
+            f'<td role="cell" class="time">{row.time:.2f}</td>{_who(row, shades)}'
             f'<td role="cell" class="what">{_what(view, row)}{_marks(row)}</td>'
             f'<td role="cell">{text(row.rule)}</td>',
         )
@@ -272,7 +268,7 @@ def _change(views: Sequence[View], shades: dict[str, int], index: int, change: C
         index,
         f"kind-{change.kind}",
         f'{label}<span class="hidden">, row {index}</span>',
-        f"{_time(change.before)}{_time(change.after)}{_who(view, row, shades)}"
+        f"{_time(change.before)}{_time(change.after)}{_who(row, shades)}"
         f'<td role="cell" class="what">{_what(view, row)}{_marks(row)}{said}</td>',
     )
 

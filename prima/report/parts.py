@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+from collections.abc import Iterable
 from html import escape
 from importlib.resources import files
 from typing import Any
@@ -17,6 +18,11 @@ from prima.transcript import colours
 def text(what: str) -> str:
     """Text that cannot be taken for markup."""
     return escape(visible(what))
+
+
+def described(pairs: Iterable[tuple[str, str]]) -> str:
+    """The content of a list of descriptions: names and texts."""
+    return "".join(f"<div><dt>{text(a)}</dt><dd>{text(b)}</dd></div>" for a, b in pairs)
 
 
 def json_text(data: Json | dict[str, Any]) -> str:

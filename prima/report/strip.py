@@ -115,14 +115,10 @@ def _events(rows: Iterable[Row], axis: Axis) -> list[str]:
             at = axis.at(row.time)
             text = f"v {visible(row.what)}"
             room = axis.columns - at
-            near = len(text) > room
-            lane.put(max(at - len(text) + 1, 0) if near else at, _before(text) if near else text)
+            if len(text) > room:  # near the right end: the mark follows the words
+                at, text = max(at - len(text) + 1, 0), f"{text[2:]} v"
+            lane.put(at, text)
     return lane.text("events")
-
-
-def _before(text: str) -> str:
-    """An event near the right end: its mark follows the words."""
-    return f"{text[2:]} v"
 
 
 def _axis(axis: Axis) -> list[str]:

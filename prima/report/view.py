@@ -199,7 +199,7 @@ def language(text: str, japanese: bool = False) -> str:
 
 def _whys(run: Run, rows: Sequence[Row]) -> tuple[list[dict[str, Json]], dict[str, list[Json]]]:
     """The reasons for each row, and descriptions of the ABs that they name."""
-    first = _first_rows(rows)
+    first = {base(row.behavior): row.number for row in reversed(rows) if row.behavior}
     places = {(row.time, row.kind): row.number for row in reversed(rows)}
     events = {
         serial: places[event.time, event.event]
@@ -232,15 +232,6 @@ def _why(
     if explained:
         why["reasons"] = explained
     return why
-
-
-def _first_rows(rows: Sequence[Row]) -> dict[str, int]:
-    """The number of each AB's first row."""
-    first: dict[str, int] = {}
-    for row in rows:
-        if row.behavior:
-            first.setdefault(base(row.behavior), row.number)
-    return first
 
 
 def _reason(reason: Reason, row: Row) -> list[Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -155,13 +155,9 @@ class Data:
     """The most frequent first."""
     order_codes: Groups
     """The place of each run's order among them."""
-    notes: list[str] = field(default_factory=list)
-
-    @cached_property
-    def varied(self) -> list[FactorColumn]:
-        """The factors that have more than one level; seeds are repetitions."""
-        found = [one for one in self.factors if one.count > 1 and one.column.name != REPETITION]
-        return found[:MOST_FACTORS]
+    varied: list[FactorColumn]
+    """The first factors that have more than one level; seeds are repetitions."""
+    notes: list[str]
 
     def __len__(self) -> int:
         return len(self.sheet)
@@ -184,11 +180,11 @@ def data_of(sheet: Sheet) -> Data:
     except ValueError as error:
         raise UsageError(f"{sheet.path}: {error}") from None
     orders, codes = _orders(sheet)
-    made = Data(sheet, factors, measures, orders, codes, list(sheet.notes))
-    several = sum(one.count > 1 and one.column.name != REPETITION for one in factors)
-    if several > MOST_FACTORS:
-        made.notes.append(f"Of {several} factors the first {MOST_FACTORS} are shown and tested.")
-    return made
+    varied = [one for one in factors if one.count > 1 and one.column.name != REPETITION]
+    notes = list(sheet.notes)
+    if len(varied) > MOST_FACTORS:
+        notes.append(f"Of {len(varied)} factors the first {MOST_FACTORS} are shown and tested.")
+    return Data(sheet, factors, measures, orders, codes, varied[:MOST_FACTORS], notes)
 
 
 def _numbers(column: Column, cells: Sequence[Any]) -> Values:
@@ -235,6 +231,11 @@ def _orders(sheet: Sheet) -> tuple[list[OrderRow], Groups]:
 def shown(text: str) -> str:
     """A name as shown: cut, and without characters that would reorder or hide other text."""
     return visible(text if len(text) <= LONGEST else text[:LONGEST] + "…")
+
+
+def with_unit(name: str, unit: str) -> str:
+    """A name with a unit in brackets, if there is one."""
+    return f"{name} ({shown(unit)})" if unit else name
 
 
 def number(value: float, digits: int = 4) -> str:

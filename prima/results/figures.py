@@ -9,9 +9,9 @@ from html import escape
 from math import ceil, floor, log10
 
 from prima.errors.visible import visible
-from prima.graph.svg import box, fit, line, measure, picture, text
+from prima.graph.svg import box, circle, fit, line, measure, picture, text
 from prima.results.analysis import Distribution, Panel
-from prima.results.data import Data, FactorColumn, number
+from prima.results.data import Data, FactorColumn, number, with_unit
 from prima.results.ordermap import OrderMap
 from prima.results.statistics import ValueSummary
 from prima.transcript import colours
@@ -109,7 +109,8 @@ def distribution(made: Distribution) -> Figure:
     parts = [
         text(8, 24, "All runs", "name"),
         *_bins(made, scale, bottom),
-        *_mean(made.whole, scale),
+        *_interval(made.whole, scale, 20),
+        text(WIDTH - RIGHT + 6, 24, f"n {made.whole.count}", "small"),
     ]
     y = bottom + 18
     panels: list[str] = []
@@ -119,8 +120,7 @@ def distribution(made: Distribution) -> Figure:
     ticks = scale.ticks(1.0 if made.whole_numbers else 0.0)
     grid = [line(scale.at(one), 30, scale.at(one), y, "tick") for one in ticks]
     labels = [_middle(scale.at(one), y + 14, number(one)) for one in ticks]
-    unit = made.measure.column.unit
-    title = f"{made.measure.name} ({unit})" if unit else made.measure.name
+    title = with_unit(made.measure.name, made.measure.column.unit)
     labels.append(_middle((LEFT + WIDTH - RIGHT) / 2, y + 32, title))
     axis = line(LEFT, y, WIDTH - RIGHT, y, "axis")
     by = ", ".join(panel.factor.name for panel in made.panels)
@@ -148,22 +148,17 @@ def _bins(made: Distribution, scale: Scale, bottom: float) -> list[str]:
     return parts
 
 
-def _mean(whole: ValueSummary, scale: Scale) -> list[str]:
-    """The mean over all runs with its interval, above the histogram."""
-    return [*_interval(whole, scale, 20), text(WIDTH - RIGHT + 6, 24, f"n {whole.count}", "small")]
-
-
 def _interval(found: ValueSummary, scale: Scale, y: float) -> list[str]:
+    """The mean with its interval."""
     return [
         line(scale.at(found.low), y, scale.at(found.high), y, "interval"),
-        f'<circle class="mean" cx="{scale.at(found.mean):.1f}" cy="{y:.1f}" r="3.4"/>',
+        circle(scale.at(found.mean), y, 3.4, "mean"),
     ]
 
 
 def _panel(panel: Panel, scale: Scale, y: float) -> list[str]:
     """A measure by a factor, a row for each level."""
-    unit = panel.factor.column.unit
-    name = f"{panel.factor.name} ({unit})" if unit else panel.factor.name
+    name = with_unit(panel.factor.name, panel.factor.column.unit)
     parts = [text(8, y + 14, fit(name, LEFT + 60, 13, True), "name")]
     for index, (level, found) in enumerate(zip(panel.levels.names, panel.summaries, strict=True)):
         middle = y + 24 + ROW * (index + 0.5)

@@ -12,7 +12,7 @@ from typing import Any
 from urllib.parse import quote
 
 from prima.errors import counted
-from prima.report.parts import json_text, part, policy_of, style_of, text
+from prima.report.parts import described, json_text, part, policy_of, style_of, text
 from prima.results import tables
 from prima.results.analysis import MOST_LEVELS, Analysis, Distribution, analyse
 from prima.results.data import Data, MeasureColumn, OrderRow, number, shown
@@ -37,10 +37,6 @@ def page(data: Data, folder: Path, by: tuple[int, ...]) -> str:
     style = style_of(ROOM, "results.css").replace(FIGURES, STYLE)
     script = part(ROOM, "results.js")
     name = data.sheet.path.name
-    facts = "".join(
-        f"<div><dt>{text(title)}</dt><dd>{text(value)}</dd></div>"
-        for title, value in tables.facts(data)
-    )
     figures = "".join(_figure(*one) for one in enumerate(analysis.distributions))
     body = {
         "title": text(f"Sweep {shown(name)}"),
@@ -48,7 +44,7 @@ def page(data: Data, folder: Path, by: tuple[int, ...]) -> str:
         "style": style,
         "script": script,
         "notes": _notes(data),
-        "facts": facts,
+        "facts": described(tables.facts(data)),
         "factors": tables.factors(data),
         "outcomes": tables.outcomes(data),
         "measures": tables.measures(analysis) if analysis.distributions else "",

@@ -11,12 +11,12 @@ from prima.results.analysis import Analysis, Distribution
 from prima.results.data import (
     Data,
     FactorColumn,
-    MeasureColumn,
     OrderRow,
     number,
     numbers,
     probability,
     shown,
+    with_unit,
 )
 from prima.results.figures import shade
 from prima.results.ordermap import OrderMap
@@ -101,8 +101,8 @@ def factors(data: Data) -> str:
     rows = []
     for one in data.factors:
         column = one.column
-        unit = f" ({shown(column.unit)})" if column.unit else ""
-        cells = (one.name + unit, _levels(one), str(one.count), str(one.missing))
+        name = with_unit(one.name, column.unit)
+        cells = (name, _levels(one), str(one.count), str(one.missing))
         rows.append([text(cell) for cell in (*cells, shown(column.description))])
     heads = ("Factor", "Levels", "Number", "Without a value", "What it is")
     return table("factors", "Factors", heads, rows)
@@ -158,15 +158,11 @@ def _summary(found: ValueSummary | None) -> list[str]:
 
 def measures(analysis: Analysis) -> str:
     """The table of all measures that differ between runs."""
-    rows = [
-        [f'<a href="#m{index}">{_named(made.measure)}</a>', *_summary(made.whole)]
-        for index, made in enumerate(analysis.distributions)
-    ]
+    rows = []
+    for index, made in enumerate(analysis.distributions):
+        name = text(with_unit(made.measure.name, made.measure.column.unit))
+        rows.append([f'<a href="#m{index}">{name}</a>', *_summary(made.whole)])
     return table("measures", "Measures over all runs", ("Measure", *HEADS), rows)
-
-
-def _named(measure: MeasureColumn) -> str:
-    return text(f"{measure.name} ({shown(measure.column.unit)})" if measure.unit else measure.name)
 
 
 def by_level(index: int, made: Distribution) -> str:
