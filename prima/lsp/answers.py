@@ -15,7 +15,7 @@ from prima.lsp.complete import Proposal, complete
 from prima.lsp.hover import hover as meaning
 from prima.lsp.paths import path_of
 from prima.lsp.problems import spot
-from prima.lsp.protocol import Server
+from prima.lsp.protocol import Cursor, Server
 from prima.lsp.scan import ScannedText
 from prima.markup.limits import LIMITS
 
@@ -41,15 +41,11 @@ SYMBOLS = {
 }
 
 
-def completion(server: Server, params: lsp.CompletionParams) -> lsp.CompletionList | None:
+def completion(server: Server, params: lsp.CompletionParams, at: Cursor) -> lsp.CompletionList:
     """Proposals at the cursor."""
-    asked = server.asked(params)
-    if asked is None:
-        return None
-    path, text, offset = asked
     typed = params.context.trigger_character if params.context else None
-    found = complete(server.documents, path, offset, typed or "")
-    items = [_item(server, text.page, one, n) for n, one in enumerate(found)]
+    found = complete(server.documents, at.path, at.offset, typed or "")
+    items = [_item(server, at.text.page, one, n) for n, one in enumerate(found)]
     return lsp.CompletionList(is_incomplete=False, items=items)
 
 
@@ -72,72 +68,58 @@ def _item(server: Server, page: ScannedText, one: Proposal, number: int) -> lsp.
     )
 
 
-def hover(server: Server, params: lsp.HoverParams) -> lsp.Hover | None:
+def hover(server: Server, params: lsp.HoverParams, at: Cursor) -> lsp.Hover | None:
     """The meaning of what is under the mouse."""
-    asked = server.asked(params)
-    found = meaning(server.documents, asked[0], asked[2]) if asked else None
-    if asked is None or found is None:
+    found = meaning(server.documents, at.path, at.offset)
+    if found is None:
         return None
     return lsp.Hover(
         lsp.MarkupContent(lsp.MarkupKind.Markdown, visible(found.text, "\n")),
-        server.range(asked[1].lines, found.start, found.end),
+        server.range(at.text.lines, found.start, found.end),
     )
 
 
-def definition(server: Server, params: lsp.DefinitionParams) -> list[lsp.Location] | None:
+def definition(
+    server: Server, params: lsp.DefinitionParams, at: Cursor
+) -> list[lsp.Location] | None:
     """Where the name at the cursor is defined."""
-    asked = server.asked(params)
-    if asked is None:
-        return None
-    return server.locations(naming.definitions(server.documents, asked[0], asked[2])) or None
+    return server.locations(naming.definitions(server.documents, at.path, at.offset)) or None
 
 
-def references(server: Server, params: lsp.ReferenceParams) -> list[lsp.Location] | None:
+def references(
+    server: Server, params: lsp.ReferenceParams, at: Cursor
+) -> list[lsp.Location] | None:
     """Where the name at the cursor is used."""
-    asked = server.asked(params)
-    if asked is None:
-        return None
-    path, _, offset = asked
     own = params.context.include_declaration
-    return server.locations(naming.references(server.documents, path, offset, own)) or None
+    return server.locations(naming.references(server.documents, at.path, at.offset, own)) or None
 
 
 def highlight(
-    server: Server, params: lsp.DocumentHighlightParams
-) -> list[lsp.DocumentHighlight] | None:
+    server: Server, params: lsp.DocumentHighlightParams, at: Cursor
+) -> list[lsp.DocumentHighlight]:
     """The uses of a name in its document."""
-    asked = server.asked(params)
-    if asked is None:
-        return None
-    path, text, offset = asked
     return [
-        lsp.DocumentHighlight(server.range(text.lines, one.start, one.end))
-        for one in naming.references(server.documents, path, offset)
-        if one.path == path
+        lsp.DocumentHighlight(server.range(at.text.lines, one.start, one.end))
+        for one in naming.references(server.documents, at.path, at.offset)
+        if one.path == at.path
     ]
 
 
 def prepare_rename(
-    server: Server, params: lsp.PrepareRenameParams
+    server: Server, params: lsp.PrepareRenameParams, at: Cursor
 ) -> lsp.PrepareRenamePlaceholder | None:
     """The name at the cursor, if it can be renamed."""
-    asked = server.asked(params)
-    found = naming.renamable(server.documents, asked[0], asked[2]) if asked else None
-    if asked is None or found is None:
+    found = naming.renamable(server.documents, at.path, at.offset)
+    if found is None:
         return None
-    page = asked[1].page
-    return lsp.PrepareRenamePlaceholder(
-        server.range(page.lines, found.start, found.end), page.text[found.start : found.end]
-    )
+    place = server.range(at.text.lines, found.start, found.end)
+    return lsp.PrepareRenamePlaceholder(place, at.text.text[found.start : found.end])
 
 
-def rename(server: Server, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
+def rename(server: Server, params: lsp.RenameParams, at: Cursor) -> lsp.WorkspaceEdit | None:
     """The edits that rename a name."""
-    asked = server.asked(params)
-    if asked is None:
-        return None
     try:
-        found, move = naming.rename(server.documents, asked[0], asked[2], params.new_name)
+        found, move = naming.rename(server.documents, at.path, at.offset, params.new_name)
     except naming.RenameError as error:
         raise JsonRpcException(str(error), REQUEST_FAILED) from None
     if move is not None and not server.moves_files:
@@ -227,16 +209,14 @@ def _quick_fixes(
         )
 
 
-def linked(server: Server, params: lsp.LinkedEditingRangeParams) -> lsp.LinkedEditingRanges | None:
+def linked(
+    server: Server, params: lsp.LinkedEditingRangeParams, at: Cursor
+) -> lsp.LinkedEditingRanges | None:
     """The names in a start tag and its end tag, which are edited together."""
-    asked = server.asked(params)
-    if asked is None:
-        return None
-    _, text, offset = asked
-    for tag in text.page.tags:
+    for tag in at.text.page.tags:
         if tag.close is None or not tag.name:
             continue
         spans = ((tag.start + 1, tag.name_end), tag.close)
-        if any(start <= offset <= end for start, end in spans):
-            return lsp.LinkedEditingRanges([server.range(text.lines, *span) for span in spans])
+        if any(start <= at.offset <= end for start, end in spans):
+            return lsp.LinkedEditingRanges([server.range(at.text.lines, *span) for span in spans])
     return None

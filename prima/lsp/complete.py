@@ -184,17 +184,19 @@ class _Completion:
             end = after if after >= 0 else end
         return start, end
 
-    def _plain(self, attr: Attr, words: Iterable[str], kind: str = "value") -> Iterator[Proposal]:
+    def _plain(self, attr: Attr, words: Iterable[str]) -> Iterator[Proposal]:
         start, end = self._span(attr)
         for word in words:
-            yield Proposal(word, kind, start, end, escape(word))
+            yield Proposal(word, "value", start, end, escape(word))
 
     def _references(self, tag: ScannedTag, attr: Attr, use: ReferenceUse) -> Iterator[Proposal]:
         if use.kinds == ("event",):
             yield from self._events(tag, attr)
             return
         if use.kinds == ("variable",):
-            yield from self._names_of_variables(tag, attr, use)
+            span = self._span(attr, use.how == "list")
+            for name, detail in self._visible(tag).items():
+                yield Proposal(name, "variable", *span, name, detail=detail)
             return
         if use.kinds == ("command",):
             yield from self._commands(tag, attr)
@@ -206,9 +208,8 @@ class _Completion:
             target = self.workspace.target(self.path, file) if file and use.how == "uri" else None
             path = target or self.path
         for found in self._known(path, use.kinds, tag):
-            name = found.mark.name
-            where = _where(self, found)
-            yield Proposal(sign + name, "name", *start, escape(sign + name), "", where)
+            name = sign + found.mark.name
+            yield Proposal(name, "name", *start, escape(name), "", self._where(found))
         if use.kinds == ("device",) and not self._known(path, use.kinds, tag):
             yield from self._plain(attr, DEVICES)
 
@@ -226,7 +227,7 @@ class _Completion:
         """Events that may occur, or with ``own`` those that this document handles."""
         known = self._occurring(tag)
         for found in self.workspace.known(self.path, ("event",)):
-            known.setdefault(found.mark.name, _where(self, found))
+            known.setdefault(found.mark.name, self._where(found))
         for mark in self.text.marks if own else ():
             if mark.kind == ("event",) and mark.start != attr.first:
                 known.setdefault(mark.name, "handled here")
@@ -241,7 +242,7 @@ class _Completion:
         known = dict(VOICEXML_EVENTS | EVENTS if voice else EVENTS)
         for kind, begin in EVENTS_OF:
             for found in self.workspace.known(self.path, (kind,)):
-                known.setdefault(begin + found.mark.name, _where(self, found))
+                known.setdefault(begin + found.mark.name, self._where(found))
         if tag.parent is not None and tag.parent.key in TABLE_4_2:
             for begin in ("end.", "cancel."):
                 known[begin + tag.parent.key] = EVENTS[begin[:-1]]
@@ -251,7 +252,7 @@ class _Completion:
         span = self._span(attr)
         for found in self.workspace.known(self.path, ("command",)):
             name = found.mark.name
-            yield Proposal(name, "name", *span, name, detail=_where(self, found))
+            yield Proposal(name, "name", *span, name, detail=self._where(found))
         if tag.key != "command":
             for row in TABLE_4_2.values():
                 yield Proposal(row.name, "name", *span, row.name, detail=row.title, doc=row.doc)
@@ -292,6 +293,13 @@ class _Completion:
                 continue
             yield Proposal(name, "file", *span)
 
+    def _where(self, found: FoundName) -> str:
+        """Where a name is defined, as text."""
+        tag = found.mark.tag
+        title = tag.get("title")
+        at = "" if found.path == self.path else f" in {found.path.name}"
+        return f"<{tag.name}>{at}{f': {title}' if title else ''}"
+
     # Variables ------------------------------------------------------------------
 
     def _visible(self, tag: ScannedTag) -> dict[str, str]:
@@ -304,13 +312,6 @@ class _Completion:
                 owner = form.get("id") if form and mark.scope == home else "the document"
                 found.setdefault(mark.name, f"<{mark.tag.name}> of {owner}")
         return found
-
-    def _names_of_variables(
-        self, tag: ScannedTag, attr: Attr, use: ReferenceUse
-    ) -> Iterator[Proposal]:
-        span = self._span(attr, use.how == "list")
-        for name, detail in self._visible(tag).items():
-            yield Proposal(name, "variable", *span, name, detail=detail)
 
     def _variables(self, tag: ScannedTag, before: str) -> Iterator[Proposal]:
         match = WORD_BEFORE.search(before[-200:])
@@ -325,7 +326,7 @@ class _Completion:
             known = self._visible(tag)
         elif of == "sensor":
             readings = self.workspace.known(self.path, ("reading",))
-            known = {one.mark.name: _where(self, one) for one in readings}
+            known = {one.mark.name: self._where(one) for one in readings}
         elif of in MEMBERS:
             known = dict.fromkeys(MEMBERS[of], of)
         elif of.endswith("$"):
@@ -340,11 +341,3 @@ def _attribute(
     """An attribute; ``bare`` if it needs a value."""
     insert, snippet = (f'{name}=""', f'{name}="$1"$0') if bare else (name, "")
     return Proposal(name, "attribute", start, end, insert, snippet, detail, doc)
-
-
-def _where(asked: _Completion, found: FoundName) -> str:
-    """Where a name is defined, as text."""
-    tag = found.mark.tag
-    title = tag.get("title")
-    at = "" if found.path == asked.path else f" in {found.path.name}"
-    return f"<{tag.name}>{at}{f': {title}' if title else ''}"

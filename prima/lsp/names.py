@@ -45,11 +45,11 @@ class Mark:
 
     def names(self, other: Mark) -> bool:
         """Whether this and another mark of the same document mean the same thing."""
-        return (
-            self.name == other.name
-            and self.scope == other.scope
-            and not set(self.kind).isdisjoint(other.kind)
-        )
+        return self.scope == other.scope and self.is_like(other)
+
+    def is_like(self, other: Mark) -> bool:
+        """Whether this and another mark of different documents may mean the same thing."""
+        return self.name == other.name and not set(self.kind).isdisjoint(other.kind)
 
     @property
     def is_state(self) -> bool:

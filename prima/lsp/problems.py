@@ -50,7 +50,8 @@ def check(workspace: Workspace, path: Path) -> dict[Path, list[Problem]]:
     text = workspace.text(path)
     if text is None or not is_ours(text.top):
         return {path: []}
-    with in_place_of_files(GivenFiles(workspace.unsaved())):
+    unsaved = {name: document.data() for name, document in workspace.open.items()}
+    with in_place_of_files(GivenFiles(unsaved)):
         try:
             problems = loading.validate([path])
         except DocumentError as error:
@@ -86,16 +87,13 @@ def spot(lines: Lines, problem: Problem) -> Spot:
     text = lines.text
     start = lines.place(problem.place.line, problem.place.column)
     before, here = text[start - 1 : start], text[start : start + 1]
-    if here == "<":
-        match = TAG.match(text, start)
-    elif before in ('"', "'") and problem.code not in ("undeclared-variable", "bad-expression"):
+    in_code = problem.code in ("undeclared-variable", "bad-expression")
+    if here != "<" and before in ('"', "'") and not in_code:
         end = text.find(before, start)
         stop = text.find("<", start)
         if end >= 0 and not 0 <= stop < end:
-            return Spot(problem, start, max(end, start))
-        match = WORD.match(text, start)
-    else:
-        match = WORD.match(text, start)
+            return Spot(problem, start, end)
+    match = (TAG if here == "<" else WORD).match(text, start)
     end = match.end() if match else start
     if end == start and here not in ("", "\n", "\r"):
         end = start + 1

@@ -7,7 +7,7 @@ import contextlib
 import functools
 import logging
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.parse import urlsplit
 
 from cattrs import Converter
@@ -126,6 +126,14 @@ def _check_folders(params: lsp.InitializeParams) -> None:
         urlsplit(uri or "")
 
 
+class Cursor(NamedTuple):
+    """A place in an open document."""
+
+    path: Path
+    text: Text
+    offset: int
+
+
 class Server(LanguageServer):
     """The state of the server between requests."""
 
@@ -167,26 +175,21 @@ class Server(LanguageServer):
         first, last = (lines.position(one, self.encoding) for one in (start, end))
         return lsp.Range(lsp.Position(*first), lsp.Position(*last))
 
-    def location(self, place: naming.NameSpot) -> lsp.Location | None:
-        """A piece of a document."""
-        text = self.documents.text(place.path)
-        if text is None:
-            return None
-        return lsp.Location(
-            self.documents.uri(place.path), self.range(text.lines, place.start, place.end)
-        )
-
     def locations(self, places: list[naming.NameSpot]) -> list[lsp.Location]:
         """Pieces of documents."""
-        return [one for place in places if (one := self.location(place)) is not None]
+        return [
+            lsp.Location(self.documents.uri(one.path), self.range(text.lines, one.start, one.end))
+            for one in places
+            if (text := self.documents.text(one.path)) is not None
+        ]
 
-    def asked(self, params: Any) -> tuple[Path, Text, int] | None:
-        """The document and the offset that a request is about."""
+    def asked(self, params: Any) -> Cursor | None:
+        """The place in an open document that a request is about."""
         found = self.documents.asked(params.text_document.uri)
         if found is None or params.position.line >= len(found[1].lines.starts):
             return None
         path, text = found
-        return path, text, self.offset(text.lines, params.position)
+        return Cursor(path, text, self.offset(text.lines, params.position))
 
     # Problems -----------------------------------------------------------------
 

@@ -17,7 +17,7 @@ from pygls.exceptions import JsonRpcException
 from prima.errors import UsageError
 from prima.lsp import answers
 from prima.lsp.paths import path_of
-from prima.lsp.protocol import Server
+from prima.lsp.protocol import Cursor, Server
 
 SOON, LATER = 0.005, 0.25
 """Seconds after a change until its document is checked, and those that depend on it."""
@@ -41,6 +41,19 @@ def _safely(function: Callable[[Server, Any], Answer]) -> Callable[[Server, Any]
         except Exception:
             logger.exception("%s", function.__name__)
             return None
+
+    return call
+
+
+def _at_cursor(
+    function: Callable[[Server, Any, Cursor], Answer],
+) -> Callable[[Server, Any], Answer | None]:
+    """Wrap a handler of requests about a place, which has no answer elsewhere."""
+
+    @functools.wraps(function)
+    def call(server: Server, params: Any) -> Answer | None:
+        at = server.asked(params)
+        return function(server, params, at) if at is not None else None
 
     return call
 
@@ -118,7 +131,7 @@ def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:
     reported = server.reported.pop(path, {})
     concerned = server.concerned(path)
     uri = server.documents.uri(path)
-    server.documents.drop(params.text_document.uri)
+    server.documents.drop(path)
     for file in {path, *reported}:
         server.publish(file)
     if uri != server.documents.uri(path):
@@ -152,18 +165,22 @@ def make_server() -> Server:
         (lsp.TEXT_DOCUMENT_DID_CLOSE, _closed, None),
         (lsp.TEXT_DOCUMENT_DID_SAVE, _saved, None),
         (lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES, _files_changed, None),
-        (lsp.TEXT_DOCUMENT_COMPLETION, answers.completion, lsp.CompletionOptions(TRIGGERS)),
-        (lsp.TEXT_DOCUMENT_HOVER, answers.hover, None),
-        (lsp.TEXT_DOCUMENT_DEFINITION, answers.definition, None),
-        (lsp.TEXT_DOCUMENT_REFERENCES, answers.references, None),
-        (lsp.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT, answers.highlight, None),
-        (lsp.TEXT_DOCUMENT_PREPARE_RENAME, answers.prepare_rename, None),
-        (lsp.TEXT_DOCUMENT_RENAME, answers.rename, None),
+        (
+            lsp.TEXT_DOCUMENT_COMPLETION,
+            _at_cursor(answers.completion),
+            lsp.CompletionOptions(TRIGGERS),
+        ),
+        (lsp.TEXT_DOCUMENT_HOVER, _at_cursor(answers.hover), None),
+        (lsp.TEXT_DOCUMENT_DEFINITION, _at_cursor(answers.definition), None),
+        (lsp.TEXT_DOCUMENT_REFERENCES, _at_cursor(answers.references), None),
+        (lsp.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT, _at_cursor(answers.highlight), None),
+        (lsp.TEXT_DOCUMENT_PREPARE_RENAME, _at_cursor(answers.prepare_rename), None),
+        (lsp.TEXT_DOCUMENT_RENAME, _at_cursor(answers.rename), None),
         (lsp.WORKSPACE_WILL_RENAME_FILES, answers.will_move, files),
         (lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL, answers.symbols, None),
         (lsp.TEXT_DOCUMENT_DOCUMENT_LINK, answers.links, None),
         (lsp.TEXT_DOCUMENT_CODE_ACTION, answers.actions, kinds),
-        (lsp.TEXT_DOCUMENT_LINKED_EDITING_RANGE, answers.linked, None),
+        (lsp.TEXT_DOCUMENT_LINKED_EDITING_RANGE, _at_cursor(answers.linked), None),
     ):
         server.feature(method, options)(_safely(handler))
     return server

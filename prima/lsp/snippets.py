@@ -10,11 +10,9 @@ from prima.voicexml.vocabulary import ALTERNATIVES, PRIMA_NAMESPACE, VOICEXML
 
 def snippet(choice: AllowedElement) -> str:
     """A snippet of an element with its required parts and tab stops."""
-    element, place = choice.element, 1
-    words = [choice.name]
-    for name in _needed(choice.vocabulary, element):
-        words.append(f'{name}="${place}"')
-        place += 1
+    element = choice.element
+    needed = enumerate(_needed(choice.vocabulary, element), 1)
+    words = [choice.name, *(f'{name}="${place}"' for place, name in needed)]
     if not element.children and not element.text:
         return " ".join(words) + "/>$0"
     return " ".join(words) + f">$0</{choice.name}>"

@@ -96,17 +96,10 @@ class Workspace:
             self.open[path], self.uris[path] = Text(text, version), uri
         return path
 
-    def drop(self, uri: str) -> Path | None:
+    def drop(self, path: Path) -> None:
         """Close a document; its file is used again."""
-        path = path_of(uri)
-        if path is not None:
-            self.open.pop(path, None)
-            self.uris.pop(path, None)
-        return path
-
-    def unsaved(self) -> dict[Path, bytes]:
-        """The bytes of all open documents."""
-        return {path: text.data() for path, text in self.open.items()}
+        self.open.pop(path, None)
+        self.uris.pop(path, None)
 
     def uri(self, path: Path) -> str:
         """The URI of a document, as the editor writes it."""
@@ -252,7 +245,7 @@ class Workspace:
             here = waiting.pop()
             for other in set().union(*(one for one in scenes if here in one)) - seen:
                 seen.add(other)
-                same = [one for one in self.marks(other) if _is_same(one, mark)]
+                same = [one for one in self.marks(other) if one.is_like(mark)]
                 found += [FoundName(other, one) for one in same]
                 waiting += [other] if same and all_scenes else []
         return sorted(found, key=lambda one: (one.path, one.mark.start))
@@ -262,7 +255,7 @@ class Workspace:
         target = self.target(path, mark.file)
         if target is None:
             return []
-        own = (one for one in self.marks(target) if one.defines and _is_same(one, mark))
+        own = (one for one in self.marks(target) if one.defines and one.is_like(mark))
         found = next(own, None)
         return self.uses(target, found) if found is not None else []
 
@@ -274,7 +267,7 @@ class Workspace:
             if text is None or f"#{mark.name}" not in text.text:
                 continue
             for one in text.marks:
-                if one.file and _is_same(one, mark) and self.target(other, one.file) == path:
+                if one.file and one.is_like(mark) and self.target(other, one.file) == path:
                     found.append(FoundName(other, one))
         return found
 
@@ -344,8 +337,3 @@ class Workspace:
                 if one.defines and wanted.intersection(one.kind) and private not in one.kind:
                     found.append(FoundName(path, one))
         return found
-
-
-def _is_same(one: Mark, other: Mark) -> bool:
-    """Whether two names in different documents are the same."""
-    return one.name == other.name and not set(one.kind).isdisjoint(other.kind)
