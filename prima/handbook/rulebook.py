@@ -17,6 +17,7 @@ from typing import Any
 from prima import api
 from prima.errors import UsageError, did_you_mean
 from prima.handbook.situations import EXAMPLES, RuleExample
+from prima.loading.folders import shipped
 from prima.report import strip
 from prima.transcript.row import Row
 from prima.transcript.run import Run
@@ -24,6 +25,7 @@ from prima.transcript.spans import base
 from prima.transcript.table import format_rows
 
 PAGE = "mediation.md"
+"""The page of the documentation with the rules."""
 HEADING = re.compile(r"^## (?P<title>.+)$")
 RULE = re.compile(r"^- \*\*(?P<name>[A-Z]\d+)(?P<title>[^*]*)\*\* (?P<text>.+)$")
 PART = re.compile(r"^  - \*\*(?P<name>[a-z])\*\* (?P<text>.+)$")
@@ -49,18 +51,12 @@ class MediationRule:
     brief: str
 
 
-def page() -> Path:
-    """The page of the documentation with the rules, which is in the package."""
-    inside = Path(__file__).parent.parent / PAGE
-    return inside if inside.is_file() else Path(__file__).parent.parent.parent / "docs" / PAGE
-
-
 @cache
 def rules() -> dict[str, MediationRule]:
     """All rules by name, in the page's order; the baseline policies last."""
     found: dict[str, MediationRule] = {}
     section, last = "", ""
-    for line in page().read_text(encoding="utf-8").splitlines():
+    for line in shipped(PAGE, "docs").read_text(encoding="utf-8").splitlines():
         if heading := HEADING.match(line):
             section = heading["title"]
         elif rule := RULE.match(line):

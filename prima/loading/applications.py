@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -54,8 +55,6 @@ def read_application(
     if not is_voicexml(data):
         native, problems = read_native(path, data, taken)
         if kind and native.kind != kind:
-            from dataclasses import replace
-
             native = replace(native, kind=kind)  # others may run the same document unchanged
         return native, problems
     from prima.voicexml.document import VoiceDocument

@@ -10,13 +10,18 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
+def shipped(name: str, folder: str = "") -> Path:
+    """A file or folder of the package; in a checkout it is beside the package, in a folder."""
+    package = path_of(__file__).parent.parent
+    inside = package / name
+    return inside if inside.exists() else package.parent / folder / name
+
+
 def schemas_folder() -> Path:
     """The folder of the schemas that come with the package."""
-    inside = path_of(__file__).parent.parent / "schemas"
-    return inside if inside.is_dir() else path_of(__file__).parent.parent.parent / "schemas"
+    return shipped("schemas")
 
 
 def documents_folder() -> Path:
     """The folder of the demo documents that come with the package."""
-    inside = path_of(__file__).parent.parent / "documents"
-    return inside if inside.is_dir() else path_of(__file__).parent.parent.parent / "documents"
+    return shipped("documents")

@@ -255,9 +255,8 @@ def _named_wrongly(name: str, place: Place, problem: Problem, content: bytes) ->
 
     If the scenario was generated, it is reported at the document.
     """
-    if place.file == STAGE:
-        return problem
-    if problem.code != "wrong-namespace" or not kind_of(parse(name, content)):
+    wrong_kind = problem.code == "wrong-namespace" and kind_of(parse(name, content))
+    if place.file == STAGE or not wrong_kind:
         return problem
     return problem._replace(place=place, message=f'"{name}": {problem.message}', fixes=())
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from prima.checks.ignores import Ignores
@@ -71,8 +71,6 @@ def with_scenario(loaded: Loaded, path: str | Path, data: bytes) -> Loaded:
     Raises:
         DocumentError: the text has errors.
     """
-    from dataclasses import replace
-
     from prima.sim.scenario import read_scenario
 
     scenario = read_scenario(str(path), data)
@@ -91,8 +89,6 @@ def with_robot(loaded: Loaded, data: bytes) -> Loaded:
     Raises:
         DocumentError: the text has errors.
     """
-    from dataclasses import replace
-
     from prima.devices.profile import read_robot
 
     cast = loaded.cast
@@ -103,8 +99,6 @@ def with_robot(loaded: Loaded, data: bytes) -> Loaded:
 
 def seeded(loaded: Loaded, seed: int | None) -> Loaded:
     """A loaded scenario with another seed; None for its own."""
-    from dataclasses import replace
-
     if seed is None:
         return loaded
     scenario = replace(loaded.cast.scenario, seed=seed)

@@ -96,14 +96,22 @@ def _scenario(world: str, robot: str, entrances: bool, inside: str) -> bytes:
 
 
 def _applications(given: list[tuple[str, str]], maps: Iterable[str]) -> str:
-    """The applications of a scenario, by their kinds and paths."""
+    """The applications of a scenario, by their kinds and paths, and where they are served.
+
+    Raises:
+        UsageError: a mapping is invalid, or no application is in its folder.
+    """
     from html import escape
 
-    served = _served([path for _, path in given], maps)
-    return "".join(
-        f'<application src="{escape(path)}" kind="{kind}"{served.get(path, "")}/>'
-        for kind, path in given
-    )
+    from prima.voicexml.site import mapped
+
+    held = mappings(maps, [path for _, path in given])
+    made = ""
+    for kind, path in given:
+        site = mapped(path, held)
+        served = f' uri="{escape(site[0])}" folder="{escape(site[1])}"' if site else ""
+        made += f'<application src="{escape(path)}" kind="{kind}"{served}/>'
+    return made
 
 
 def _answers(says: str | Iterable[str]) -> str:
@@ -143,24 +151,6 @@ def _standing(there: Map) -> str:
     return (
         f'<robot at="{escape(name)}"/><person x="{x + cos(angle):.3f}" y="{y + sin(angle):.3f}"/>'
     )
-
-
-def _served(paths: list[str], maps: Iterable[str]) -> dict[str, str]:
-    """Attributes of applications whose folders are mapped to URIs.
-
-    Raises:
-        UsageError: a mapping is invalid, or no application is in its folder.
-    """
-    from html import escape
-
-    from prima.voicexml.site import mapped
-
-    held = mappings(maps, paths)
-    served: dict[str, str] = {}
-    for path in paths:
-        if found := mapped(path, held):
-            served[path] = f' uri="{escape(found[0])}" folder="{escape(found[1])}"'
-    return served
 
 
 def _refuse_same_id(given: list[tuple[str, str]]) -> None:

@@ -151,14 +151,14 @@ class _Fetching:
             self.app, self.uri, time.monotonic() - began, self.size if answered else None
         )
         if not answered:
-            self.close()
+            end_connections(self.held)
         return self.found if answered else None
 
     def run(self, method: str, values: Data) -> None:
         """Send the request, and keep the answer or the error."""
         try:
             request = form_request(self.uri, method, values)
-            data = self._body(request)
+            data = follow(request, self._check, self._read, self.held, REAL_SECONDS)
             self.size = len(data)
             self.found = answer("", 0, self.uri, data)
             self.found.host = True
@@ -177,20 +177,8 @@ class _Fetching:
             why = "the answer breaks off" if isinstance(error, IncompleteRead) else error
             self.found = Fetched("", 0, self.uri, problem=f"it cannot be fetched: {why}")
         finally:
-            self.close()
+            end_connections(self.held)
             self.done.set()
-
-    def close(self) -> None:
-        """End the connections, so that nothing more is sent or read."""
-        end_connections(self.held)
-
-    def _body(self, request: Request) -> bytes:
-        """The bytes of the answer to a request, wherever it is moved to.
-
-        Raises:
-            HTTPError, OSError, HTTPException, ValueError: there is no such answer.
-        """
-        return follow(request, self._check, self._read, self.held, REAL_SECONDS)
 
     def _check(self, request: Request) -> None:
         self.hosts.check(request.full_url)

@@ -46,13 +46,13 @@ def whole(path: str | Path) -> Iterator[IO[bytes]]:
         raise UsageError(f"{path}: cannot be written: {error.strerror}.") from None
 
 
-def write_whole(path: str | Path, text: str) -> None:
-    """Write a text as UTF-8 to a file, as a whole or not at all.
+def write_whole(path: str | Path, content: str | bytes) -> None:
+    """Write bytes, or a text as UTF-8, to a file, as a whole or not at all.
 
     Raises:
         UsageError: it cannot be written.
     """
-    data = text.encode()
+    data = content.encode() if isinstance(content, str) else content
     with whole(path) as stream:
         stream.write(data)
 
