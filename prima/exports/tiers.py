@@ -43,10 +43,6 @@ def timeline(name: str, records: Iterable[Record]) -> Timeline:
     return _TierBuilder(name, run).result()
 
 
-def _value(value: Json) -> str:
-    return value if isinstance(value, str) else json.dumps(value)
-
-
 def _ms(seconds: float) -> int:
     return round(seconds * 1000)
 
@@ -266,6 +262,9 @@ def _about(spell: Spell) -> dict[str, str]:
 
 def _values(data: dict[str, Json]) -> str:
     """An event's scalar values, in brackets."""
-    plain = [(key, one) for key, one in data.items() if not isinstance(one, dict | list)]
-    details = ", ".join(f"{key} {_value(one)}" for key, one in plain)
+    details = ", ".join(
+        f"{key} {one if isinstance(one, str) else json.dumps(one)}"
+        for key, one in data.items()
+        if not isinstance(one, dict | list)
+    )
     return f" ({details})" if details else ""

@@ -94,11 +94,8 @@ class Tier:
     points: bool = False
     marks: list[Interval] = field(default_factory=list)
 
-    def lanes(self, least: int = 1) -> list[list[Interval]]:
-        """The marks in as few lanes as possible, without overlaps in a lane.
-
-        ``least`` is the minimum duration of each (ms).
-        """
+    def lanes(self) -> list[list[Interval]]:
+        """The marks in as few lanes as possible, without overlaps; each takes 1 ms at least."""
         lanes: list[list[Interval]] = []
         busy: list[tuple[int, int]] = []
         free: list[int] = []
@@ -111,7 +108,7 @@ class Tier:
                 lane = len(lanes)
                 lanes.append([])
             lanes[lane].append(mark)
-            heappush(busy, (max(mark.end, mark.start + least), lane))
+            heappush(busy, (max(mark.end, mark.start + 1), lane))
         return lanes
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from xml.sax.saxutils import escape
 
 from prima.exports.timeline import Interval, Tier, Timeline, clean
 
@@ -23,20 +24,16 @@ def write(timeline: Timeline, languages: dict[str, str]) -> Iterator[str]:
         if timeline.head.get(name)
     ]
     if head:
-        yield f"\nNOTE {_escaped(clean(', '.join(head)))}\n"
+        yield f"\nNOTE {escape(clean(', '.join(head)))}\n"
     for mark, tier in cues:
         if tier.points:
-            yield f"\nNOTE {_time(mark.start)} {_escaped(mark.text)}\n"
+            yield f"\nNOTE {_time(mark.start)} {escape(mark.text)}\n"
         elif mark.text:
             end = max(mark.end, mark.start + 1)
-            voice = _escaped(tier.who)
-            yield f"\n{_time(mark.start)} --> {_time(end)}\n<v {voice}>{_escaped(mark.text)}</v>\n"
+            voice = escape(tier.who)
+            yield f"\n{_time(mark.start)} --> {_time(end)}\n<v {voice}>{escape(mark.text)}</v>\n"
 
 
 def _time(time: int) -> str:
     seconds, milliseconds = divmod(time, 1000)
     return f"{seconds // 3600:02}:{seconds // 60 % 60:02}:{seconds % 60:02}.{milliseconds:03}"
-
-
-def _escaped(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -64,17 +64,19 @@ class Conversation:
         self._sources = {os.path.realpath(path) for path in sources}
         self._failures = 0
         self._told = ""
-        self._controls: dict[str, Callable[[str], None]] = {
+        self._alone: dict[str, Callable[[], None]] = {
             "go": self._go,
             "step": self._step,
-            "wait": self._go,
-            "back": self._back,
             "undo": self._undo,
+            "who": lambda: self.screen.show("\n".join(_situation(self.game))),
+            "quit": self._quit,
+        }
+        """The controls that nothing follows."""
+        self._controls: dict[str, Callable[[str], None]] = {
+            "back": self._back,
             "why": self._why,
-            "who": self._who,
             "save": self._save,
             "help": lambda rest: self.screen.show(help_text(rest)),
-            "quit": self._quit,
         }
 
     # Time -----------------------------------------------------------------------------
@@ -127,10 +129,8 @@ class Conversation:
 
     def close(self) -> None:
         """End the session."""
-        if not self.game.ended:
-            rows = self.game.finish()
-            if rows:
-                self.screen.rows(rows)
+        if not self.game.ended and (rows := self.game.finish()):
+            self.screen.rows(rows)
 
     # Lines ----------------------------------------------------------------------------
 
@@ -143,6 +143,10 @@ class Conversation:
                     raise UsageError("Time passes by itself here; with --step it waits for you.")
             elif line.control == "wait":
                 self._wait(line.linger)
+            elif line.control in self._alone:
+                if line.rest:
+                    raise UsageError(f'Nothing follows "/{line.control}".')
+                self._alone[line.control]()
             elif line.control:
                 self._controls[line.control](line.rest)
             else:
@@ -167,8 +171,7 @@ class Conversation:
         else:
             self._show(self.game.go())
 
-    def _go(self, rest: str) -> None:
-        _nothing("go", rest)
+    def _go(self) -> None:
         self.game.keep()
         self._told = ""
         self.game.let_pass()
@@ -178,8 +181,7 @@ class Conversation:
         self.game.keep()
         self._show(self.game.run(self.game.clock + linger))
 
-    def _step(self, rest: str) -> None:
-        _nothing("step", rest)
+    def _step(self) -> None:
         self.game.keep()
         self._told = ""
         self.game.let_pass()
@@ -194,8 +196,7 @@ class Conversation:
         self.game.back(clock)
         self._returned()
 
-    def _undo(self, rest: str) -> None:
-        _nothing("undo", rest)
+    def _undo(self) -> None:
         self.game.undo()
         self._returned()
 
@@ -208,8 +209,7 @@ class Conversation:
         row = f", after row {rows[-1].number}" if rows else ""
         self.screen.show(f"Back at {seconds(self.game.clock)}{row}.")
 
-    def _quit(self, rest: str) -> None:
-        _nothing("quit", rest)
+    def _quit(self) -> None:
         self.done = True
 
     # Questions ------------------------------------------------------------------------
@@ -222,10 +222,6 @@ class Conversation:
             raise UsageError(f'There is no row "{rest}"; the rows are 0 to {len(rows) - 1}.')
         row = rows[int(rest)] if rest else rows[-1]
         self.screen.show("\n".join(explained(run_of(self.game.records), row)))
-
-    def _who(self, rest: str) -> None:
-        _nothing("who", rest)
-        self.screen.show("\n".join(_situation(self.game)))
 
     # Saving ---------------------------------------------------------------------------
 
@@ -255,7 +251,8 @@ class Conversation:
                     f"{path}: this file exists and is not a saved session; write elsewhere."
                 )
         except (OSError, ValueError) as error:
-            raise UsageError(f"{path}: cannot be written: {_why_not(error)}.") from None
+            why = getattr(error, "strerror", None) or "not a file name"
+            raise UsageError(f"{path}: cannot be written: {why}.") from None
 
     def save(self, path: str) -> None:
         """Write the session so far as a scenario; the file is replaced atomically.
@@ -265,10 +262,6 @@ class Conversation:
         """
         self.check_target(path)
         write_whole(path, self.game.saved(path))
-
-
-def _why_not(error: OSError | ValueError) -> str:
-    return (isinstance(error, OSError) and error.strerror) or "not a file name"
 
 
 def _beginning(path: Path) -> bytes:
@@ -283,11 +276,6 @@ def _unheard(text: str, asking: str) -> str:
     """A message that no application took a text, and when one will listen."""
     later = f" {asking} is still asking; it listens when it has finished." if asking else ""
     return f'Nobody listens: "{visible(text)}" is lost.{later}'
-
-
-def _nothing(name: str, rest: str) -> None:
-    if rest:
-        raise UsageError(f'Nothing follows "/{name}".')
 
 
 def _situation(game: Game) -> list[str]:

@@ -113,14 +113,6 @@ def _walk(rest: str) -> str:
     raise UsageError(f'Write "{COMMANDS["walk"].usage}".')
 
 
-def _follow(rest: str) -> str:
-    return element("follow", distance=rest)
-
-
-def _release(rest: str) -> str:
-    return element("release", resume=rest)
-
-
 def _message(rest: str) -> str:
     sender, text = split_message(rest, COMMANDS["message"].usage)
     return element("message", text, **{"from": sender})
@@ -165,7 +157,8 @@ COMMANDS = {
             _walk, lambda names: names.points),
         TypedCommand("look", "/look at PLACE, /look at robot", "looks at something", _look,
             lambda names: [f"at {one}" for one in (*names.points, "robot")]),
-        TypedCommand("follow", "/follow, /follow METRES", "follows the robot", _follow),
+        TypedCommand("follow", "/follow, /follow METRES", "follows the robot",
+            lambda rest: element("follow", distance=rest)),
         TypedCommand("stay", "/stay", "stays where they are", _plain("stay")),
         TypedCommand("leave", "/leave", "goes away, out of sight", _plain("leave")),
         TypedCommand("hang-up", "/hang-up", "hangs up", _plain("hang-up")),
@@ -179,7 +172,8 @@ COMMANDS = {
             lambda names: names.devices),
         TypedCommand("emergency", "/emergency", "the emergency stop is pressed", _plain("emergency")),
         TypedCommand("release", "/release, /release false",
-            "it is released; with false, stopped behaviors are given up", _release),
+            "it is released; with false, stopped behaviors are given up",
+            lambda rest: element("release", resume=rest)),
         TypedCommand("unload", "/unload APPLICATION", "an application is removed",
             _word("unload", "application"), lambda names: names.applications),
         TypedCommand("load", "/load APPLICATION", "an application that has ended starts again",
