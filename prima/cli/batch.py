@@ -31,8 +31,8 @@ WIDEST = 100
 def listed(name: str) -> list[str]:
     """The paths in a file, one per line; ``-`` is standard input.
 
-        Raises:
-    UsageError: it cannot be read, or is empty.
+    Raises:
+        UsageError: it cannot be read, or is empty.
     """
     try:
         given, opener = (0, None) if name == "-" else (name, at_once)

@@ -77,6 +77,11 @@ def output_option(meaning: str, **more: Any) -> Callable[[Any], Any]:
     return click.option("-o", "--output", type=click.Path(), help=meaning, **more)
 
 
+def paths_option(option: str, name: str, meaning: str, **more: Any) -> Callable[[Any], Any]:
+    """An option for paths, which may be repeated."""
+    return click.option(option, name, multiple=True, type=click.Path(), help=meaning, **more)
+
+
 format_option = formats_option("text", "json")
 limit_option = click.option(
     "--limit",
@@ -108,20 +113,8 @@ on_option = click.option(
     metavar="tcp://HOST:PORT",
     help="Make the runs on the workers of this scheduler of Dask.",
 )
-fa_option = click.option(
-    "--fa",
-    "fas",
-    multiple=True,
-    type=click.Path(),
-    help="Run this as the robot's application (FA).",
-)
-ea_option = click.option(
-    "--ea",
-    "eas",
-    multiple=True,
-    type=click.Path(),
-    help="Run this as the place's application (EA).",
-)
+fa_option = paths_option("--fa", "fas", "Run this as the robot's application (FA).")
+ea_option = paths_option("--ea", "eas", "Run this as the place's application (EA).")
 bound_option = click.option(
     "--bound",
     type=Whole(1),

@@ -24,6 +24,7 @@ from prima.cli.common import (
     isolate_option,
     limit_option,
     map_option,
+    paths_option,
     patience_option,
     policy_option,
     raise_limits,
@@ -37,8 +38,7 @@ from prima.cli.interrupts import leave_to_python
 from prima.cli.progress import print_records
 
 if TYPE_CHECKING:
-    from prima.live.chosen import Chosen
-    from prima.live.visit import LiveSettings, Visit
+    from prima.live.visit import Visit
     from prima.messages import Record
 
 FASTEST = 1000.0  # equals prima.api.live.FASTEST, which is slow to import
@@ -70,13 +70,8 @@ FASTEST = 1000.0  # equals prima.api.live.FASTEST, which is slow to import
     "--sync", is_flag=True, help="Have each instant on the disk before it is carried out."
 )
 @click.option("--redact", is_flag=True, help="Leave out of the journal what users say.")
-@click.option(
-    "--driver",
-    "drivers",
-    metavar="FILE",
-    multiple=True,
-    type=click.Path(),
-    help="Take drivers from this Python file, too; it is run.",
+@paths_option(
+    "--driver", "drivers", "Take drivers from this Python file, too; it is run.", metavar="FILE"
 )
 @policy_option("The mediator's policy: {}.")
 @bound_option
@@ -142,8 +137,9 @@ def live(
     if late is not None:
         settings.late = late or None
     if checks:
-        _check(chosen, settings)
-        return
+        from prima.live.preflight import check_robot
+
+        raise Exit(check_robot(chosen, settings, lambda text: click.echo(clean(text))))
     if output is not None:
         check_output(
             output, "journal", *filter(None, (scenario, robot, world, services, *fas, *eas))
@@ -151,14 +147,6 @@ def live(
     visit = prepared(chosen, settings, output, journal)
     tell_problems(visit.loaded.problems)
     _run(visit, why, form == "json")
-
-
-def _check(chosen: Chosen, settings: LiveSettings) -> None:
-    """Check the robot; exit code 2 if it is not set up, 3 if a part of it does not work."""
-    from prima.live.preflight import check_robot
-
-    if code := check_robot(chosen, settings, lambda text: click.echo(clean(text))):
-        raise Exit(code)
 
 
 def _run(visit: Visit, why: bool, as_json: bool) -> None:

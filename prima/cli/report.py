@@ -14,6 +14,7 @@ from prima.cli.common import (
     SuggestingChoice,
     check_output,
     output_option,
+    paths_option,
     policy_option,
     tell,
     tell_cut,
@@ -31,12 +32,10 @@ if TYPE_CHECKING:
 @click.argument("runs", metavar="TRANSCRIPT|SCENARIO...|TABLE", nargs=-1, type=click.Path())
 @output_option("Write the page here, or a folder for figures.")
 @policy_option("Run a scenario under this policy; twice to compare two runs: {}.", many=True)
-@click.option(
+@paths_option(
     "--scenario",
     "scenarios",
-    multiple=True,
-    type=click.Path(),
-    help="The scenario of a transcript: adds the map and the user's path. Twice for two.",
+    "The scenario of a transcript: adds the map and the user's path. Twice for two.",
 )
 @click.option(
     "--by",

@@ -24,6 +24,7 @@ from prima.cli.common import (
     limit_option,
     map_option,
     output_option,
+    paths_option,
     patience_option,
     policy_option,
     put,
@@ -64,13 +65,11 @@ FOLDER_ENDINGS = ("/", os.sep)
 @why_option
 @hosts_option
 @isolate_option
-@click.option(
+@paths_option(
     "--from",
     "lists",
+    "Run the scenarios listed in this file, one per line; - is standard input.",
     metavar="FILE",
-    multiple=True,
-    type=click.Path(),
-    help="Run the scenarios listed in this file, one per line; - is standard input.",
 )
 @workers_option
 @click.option("--resume", is_flag=True, help="Skip runs whose transcripts are up to date.")

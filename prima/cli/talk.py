@@ -104,7 +104,7 @@ def talk(
     json = form == "json"
     web = fetcher(list(hosts), len(loaded.cast.documents))
     game = Game(loaded, folder, policy, scripted, web, print_records if json else None)
-    terminal = _is_terminal()
+    terminal = sys.stdin is not None and sys.stdin.isatty() and sys.stdout.isatty()
     screen = TerminalScreen(game, why, json, terminal)
     names = loaded.files if scenario is not None else [*loaded.files][1:]
     sources = [os.path.join(folder, name) for name in names]
@@ -121,10 +121,6 @@ def talk(
         finally:
             _keep(conversation, target)
     _finish(conversation, terminal)
-
-
-def _is_terminal() -> bool:
-    return sys.stdin is not None and sys.stdin.isatty() and sys.stdout.isatty()
 
 
 def _check_options(

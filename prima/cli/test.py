@@ -93,7 +93,7 @@ def test(
     prima test documents/scenarios -k situations --jobs 2 --junit results.xml
     prima test my-scenario.xml --update
     """
-    from prima.testing.coverage import merge
+    from prima.testing.coverage import merge, total
     from prima.testing.finding import find
     from prima.testing.running import TestOptions as How
     from prima.testing.running import run_all
@@ -112,14 +112,17 @@ def test(
         merge(coverage, result.coverage)
         result.coverage = {}
         _progress(len(results), len(chosen))
+    under = fail_under is not None and total(coverage) < fail_under
     with whoever_reads():
         if form == "text":
             _report(results)
         if update:
             _update(results, set(paths), yes)
-        _finish(results, coverage if cover else None, fail_under, form)
+        _finish(results, coverage if cover else None, form)
+        if under and form == "text":
+            tell(f"prima: less than {fail_under:g}% of the documents was reached.")
     _write(results, coverage, junit_file, coverage_xml)
-    _set_exit_code(results, fail_under is not None and _under(coverage, fail_under))
+    _set_exit_code(results, under)
 
 
 def _chosen(found: list[str], word: str) -> list[str]:
@@ -197,9 +200,7 @@ def _report(results: list[Result]) -> None:
             put(shown)
 
 
-def _finish(
-    results: list[Result], coverage: Coverage | None, fail_under: float | None, form: str
-) -> None:
+def _finish(results: list[Result], coverage: Coverage | None, form: str) -> None:
     from prima.testing.coverage import coverage_data, format_coverage
     from prima.testing.running import result_data
     from prima.testing.summary import counts, summary
@@ -216,29 +217,18 @@ def _finish(
     if coverage is not None:
         put("\n" + format_coverage(coverage))
     put(f"\n{summary(results)}")
-    if coverage is not None and fail_under is not None and _under(coverage, fail_under):
-        tell(f"prima: less than {fail_under:g}% of the documents was reached.")
-
-
-def _under(coverage: Coverage, percent: float) -> bool:
-    from prima.testing.coverage import total
-
-    return total(coverage) < percent
 
 
 def _write(
     results: list[Result], coverage: Coverage, junit_file: str | None, coverage_xml: str | None
 ) -> None:
-    from prima.loading.writing import whole
+    from prima.loading.writing import write_whole
     from prima.testing.junit import cobertura, junit
 
-    for path, data in (
-        (junit_file, junit(results) if junit_file else b""),
-        (coverage_xml, cobertura(coverage) if coverage_xml else b""),
-    ):
-        if path:
-            with whole(path) as stream:
-                stream.write(data)
+    if junit_file:
+        write_whole(junit_file, junit(results))
+    if coverage_xml:
+        write_whole(coverage_xml, cobertura(coverage))
 
 
 # Expected tables -------------------------------------------------------------------

@@ -17,6 +17,7 @@ from prima.cli.common import (
     formats_option,
     limit_option,
     map_option,
+    paths_option,
     print_json,
     put,
     raise_limits,
@@ -41,13 +42,8 @@ MANY = 50
 @click.option(
     "--notes", is_flag=True, help="Print notes too: the cost of holds and units to others."
 )
-@click.option(
-    "--with",
-    "fas",
-    metavar="FA",
-    multiple=True,
-    type=click.Path(),
-    help="Certify how each of FILES, an EA, can affect this FA.",
+@paths_option(
+    "--with", "fas", "Certify how each of FILES, an EA, can affect this FA.", metavar="FA"
 )
 @click.option("--robot", type=click.Path(), default="", help="The robot's profile for --with.")
 @map_option
@@ -128,12 +124,10 @@ def _check(
         tell(f"prima: {message}")
     counts = Counter(problem.severity for problem in problems)
     if form in ("text", "short") and not unread:
-        tell(f"files: {len(names)}; {_counts(counts['error'], counts['warning'])}")
+        found = f"errors: {counts['error']}, warnings: {counts['warning']}"
+        any_counted = counts["error"] or counts["warning"]
+        tell(f"files: {len(names)}; {found if any_counted else 'no problems'}")
     return len(unread), counts["error"], counts["warning"]
-
-
-def _counts(errors: int, warnings: int) -> str:
-    return f"errors: {errors}, warnings: {warnings}" if errors + warnings else "no problems"
 
 
 def _expanded(files: tuple[str, ...]) -> Iterator[str]:
