@@ -8,6 +8,7 @@ from pathlib import PurePath
 
 from prima.graph.labels import (
     ASKED,
+    LEAVES_USER,
     NO_REPLY,
     AnswerLabel,
     condition,
@@ -179,7 +180,7 @@ class _DialogueGraph(Transitions[Act]):
 
 def _describe(node: GraphNode, form: Form, items: Sequence[Item]) -> None:
     """Describe a state: its marks, and what it asks or says."""
-    leaving = [one for one in _commands(_contents(form)) if _leads_away(one)]
+    leaving = [one for one in _commands(_contents(form)) if one.type in LEAVES_USER]
     questions = [text for item in items if isinstance(item, Field) for text in _asked(item)]
     said = [one.text for one in _commands(_blocks(form)) if one.text]
     goals = dict.fromkeys(_goal(one) for one in leaving)
@@ -289,11 +290,6 @@ def _stays(handler: Handler) -> bool:
     acts = all_acts(handler.content)
     ways = any(isinstance(act, Goto | Exit | Return | Throw) for act in acts)
     return bool(acts) and not ways and not ASKED.issuperset(handler.events)
-
-
-def _leads_away(command: CommandTemplate) -> bool:
-    row = TABLE_4_2.get(command.type)
-    return row is not None and row.leaves
 
 
 def _title(command: CommandTemplate) -> str:

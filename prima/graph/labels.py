@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from prima.graph.model import clean, short
+from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.script.comparison import comparison
 from prima.script.literals import strings
@@ -16,6 +17,8 @@ TOLD = 60
 """Maximum length of a condition."""
 ASKED = frozenset({"noinput", "nomatch", "help"})
 """Events after which a question is asked again by default."""
+LEAVES_USER = frozenset(name for name, row in TABLE_4_2.items() if row.leaves)
+"""Commands that leave the user."""
 YES = {"yes": "no", "no": "yes"}
 QUESTIONS = 3
 """Maximum number of questions of a state that are shown."""

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from prima.graph.labels import ASKED, sayings
+from prima.graph.labels import ASKED, LEAVES_USER, sayings
 from prima.graph.model import clean
 from prima.graph.throws import Taker
 from prima.graph.transitions import Branches
-from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.voicexml.arranging import is_unit, parts_of
 from prima.voicexml.elements import (
@@ -53,8 +52,7 @@ def divided(node: Node) -> Branches[Node]:
 
 def leaves_user(node: Node) -> bool:
     """Whether an element is a Command of the robot that leaves the user."""
-    row = TABLE_4_2.get(node.tag) if node.namespace == PRIMA_NAMESPACE else None
-    return row is not None and row.leaves
+    return node.namespace == PRIMA_NAMESPACE and node.tag in LEAVES_USER
 
 
 def leaves_at_its_end(form: Node) -> bool:

@@ -74,8 +74,8 @@ def draw(data: Data, by: Sequence[str] = ()) -> list[Figure]:
     factors = _chosen(data, by)
     made = [distribution(one) for one in analyse(data).distributions]
     if factors:
-        levels = [map_levels(data)[one] for one in factors]
-        drawn = order_map(data, levels[0], levels[1] if len(levels) > 1 else None)
+        levels = map_levels(data)
+        drawn = order_map(data, [levels[one] for one in factors])
         made.append(orders(data, drawn, [data.varied[one] for one in factors]))
     return made
 
@@ -83,14 +83,15 @@ def draw(data: Data, by: Sequence[str] = ()) -> list[Figure]:
 def _chosen(data: Data, by: Sequence[str]) -> tuple[int, ...]:
     """The factors of the map, as indices among those that are varied.
 
+    By default they are the two with most levels, the first down the page, which is longer than wide.
+
     Raises:
         UsageError: there is no such factor.
     """
-    from prima.results.ordermap import chosen
-
     names = [one.column.name for one in data.varied]
     if not by:
-        return chosen(data)
+        by_count = sorted(range(len(names)), key=lambda one: -data.varied[one].count)
+        return tuple(by_count[:2])
     for one in by:
         if one not in names:
             guess = did_you_mean(one, names)

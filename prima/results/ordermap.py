@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,8 +30,9 @@ class OrderMap:
     cells: list[Cell | None]
 
 
-def order_map(data: Data, rows: Levels, columns: Levels | None) -> OrderMap:
-    """The map of orders over one factor or two."""
+def order_map(data: Data, levels: Sequence[Levels]) -> OrderMap:
+    """The map of orders over the levels of one factor or of two."""
+    rows, columns = levels[0], levels[1] if len(levels) > 1 else None
     wide = len(columns.names) if columns else 1
     places = rows.codes * wide + (columns.codes if columns else 0)
     return OrderMap(rows, columns, _cells(places, data.order_codes, len(rows.names) * wide))
@@ -57,9 +59,3 @@ def _cells(places: Groups, orders: Groups, count: int) -> list[Cell | None]:
 def map_levels(data: Data) -> list[Levels]:
     """The levels of each varied factor, as shown in the map."""
     return [one.levels(MOST_LEVELS, RANGES) for one in data.varied]
-
-
-def chosen(data: Data) -> tuple[int, ...]:
-    """The factors of the first map: the two with most levels. A page is longer than wide."""
-    by_count = sorted(range(len(data.varied)), key=lambda one: -data.varied[one].count)
-    return tuple(by_count[:2])

@@ -144,7 +144,7 @@ def _map(data: Data, by: tuple[int, ...], link: Callable[[OrderRow], str]) -> st
         return made + "<p>No factor has more than one level, so there is no map.</p>"
     levels = map_levels(data)
     rows, columns = by[0], by[1] if len(by) > 1 else None
-    first = order_map(data, levels[rows], None if columns is None else levels[columns])
+    first = order_map(data, [levels[one] for one in by])
     names = [data.varied[one].name for one in by]
     return (
         "<p>Each cell has the number of the order that most of its runs have, with a link to that"
@@ -193,10 +193,10 @@ def _data(data: Data, link: Callable[[OrderRow], str]) -> dict[str, Any]:
     """The data from which the script draws maps of other factors."""
     levels = map_levels(data)
     maps: dict[str, OrderMap] = {}
-    for a in range(len(levels)):
-        maps[str(a)] = order_map(data, levels[a], None)
-    for a, b in combinations(range(len(levels)), 2):
-        maps[f"{a},{b}"] = order_map(data, levels[a], levels[b])
+    for count in (1, 2):
+        for chosen in combinations(range(len(levels)), count):
+            key = ",".join(map(str, chosen))
+            maps[key] = order_map(data, [levels[one] for one in chosen])
     none = next((one.number - 1 for one in data.orders if not one.signature), -1)
     return {
         "factors": [
