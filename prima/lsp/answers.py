@@ -30,15 +30,6 @@ ITEMS = {
     "event": lsp.CompletionItemKind.Event,
     "file": lsp.CompletionItemKind.File,
 }
-SYMBOLS = {
-    "module": lsp.SymbolKind.Module,
-    "class": lsp.SymbolKind.Class,
-    "method": lsp.SymbolKind.Method,
-    "event": lsp.SymbolKind.Event,
-    "variable": lsp.SymbolKind.Variable,
-    "function": lsp.SymbolKind.Function,
-    "object": lsp.SymbolKind.Object,
-}
 
 
 def completion(server: Server, params: lsp.CompletionParams, at: Cursor) -> lsp.CompletionList:
@@ -153,7 +144,7 @@ def _symbol(
     """A part and those in it, as deep as a document may be."""
     return lsp.DocumentSymbol(
         visible(part.name),
-        SYMBOLS[part.sort],
+        lsp.SymbolKind[part.sort.capitalize()],
         server.range(page.lines, part.start, part.end),
         server.range(page.lines, part.name_start, part.name_end),
         visible(part.detail) or None,

@@ -11,7 +11,7 @@ from pathlib import Path
 from prima.language.commands import DEVICES, TABLE_4_2
 from prima.lsp.descriptions import EVENTS, SESSION, VOICEXML_EVENTS
 from prima.lsp.hover import attribute_text, element_text
-from prima.lsp.meanings import DEFINES, FILES, REFERS, ReferenceUse
+from prima.lsp.meanings import DEFINES, EVENTS_OF, FILES, REFERS, ReferenceUse
 from prima.lsp.names import dialect
 from prima.lsp.paths import name_for
 from prima.lsp.scan import Attr, ScannedTag, ScannedText
@@ -31,13 +31,6 @@ MEMBERS = {
     "session": ("connection",),
     "application": ("lastresult$",),
 }
-EVENTS_OF = (
-    ("sensor", "touch."),
-    ("service", "reply."),
-    ("service", "error.service."),
-    ("device", "error.device."),
-)
-"""Beginnings of events, by kinds of names."""
 SHADOWS = ("utterance", "confidence", "inputmode", "interpretation")
 
 
@@ -240,9 +233,9 @@ class _Completion:
         """Events of the language, the robot and its services."""
         voice = dialect(self.page) == "voicexml"
         known = dict(VOICEXML_EVENTS | EVENTS if voice else EVENTS)
-        for kind, begin in EVENTS_OF:
+        for begin, kind in EVENTS_OF.items():
             for found in self.workspace.known(self.path, (kind,)):
-                known.setdefault(begin + found.mark.name, self._where(found))
+                known.setdefault(f"{begin}.{found.mark.name}", self._where(found))
         if tag.parent is not None and tag.parent.key in TABLE_4_2:
             for begin in ("end.", "cancel."):
                 known[begin + tag.parent.key] = EVENTS[begin[:-1]]

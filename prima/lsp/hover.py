@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from prima.interpreter.selection import prefixes
 from prima.language.commands import TABLE_4_2
 from prima.language.values import KINDS
 from prima.lsp.descriptions import (
@@ -138,11 +139,9 @@ def _known(mark: Mark) -> str:
         row = TABLE_4_2[mark.name]
         return f"{row.title}. {row.doc} Devices: {', '.join(sorted(row.devices))}."
     if mark.kind == ("event",):
-        words = mark.name.split(".")
-        for count in range(len(words), 0, -1):
-            name = ".".join(words[:count])
-            if name in EVENTS or name in VOICEXML_EVENTS:
-                return EVENTS.get(name) or VOICEXML_EVENTS[name]
+        described = VOICEXML_EVENTS | EVENTS
+        longest_first = reversed(prefixes(mark.name))
+        return next((described[one] for one in longest_first if one in described), "")
     return ""
 
 

@@ -147,6 +147,14 @@ FILES: dict[tuple[str, str, str], tuple[str, ...]] = {
 }
 """Attributes that name a file, with the vocabularies of documents that fit."""
 
+EVENTS_OF = {
+    "touch": "sensor",
+    "reply": "service",
+    "error.service": "service",
+    "error.device": "device",
+}
+"""Kinds of the names that follow the beginnings of events."""
+
 SHARED = frozenset(
     [
         *("place", "thing", "sensor", "device", "gesture", "command", "service"),

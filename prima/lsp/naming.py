@@ -7,6 +7,7 @@ from pathlib import Path
 
 from prima.errors import with_article
 from prima.language.values import read_value
+from prima.lsp.meanings import EVENTS_OF
 from prima.lsp.names import Mark, mark_at
 from prima.lsp.paths import name_for
 from prima.lsp.workspace import FoundName, Workspace
@@ -70,8 +71,7 @@ def _begun(workspace: Workspace, path: Path, mark: Mark) -> list[FoundName]:
     known = workspace.known(path, ("event",), anywhere=False)
     found = [one for one in known if one.mark.name.startswith(f"{mark.name}.")]
     begin, _, last = mark.name.rpartition(".")
-    kind = {"touch": "sensor", "reply": "service", "error.service": "service"}.get(begin)
-    kind = "device" if begin == "error.device" else kind
+    kind = EVENTS_OF.get(begin)
     if kind and not found:
         found = [one for one in workspace.known(path, (kind,), False) if one.mark.name == last]
     return found

@@ -61,13 +61,12 @@ def outline(page: ScannedText) -> list[OutlineElement]:
 
 def _part(tag: ScannedTag) -> OutlineElement:
     attr = next((one for name in NAMING if (one := tag.attr(name)) and one.value), None)
-    name = attr.value if attr else ""
-    start, end = (attr.first, attr.last) if attr else (tag.start + 1, tag.name_end)
-    detail = tag.name
-    if not attr:
+    if attr is not None:
+        name, detail, start, end = attr.value, tag.name, attr.first, attr.last
+    else:
         first = next((one for one in tag.attributes if one.first >= 0), None)
         name = f"{tag.name} {first.name}={first.value[:40]}" if first else tag.name
-        detail = ""
+        detail, start, end = "", tag.start + 1, tag.name_end
     return OutlineElement(
         " ".join(name.split())[:80] or tag.name,
         detail,
