@@ -104,9 +104,8 @@ class _Table:
         """Print a row."""
         if self.form == "json":
             text = json.dumps(row_data(row), ensure_ascii=False)
-            click.echo(
-                escaped(text.encode(errors="replace").decode())
-            )  # of names that are not UTF-8
+            text = text.encode(errors="replace").decode()  # of names that are not UTF-8
+            click.echo(escaped(text))
         else:
             text = clean(format_row(row, self.wide))
             click.echo(f"\033[31m{text}\033[0m" if row.exit and coloured() else text)

@@ -24,8 +24,8 @@ def exit_code(error: BaseException) -> int:
     Raises:
         Exception: an unexpected one, with ``PRIMA_DEBUG``.
     """
-    for kinds, handle in HANDLERS:
-        if isinstance(error, kinds):
+    for kind, handle in HANDLERS:
+        if isinstance(error, kind):
             return handle(error)
     if "PRIMA_DEBUG" in os.environ:
         raise error
@@ -105,19 +105,17 @@ def _system(error: OSError) -> int:
     return USAGE
 
 
-HANDLERS: list[tuple[tuple[type[BaseException], ...], Callable[[Any], int]]] = [
-    ((SystemExit,), lambda _error: FINE),  # click raises it when nobody reads any more
-    ((DocumentError,), _problems),
-    ((UsageError,), _message(USAGE)),
-    ((RunError,), _message(RUN)),
-    ((click.exceptions.NoArgsIsHelpError,), _no_arguments),
-    ((click.ClickException,), _usage),
-    ((BrokenPipeError,), closed_pipe),
-    ((OSError,), _system),
-    (
-        (UnicodeEncodeError,),
-        _message(USAGE, "the name of a file is not UTF-8 and cannot be written here; rename it."),
-    ),
-    ((MemoryError,), _message(RUN, "out of memory")),
+NOT_UTF8 = "the name of a file is not UTF-8 and cannot be written here; rename it."
+HANDLERS: list[tuple[type[BaseException], Callable[[Any], int]]] = [
+    (SystemExit, lambda _error: FINE),  # click raises it when nobody reads any more
+    (DocumentError, _problems),
+    (UsageError, _message(USAGE)),
+    (RunError, _message(RUN)),
+    (click.exceptions.NoArgsIsHelpError, _no_arguments),
+    (click.ClickException, _usage),
+    (BrokenPipeError, closed_pipe),
+    (OSError, _system),
+    (UnicodeEncodeError, _message(USAGE, NOT_UTF8)),
+    (MemoryError, _message(RUN, "out of memory")),
 ]
 """The first entry of which the exception is an instance handles it."""

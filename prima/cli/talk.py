@@ -187,8 +187,10 @@ def _greet(game: Game, screen: TerminalScreen) -> None:
 
 def _converse(conversation: Conversation, screen: TerminalScreen) -> None:
     """Read lines and carry them out until the session ends."""
+    from prima.talk.typed import complete
+
     if screen.interactive:
-        _edit_lines(conversation)
+        edit_lines(lambda text: complete(text, conversation.game.names, conversation.options))
     if not conversation.real:
         _step_by_step(conversation, screen)
     elif screen.interactive:
@@ -199,12 +201,6 @@ def _converse(conversation: Conversation, screen: TerminalScreen) -> None:
     else:
         _real_time(conversation, Piped())
     conversation.close()
-
-
-def _edit_lines(conversation: Conversation) -> None:
-    from prima.talk.typed import complete
-
-    edit_lines(lambda text: complete(text, conversation.game.names, conversation.options))
 
 
 def _step_by_step(conversation: Conversation, screen: TerminalScreen) -> None:

@@ -53,6 +53,7 @@ MOST_BYTES = 50_000_000
 """Maximum size of a run's answers in bytes; each application has an equal share."""
 MOST_SECONDS = 120.0
 """How long (s) a run waits for answers, in real time; each application has an equal share."""
+HEADERS = {"User-Agent": "PRIMA"}
 MOVED = frozenset([301, 302, 303, 307, 308])
 """Statuses of redirections."""
 
@@ -302,9 +303,8 @@ def _moved(request: Request, status: int, where: str) -> Request:
     """The request for a redirection's target (RFC 9110, 15.4)."""
     uri = urljoin(request.full_url, where)
     if status in (307, 308):
-        headers = {"User-Agent": "PRIMA"}
-        return Request(uri, request.data, headers, method=request.get_method())
-    return Request(uri, headers={"User-Agent": "PRIMA"})
+        return Request(uri, request.data, HEADERS, method=request.get_method())
+    return Request(uri, headers=HEADERS)
 
 
 def _refuse(message: str) -> NoReturn:
@@ -315,10 +315,10 @@ def form_request(uri: str, method: str, values: Data) -> Request:
     """A request that sends values as a form does."""
     encoded = urlencode({name: _text(value) for name, value in values.items()})
     if method == "post":
-        return Request(uri, encoded.encode(), {"User-Agent": "PRIMA"}, method="POST")
+        return Request(uri, encoded.encode(), HEADERS, method="POST")
     mark = "&" if "?" in uri else "?"
     whole = f"{uri}{mark}{encoded}" if encoded else uri
-    return Request(whole, headers={"User-Agent": "PRIMA"})
+    return Request(whole, headers=HEADERS)
 
 
 def _text(value: Json) -> str:

@@ -11,12 +11,13 @@ from pathlib import Path
 
 from prima.language.values import NAME
 from prima.markup.tree import Node
+from prima.sim.vocabulary.happenings import DOINGS
 from prima.sim.vocabulary.scenario import SCENARIO
 
 HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
 MARK = "Played with prima talk."
 """The comment in a saved session, by which it is recognized and may be overwritten."""
-USERS = frozenset(("say", "hang-up", "touch", "walk", "look", "follow", "stay", "leave"))
+USERS = frozenset(DOINGS) - {"wait", "note"}
 """Elements of a ``when`` that are actions of the user."""
 KEPT = ("robot", "person", "connection", "application", "service", "transfer", "answer", "when")
 """Elements of a scenario that are played, in the order in which they are written."""
