@@ -114,7 +114,8 @@ def answered(mediation: Mediation, ab: Behavior, data: Data, rule: str, serial: 
 def settle(mediation: Mediation, unit: Behavior) -> None:
     """U4, U5: end a unit when its Commands, or those that were left to run in it, have ended."""
     inside = unit.inside
-    if inside is None or unit.state is not RUNNING or inside.members or inside.open:
+    assert inside is not None
+    if unit.state is not RUNNING or inside.members or inside.open:
         return
     mediation.recorder.end(unit, "done", True, {}, inbound=False)
     _finish(mediation, unit, {})
@@ -209,8 +210,9 @@ def remove(mediation: Mediation, ab: Behavior) -> None:
 def close_unit(mediation: Mediation, app: Application, number: int) -> None:
     """U5: a unit is left: its running ABs finish, the others are deleted."""
     unit = app.units.pop(number, None)
-    if unit is None or unit.inside is None or unit.state is GONE:
+    if unit is None:
         return
+    assert unit.inside is not None
     unit.inside.open, unit.late = False, None
     for ab in list(reversed(list(unit.inside.members.values()))):
         if ab.state is RUNNING:

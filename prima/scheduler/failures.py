@@ -36,7 +36,7 @@ def e1(mediation: Mediation, ab: Behavior, event: str, reason: str, inbound: boo
         return  # the AB that it was inserted for, or its replacement, goes on without it
     tree = ab.stream.members if ab.unit is None else ab.unit.inner
     delete_rest(mediation, tree, ab.run, "E1")
-    if ab.run is not None and not ab.app.gone:
+    if ab.run is not None:
         ab.run.left = 0
         notice = Notice("failed", ab.run.number, ab.command, event=event, message=reason)
         mediation.tell(ab.app, ab.stream, notice)

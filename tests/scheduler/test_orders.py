@@ -133,6 +133,27 @@ def test_o2_a_unit_that_is_left_ends_with_what_is_cancelled_in_it() -> None:
     assert stage.running == {"ea#3"}
 
 
+def test_o2_of_a_unit_devices_are_told_to_abort_its_commands() -> None:
+    stage = Stage()
+    stage.request("ea", Group(chain(say("One."), say("Two."))))
+    stage.select()
+    stage.request("ea", replace(say("Wait!"), now=True))
+    assert stage.select() == ["ea#4"]
+    assert [order.behavior for order in stage.orders if order.verb == "abort"] == ["ea#2"]
+
+
+def test_o2_what_is_requested_for_a_unit_that_is_gone_is_said_without_it() -> None:
+    stage = Stage()
+    stage.open("ea", 1, "speaker")
+    stage.request("ea", say("Inside."), unit=1)
+    stage.select()
+    stage.request("ea", replace(say("Wait!"), now=True))
+    assert stage.select() == ["ea#3"]
+    stage.request("ea", say("Late."), unit=1)
+    stage.at(500).end("ea#3")
+    assert stage.select() == ["ea#4"]
+
+
 def test_o2_of_several_streams_the_one_that_ran_goes_on() -> None:
     stage = Stage()
     stage.request("ea", move(), cause=EVENT)

@@ -73,6 +73,22 @@ def test_u4_a_unit_ends_with_its_commands_whatever_devices_report() -> None:
     assert end["outcome"] == "done"
 
 
+def test_u5_a_unit_that_is_left_finishes_what_runs_and_tells_nobody() -> None:
+    stage = Stage()
+    stage.open("ea", 1, "speaker")
+    stage.request("ea", say("One."), say("Two."), say("Three."), unit=1)
+    stage.select()
+    stage.close("ea", 1)
+    assert stage.select() == [] and stage.running == {"ea#1", "ea#2"}
+    assert [(r["behavior"], r["outcome"]) for r in stage.phases("cancel")] == [
+        ("ea#4", "linked"),
+        ("ea#3", "linked"),
+    ]
+    stage.at(500).end("ea#2")
+    stage.select()
+    assert stage.running == set() and stage.told("ea") == []
+
+
 def test_u2_a_feedback_command_that_was_interrupted_starts_afresh() -> None:
     stage = Stage()
     stage.request("ea", search("Where are you?"))
