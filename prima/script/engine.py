@@ -8,7 +8,6 @@ time limit are stopped only if the engine has a process of its own (:mod:`prima.
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable, Mapping
 from time import thread_time
@@ -25,6 +24,7 @@ from prima.script.evaluation import (
     bounded,
     marked,
     plain_number,
+    read_json,
     whole,
 )
 from prima.script.hoisting import Hoisted, hoisted
@@ -229,9 +229,7 @@ class Engine:
         if isinstance(value, str):
             return bounded(value)
         text = self._call(self._help["json"], (value,))
-        if not isinstance(text, str):
-            return None
-        return json.loads(bounded(well_formed_json(text)))
+        return read_json(well_formed_json(text)) if isinstance(text, str) else None
 
     def elements(self, code: str, scopes: tuple[Scope, ...], most: int) -> list[Any]:
         """Evaluate an expression that gives an array; its elements, to be :meth:`put`.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -18,6 +19,8 @@ MAX_RUN_SECONDS, MAX_SHARE = 10.0, 0.02
 share of the time that passes in the run."""
 RESULT_LIMIT = 100_000
 """Maximum length of a value that leaves its application's scopes."""
+DEEPEST = 400
+"""Maximum depth of lists and objects in such a value, so that Python can read, compare and write it."""
 SCOPES = ("application", "document", "dialog", "local")
 """The scopes of an expression, outermost first (VoiceXML 5.1.2)."""
 LARGEST = 2**53
@@ -62,6 +65,33 @@ def bounded(text: str) -> str:
     if len(text) > RESULT_LIMIT:
         raise ScriptError(f"it gives more than {RESULT_LIMIT:,} characters")
     return text
+
+
+def read_json(text: str) -> Json:
+    """Read a value that an engine gives as JSON.
+
+    Raises:
+        ScriptError: it is too long, or nested too deep.
+    """
+    from json import loads  # which few documents need
+
+    try:
+        value: Json = loads(bounded(text))
+    except RecursionError:
+        raise ScriptError("it is nested too deep") from None
+    level: list[Json] = [value]
+    for _ in range(DEEPEST + 1):
+        if not level:
+            return value
+        level = [part for one in level for part in _parts(one)]
+    raise ScriptError("it is nested too deep")
+
+
+def _parts(value: Json) -> Iterable[Json]:
+    """What a list or object holds."""
+    if isinstance(value, dict):
+        return value.values()
+    return value if isinstance(value, list) else ()
 
 
 def plain_number(value: Json) -> Json:

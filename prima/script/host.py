@@ -148,7 +148,7 @@ def serve(requests: int, replies: int) -> None:
                 send(replies, reply, LONGEST_REPLY)
             except TooMuch as error:
                 send(replies, ["error", [str(error), [], 0, 0], reply[2]], LONGEST_REPLY)
-        except WireBroken:
+        except (TooMuch, WireBroken):
             return
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import _quickjs as quickjs
 
 from prima.script.budget import TIME_LIMIT
-from prima.script.evaluation import ScriptError, bounded
+from prima.script.evaluation import ScriptError, bounded, read_json
 from prima.script.sandbox import (
     CLOCK,
     DATE,
@@ -157,12 +157,7 @@ class TagEngine:
     def json(self, box: Any) -> Json:
         """A boxed value as plain data; undefined and functions become None."""
         text = self._call(self._help["json"], box)
-        if not isinstance(text, str):
-            return None
-        try:
-            return json.loads(well_formed_json(bounded(text)))
-        except RecursionError:
-            raise ScriptError("its value is nested too deep") from None
+        return read_json(well_formed_json(text)) if isinstance(text, str) else None
 
     def _member(self, thing: Any, name: str) -> Any:
         getter = self._functions.get(f".{name}")

@@ -21,7 +21,7 @@ _decode = json.JSONDecoder().decode
 
 
 class TooMuch(Exception):
-    """A message is too long or nested too deep; none of it was sent."""
+    """A message is too long or nested too deep: none of it was sent, or all of it was read."""
 
 
 class WireBroken(Exception):
@@ -53,6 +53,7 @@ def receive(pipe: int, longest: int) -> Any:
     """Wait for a message: each is answered before the next is sent.
 
     Raises:
+        TooMuch: it is nested deeper than can be read here, where more may be on the stack.
         WireBroken: the other side has gone.
     """
     found = os.read(pipe, FIRST)
@@ -70,7 +71,9 @@ def receive(pipe: int, longest: int) -> Any:
         raise WireBroken("more than a message")
     try:
         return _decode(str(b"".join(pieces)[HEADER.size :], "ascii"))
-    except (ValueError, RecursionError) as error:
+    except RecursionError:
+        raise TooMuch("it is nested too deep") from None
+    except ValueError as error:
         raise WireBroken(str(error)) from None
 
 

@@ -381,3 +381,15 @@ def test_a_tag_that_begins_like_slots_is_soon_known() -> None:
     (match,) = load(xml(f'<rule id="r">go<tag>&lt;a{" " * 3_000}</tag></rule>')).match("go")
     assert match.interpretation == "<a"
     assert process_time() - began < 2, "20 ms on a quiet machine"
+
+
+@pytest.mark.parametrize("deep", [399, 400, 990, 995, 1000, 3000])
+@pytest.mark.parametrize("around", ["[o]", "{o: o}"])
+def test_values_that_are_nested_deep(deep: int, around: str) -> None:
+    """Just below the depth at which the engine gives up, the reply was lost with its process."""
+    nested = f"var o = []; for (var i = 1; i < {deep}; i++) o = {around}; out = o;"
+    (match,) = load(f"{SCRIPT}$r = x {{!{{{nested}}}!}};").match("x", most=5)
+    assert (match.error is None) == (deep <= 400)
+    if match.error is not None:
+        assert match.error.message.startswith("The value cannot be given")
+    assert load(f"{SCRIPT}$r = x {{out = 1}};").match("x")[0].interpretation == 1

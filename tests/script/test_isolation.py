@@ -10,7 +10,7 @@ import time
 import pytest
 
 from prima.errors import UsageError
-from prima.script import host, shared, worker
+from prima.script import host, shared, wire, worker
 from prima.script.evaluation import SCOPES, EngineLost, ScriptError
 from prima.script.isolated import Engines, IsolatedEngine
 from prima.script.remote import Remote
@@ -275,3 +275,41 @@ def test_code_of_somebody_else_that_ends_the_common_process_is_no_fault_of_this(
     syntax().expression("a")
     os.kill(shared._common[0].pid, signal.SIGKILL)
     syntax().expression("a + b")
+
+
+@pytest.mark.parametrize("deep", [400, 401, 985, 990, 995, 1000])
+def test_values_that_are_nested_deep_are_told(deep: int) -> None:
+    """Python cannot read all that the engine can write."""
+    engine = engine_of(Engines())
+    scopes = scopes_of(engine)
+    engine.script(f"var o = []; for (var i = 1; i < {deep}; i++) o = [o];", scopes[1], scopes)
+    if deep <= 400:
+        assert engine.value("o", scopes) is not None
+    else:
+        with pytest.raises(ScriptError, match=r"nested too deep|call stack"):
+            engine.value("o", scopes)
+    assert engine.value("1 + 1", scopes) == 2
+
+
+def test_a_reply_that_cannot_be_read_on_a_long_stack_is_not_the_end() -> None:
+    reader, writer = os.pipe()
+
+    def deeper(left: int) -> object:
+        return deeper(left - 1) if left else wire.receive(reader, wire.LONGEST_REPLY)
+
+    try:
+        wire.send(writer, _nested(800), wire.LONGEST_REPLY)
+        with pytest.raises(wire.TooMuch):
+            deeper(400)
+        wire.send(writer, "after", wire.LONGEST_REPLY)
+        assert wire.receive(reader, wire.LONGEST_REPLY) == "after"
+    finally:
+        os.close(reader)
+        os.close(writer)
+
+
+def _nested(deep: int) -> list[object]:
+    made: list[object] = []
+    for _ in range(deep):
+        made = [made]
+    return made
