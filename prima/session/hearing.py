@@ -91,6 +91,9 @@ class Hearing:
             return True
         with self.wiring.apps.contained(app):
             link = app.listens_to(said)
+        if app.over:  # what it listens for took too long, and its question has ended with it
+            self.wiring.act(app)
+            return True
         if link is None or not link.event:
             return False
         # As in VoiceXML, a link ends the input of the field that is being visited.

@@ -206,3 +206,20 @@ def test_tags_that_take_long_at_each_answer_end_their_application(
     assert "its scripts took 1." in made.failures[0]
     asked = [one for one in made.records if one["phase"] == "start" and one.get("text") == "Well?"]
     assert len(asked) == 2
+
+
+AMBIGUOUS = """<grammar root="r" version="1.0" xmlns="http://www.w3.org/2001/06/grammar"><rule id="r">
+  <one-of><item><ruleref uri="#r"/><ruleref uri="#r"/></item><item>a</item></one-of></rule></grammar>"""
+
+
+@pytest.mark.parametrize("handled", ["", "<nomatch>Pardon?</nomatch>"])
+def test_an_application_that_listens_for_too_much_ends(handled: str) -> None:
+    """It was over, and yet never ended: its end came with the next thing that it asked for."""
+    call = Call(
+        f"<form><field name='f'>{AMBIGUOUS * 2}<prompt>Well?</prompt>{handled}</field></form>"
+    )
+    call.listens()
+    call.hears("a " * 200)
+    (over,) = call.phases("unload")
+    assert "what it listens for takes too long" in over["outcome"] and over["rule"] == "E2"
+    assert call.session.defects == []
