@@ -84,13 +84,15 @@ def _uses_sisr(code: str) -> bool:
     if not any(name in code for name in _OWN):
         return False
     parsed = parse_script(code)
-    return parsed is not None and any(_is_sisr(parsed, node) for node in parsed.walk())
+    return parsed is not None and any(
+        _is_sisr(parsed, node, parent) for node, parent in parsed.walk_inside()
+    )
 
 
-def _is_sisr(code: Code, node: Node) -> bool:
-    if node.type != "identifier" or node.parent is None or node.parent.children[0] != node:
+def _is_sisr(code: Code, node: Node, parent: Node | None) -> bool:
+    if node.type != "identifier" or parent is None or parent.children[0] != node:
         return False
-    around = node.parent.type
+    around = parent.type
     if around in ("member_expression", "subscript_expression"):
         return code.of(node) in _OWN
     return code.of(node) == "out" and (around in _GIVES or around == "binary_expression")

@@ -89,11 +89,11 @@ def _rules_used(code: str) -> list[str]:
     """The rules whose values or texts a tag reads: ``rules.name``, ``meta.name``."""
     found: list[str] = []
     parsed = parse_script(code)
-    for node in parsed.walk() if parsed is not None else ():
-        if node.type != "member_expression" or node.parent is None:
+    for node, parent in parsed.walk_inside() if parsed is not None else ():
+        if node.type != "member_expression" or parent is None:
             continue
         holder, part = node.child_by_field_name("object"), node.child_by_field_name("property")
-        called = node.parent.type == "call_expression"
+        called = parent.type == "call_expression"
         if holder is None or part is None or called or holder.type != "identifier":
             continue
         if parsed is not None and parsed.of(holder) in ("rules", "meta"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from prima.script.literals import Beyond, literal, string
@@ -88,17 +88,18 @@ def changed_names(piece: str) -> set[str] | None:
     code = parse_expression(piece)
     if code is None:
         return None
+    parents = {node.id: parent for node, parent in code.walk_inside()}
     names = (node for node in code.walk() if node.type in NAMES)
-    return {code.name(node) for node in names if not _only_reads(node)}
+    return {code.name(node) for node in names if not _only_reads(node, parents)}
 
 
-def _only_reads(name: Node) -> bool:
+def _only_reads(name: Node, parents: Mapping[int, Node | None]) -> bool:
     """Whether code only reads a variable's content at one of its occurrences."""
-    whole, outer = name, name.parent
+    whole, outer = name, parents[name.id]
     while (
         outer is not None and outer.type in STEPS and outer.child_by_field_name("object") == whole
     ):
-        whole, outer = outer, outer.parent
+        whole, outer = outer, parents[outer.id]
     if outer is None:
         return False
     operator = outer.child_by_field_name("operator")

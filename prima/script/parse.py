@@ -83,11 +83,18 @@ class Code:
 
     def walk(self) -> Iterator[Node]:
         """All nodes in the order of the text, parents first."""
-        waiting = [self.root]
+        return (node for node, _ in self.walk_inside())
+
+    def walk_inside(self) -> Iterator[tuple[Node, Node | None]]:
+        """All nodes in the order of the text, each with its parent.
+
+        ``Node.parent`` takes a time that grows with the depth, as it begins at the root.
+        """
+        waiting: list[tuple[Node, Node | None]] = [(self.root, None)]
         while waiting:
-            node = waiting.pop()
-            yield node
-            waiting += reversed(node.children)
+            node, parent = waiting.pop()
+            yield node, parent
+            waiting += [(child, node) for child in reversed(node.children)]
 
 
 def parse_script(code: str) -> Code | None:

@@ -393,3 +393,18 @@ def test_values_that_are_nested_deep(deep: int, around: str) -> None:
     if match.error is not None:
         assert match.error.message.startswith("The value cannot be given")
     assert load(f"{SCRIPT}$r = x {{out = 1}};").match("x")[0].interpretation == 1
+
+
+@pytest.mark.parametrize(
+    ("head", "code"),
+    [
+        (SCRIPT, "out = rules" + ".a" * 30_000),
+        (ABNF, "+".join(["xout"] * 25_000)),
+        (ABNF, "out = rules" + ".a" * 30_000),
+    ],
+)
+def test_long_chains_in_tags_are_checked_in_time(head: str, code: str) -> None:
+    """Each part asked the parser for its parent, which is looked for from the top of the chain."""
+    began = process_time()
+    load(f"{head}$r = x {{{code}}};").warnings()
+    assert process_time() - began < 5
