@@ -249,7 +249,8 @@ def limits() -> str:
         ),
         (
             "a value that leaves ECMAScript",
-            f"{evaluation.RESULT_LIMIT:,} characters",
+            f"{evaluation.RESULT_LIMIT:,} characters, "
+            f"{evaluation.DEEPEST} lists and objects inside each other",
             "`error.semantic`",
         ),
         ("elements that a `foreach` goes through", f"{content.MAX_REPEATS:,}", "`error.semantic`"),
