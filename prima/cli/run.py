@@ -128,13 +128,8 @@ def run(
         paths = [*scenarios, *chain.from_iterable(map(listed, lists))]
         run_all(paths, policies, output or "", options, workers or 0, form)
         return
-    from prima import api
-
     scenario = next(iter(scenarios), None)
-    if scenario is not None:
-        loaded = api.load_scenario(scenario)
-    else:
-        loaded = api.stage(fas, eas, says, maps=maps)
+    loaded = _load(scenario, fas, eas, says, maps)
     if output == "-":
         output, form = None, "json"
     elif output is not None:
@@ -183,6 +178,21 @@ def _check_batch(applications: bool, why: bool, resume: bool, output: str | None
     is_file = output is not None and output.endswith(".jsonl") and not os.path.isdir(output)
     if output == "-" or is_file:
         raise UsageError(f"{output}: several transcripts go into a folder: -o runs/.")
+
+
+def _load(
+    scenario: str | None,
+    fas: tuple[str, ...],
+    eas: tuple[str, ...],
+    says: tuple[str, ...],
+    maps: tuple[str, ...],
+) -> Loaded:
+    """A scenario, or applications in an empty room."""
+    from prima import api
+
+    if scenario is not None:
+        return api.load_scenario(scenario)
+    return api.stage(fas, eas, says, maps=maps)
 
 
 def _check_file(output: str, folder: str, loaded: Loaded) -> None:

@@ -93,7 +93,7 @@ def test(
     prima test documents/scenarios -k situations --jobs 2 --junit results.xml
     prima test my-scenario.xml --update
     """
-    from prima.testing.coverage import merge, total
+    from prima.testing.coverage import merge
     from prima.testing.finding import find
     from prima.testing.running import TestOptions as How
     from prima.testing.running import run_all
@@ -112,7 +112,7 @@ def test(
         merge(coverage, result.coverage)
         result.coverage = {}
         _progress(len(results), len(chosen))
-    under = fail_under is not None and total(coverage) < fail_under
+    under = _is_under(coverage, fail_under)
     with whoever_reads():
         if form == "text":
             _report(results)
@@ -217,6 +217,12 @@ def _finish(results: list[Result], coverage: Coverage | None, form: str) -> None
     if coverage is not None:
         put("\n" + format_coverage(coverage))
     put(f"\n{summary(results)}")
+
+
+def _is_under(coverage: Coverage, percent: float | None) -> bool:
+    from prima.testing.coverage import total
+
+    return percent is not None and total(coverage) < percent
 
 
 def _write(

@@ -124,10 +124,12 @@ def _check(
         tell(f"prima: {message}")
     counts = Counter(problem.severity for problem in problems)
     if form in ("text", "short") and not unread:
-        found = f"errors: {counts['error']}, warnings: {counts['warning']}"
-        any_counted = counts["error"] or counts["warning"]
-        tell(f"files: {len(names)}; {found if any_counted else 'no problems'}")
+        tell(f"files: {len(names)}; {_counts(counts['error'], counts['warning'])}")
     return len(unread), counts["error"], counts["warning"]
+
+
+def _counts(errors: int, warnings: int) -> str:
+    return f"errors: {errors}, warnings: {warnings}" if errors + warnings else "no problems"
 
 
 def _expanded(files: tuple[str, ...]) -> Iterator[str]:

@@ -162,9 +162,7 @@ def _read_csv(path: Path) -> tuple[dict[str, list[Any]], str]:
             raise ValueError(f"it has {len(head)} columns, and {MOST_COLUMNS} are read at most")
         if len(head) == 1 and ";" in head[0]:
             raise ValueError("its cells are separated by ';'; save it with ','")
-        twice = next((one for one in head if head.count(one) > 1), None)
-        if twice is not None:
-            raise ValueError(f'it has two columns "{twice[:100]}"')
+        _check_head(head)
         columns: list[list[str]] = [[] for _ in head]
         last: tuple[int, list[str]] | None = None
         for line, row in rows:
@@ -220,6 +218,12 @@ def _is_ended(path: Path) -> bool:
             raise ValueError("it is empty")
         stream.seek(-1, 2)
         return stream.read(1) in (b"\n", b"\r")
+
+
+def _check_head(head: list[str]) -> None:
+    twice = next((one for one in head if head.count(one) > 1), None)
+    if twice is not None:
+        raise ValueError(f'it has two columns "{twice[:100]}"')
 
 
 def _check(table: Path, cells: dict[str, list[Any]]) -> None:
