@@ -91,6 +91,20 @@ def test_x1_a_stream_that_follows_the_user_relies_on_no_place() -> None:
     assert inserted(stage) == []
 
 
+def test_x1_a_stream_relies_on_no_place_that_it_only_passes() -> None:
+    stage = Stage("prima+x1")
+    steps = [Step(move()), Step(say("One.")), Step(say("Two."), (1,))]
+    stage.request("ea", steps=steps)
+    assert set(stage.select()) == {"ea#1.1", "ea#2"}
+    stage.request("fa", command("turn", angle=5), cause=EVENT)
+    stage.at(500).end("ea#1.1", goal=False, x=1.0, y=1.0, heading=0.0)
+    stage.end("ea#2")
+    assert stage.select() == ["fa#1"]
+    stage.at(1000).end("fa#1", x=5.0, y=5.0, heading=0.0)
+    assert set(stage.select()) == {"ea#3", "ea#1.2"}
+    assert inserted(stage) == []
+
+
 def test_x1_the_way_back_changes_nothing_on_which_the_stream_relies() -> None:
     stage = at_a_panel("prima+x1", say("Second."), say("Third."))
     stage.select()
