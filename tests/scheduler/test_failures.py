@@ -82,6 +82,29 @@ def test_e1_a_device_that_hangs_past_its_limit_has_failed() -> None:
     assert stage.running == set()
 
 
+def test_e1_a_failure_is_recorded_with_its_rule_its_device_and_who_noticed_it() -> None:
+    reported, hangs = Stage(), Stage()
+    for stage in (reported, hangs):
+        stage.request("ea", say("One."))
+        stage.select()
+    reported.at(10).mediator.failed("ea#1", "speaker", "broken")
+    reported.select()
+    hangs.at(600_000).mediator.expire()
+    hangs.select()
+    [first], [second] = reported.phases("fail"), hangs.phases("fail")
+    assert (first["rule"], first["device"], first["inbound"]) == ("E1", "speaker", True)
+    assert (second["rule"], second["device"]) == ("E1", "speaker") and second.get("inbound") is None
+
+
+def test_e1_what_has_failed_is_not_done_when_its_other_branch_ends() -> None:
+    stage = Stage()
+    stage.request("ea", steps=[Step(say("One.")), Step(command("turn", angle=5))])
+    stage.select()
+    stage.at(10).mediator.failed("ea#2", "locomotion", "broken")
+    stage.at(500).end("ea#1")
+    assert [notice.what for _, notice in stage.notices] == ["failed", "ended"]
+
+
 def test_e1_a_robot_without_the_command_says_so() -> None:
     table = {name: row for name, row in TABLE_4_2.items() if name != "gesture"}
     stage = Stage(table=table, refuses=True)
