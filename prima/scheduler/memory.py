@@ -139,6 +139,7 @@ class WorkingMemory:
         """
         del self.waiting[ab.name]
         ab.state = LINKED
+        ab.wait.blocked = ("", "")
         ab.wait.since = ab.wait.kept_since = None
 
     def conflict(self, ab: Behavior) -> Behavior | None:

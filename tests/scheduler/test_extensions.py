@@ -63,6 +63,22 @@ def test_x4_with_x2_the_first_word_waits_for_the_turn_and_the_story_for_both() -
     assert stage.running == {"fa#2"}
 
 
+def test_x4_what_the_same_stream_keeps_after_the_turn_is_held_anew() -> None:
+    stage = Stage("prima+x4", {"fa": "fa", "ea": "ea", "third": "ea"})
+    stage.request("third", command("point-by-hand", angle=0), cause=EVENT)
+    stage.select()
+    stage.request("ea", ask("Yes?"), connect=True)
+    stage.select()
+    assert stage.holds("ea#1") == ["F2"]
+    stage.request("ea", command("move-head", pan=9), cause=EVENT + 1)
+    assert stage.select() == ["ea#2", "ea#3"], "it has the floor, and turns for the question"
+    stage.at(500).end("ea#2")
+    stage.select()
+    stage.at(900).end("ea#3")
+    assert stage.select() == [] and stage.floor == ["third:1"]
+    assert stage.holds("ea#1") == ["F2", "F2"]
+
+
 def test_x4_what_is_put_in_ranks_where_that_ranks_which_it_was_put_in_for() -> None:
     stage = Stage("prima+x4")
     stage.request("fa", command("turn", angle=5))
