@@ -53,7 +53,8 @@ def running_cut(patch: pytest.MonkeyPatch) -> None:
         for ab in behaviors:
             if ab.state == "running" and not ab.in_group:
                 endings.delete(mediation, ab, rule)
-        withdraw(mediation, behaviors, rule)
+        left = [ab for ab in behaviors if ab.name in mediation.memory.behaviors]
+        withdraw(mediation, left, rule)
 
     rebind(patch, endings, "withdraw", cut)
 
