@@ -70,6 +70,32 @@ def test_e1_what_was_cancelled_fails_alone() -> None:
     assert check(stage.records) == []
 
 
+def test_e1_what_was_requested_later_in_the_tree_is_cancelled() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."))
+    stage.select()
+    stage.request("ea", say("Two."), say("Three."))
+    stage.select()
+    stage.at(10).mediator.failed("ea#1", "speaker", "broken")
+    assert stage.select() == []
+    assert [(r["behavior"], r["outcome"]) for r in stage.phases("cancel")] == [
+        ("ea#3", "linked"),
+        ("ea#2", "waiting"),
+    ], "what follows is deleted before it could wait itself"
+    assert sorted(stage.told("ea")) == ["cancel.speak", "cancel.speak", "error.device.speaker"]
+
+
+def test_e1_a_unit_that_has_begun_is_finished_whole() -> None:
+    stage = Stage()
+    unit = Group(chain(say("One."), say("Two.")))
+    stage.request("ea", steps=[Step(unit), Step(command("turn", angle=5))])
+    assert stage.select() == ["ea#1", "ea#3", "ea#2"]
+    stage.at(10).mediator.failed("ea#2", "locomotion", "broken")
+    stage.select()
+    stage.at(500).end("ea#3")
+    assert stage.select() == ["ea#4"]
+
+
 def test_e1_a_device_that_hangs_past_its_limit_has_failed() -> None:
     stage = Stage()
     stage.request("ea", say())
@@ -185,32 +211,6 @@ def test_e6_a_reaction_goes_first() -> None:
     stage.at(5000).request("ea", say("Ouch."), cause=EVENT)
     stage.end("ea#1")
     assert stage.select() == ["ea#2"]
-
-
-def test_e1_what_was_requested_later_in_the_tree_is_cancelled() -> None:
-    stage = Stage()
-    stage.request("ea", say("One."))
-    stage.select()
-    stage.request("ea", say("Two."), say("Three."))
-    stage.select()
-    stage.at(10).mediator.failed("ea#1", "speaker", "broken")
-    assert stage.select() == []
-    assert [(r["behavior"], r["outcome"]) for r in stage.phases("cancel")] == [
-        ("ea#3", "linked"),
-        ("ea#2", "waiting"),
-    ], "what follows is deleted before it could wait itself"
-    assert sorted(stage.told("ea")) == ["cancel.speak", "cancel.speak", "error.device.speaker"]
-
-
-def test_e1_a_unit_that_has_begun_is_finished_whole() -> None:
-    stage = Stage()
-    unit = Group(chain(say("One."), say("Two.")))
-    stage.request("ea", steps=[Step(unit), Step(command("turn", angle=5))])
-    assert stage.select() == ["ea#1", "ea#3", "ea#2"]
-    stage.at(10).mediator.failed("ea#2", "locomotion", "broken")
-    stage.select()
-    stage.at(500).end("ea#3")
-    assert stage.select() == ["ea#4"]
 
 
 def answered_late(*branches: Command) -> Stage:

@@ -7,6 +7,7 @@ import pytest
 from prima.invariants import check, numbers
 from prima.messages import Heard
 from tests.helpers.robot import Bench, document
+from tests.helpers.stage import Stage, ask, say
 
 AGAIN = """<form id="ask">
   <field name="right" type="boolean"><prompt>Is it right?</prompt>
@@ -96,6 +97,20 @@ def test_x10_an_answer_to_who_has_ended_answers_nobody_else() -> None:
     bench = lapsed(AGAIN.format("<exit/>", ""))
     hears(bench, "yes")
     assert bench.logs() == [] and bench.session.take_unheard() == "yes"
+
+
+def test_x10_what_follows_an_answer_that_comes_early_is_no_reaction() -> None:
+    stage = Stage(POLICY)
+    stage.request("fa", say("A long story."))
+    stage.request("ea", ask(), say("Thank you."))
+    assert stage.select() == ["fa#1"]
+    question = stage.mediator.coming_question("ea")
+    assert question is not None
+    stage.at(1100).mediator.answered(question, {"outcome": "filled"}, "X10", 8)
+    stage.select()
+    stage.at(2000).end("fa#1")
+    assert stage.select() == ["ea#2"]
+    assert "cause" not in stage.phases("start")[-1]
 
 
 def test_x10_a_question_that_listens_again_is_answered_as_ever() -> None:

@@ -287,20 +287,6 @@ def test_x7_an_answer_that_comes_early_is_answered_behind_what_is_being_said() -
     assert {"ea#3", "ea#4"} & stage.running and "fa#1" not in stage.running
 
 
-def test_x10_what_follows_an_answer_that_comes_early_is_no_reaction() -> None:
-    stage = Stage("prima+x10")
-    stage.request("fa", say("A long story."))
-    stage.request("ea", ask(), say("Thank you."))
-    assert stage.select() == ["fa#1"]
-    question = stage.mediator.coming_question("ea")
-    assert question is not None
-    stage.at(1100).mediator.answered(question, {"outcome": "filled"}, "X10", TOUCH + 1)
-    stage.select()
-    stage.at(2000).end("fa#1")
-    assert stage.select() == ["ea#2"]
-    assert "cause" not in stage.phases("start")[-1]
-
-
 def test_x7_its_own_reaction_waits_as_well() -> None:
     stage = Stage("prima+x7")
     stage.request("ea", ask())
