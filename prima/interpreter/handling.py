@@ -221,7 +221,12 @@ class Handling:
     def takers(self, frame: Frame, item: Item | None, event: str) -> Taking:
         """The handlers in scope whose names take an event, kept in the form."""
         key = (event, name_of(item), len(frame.units))
-        return frame.form.takers.of(key, lambda: self._in_scope(frame, item, event))
+        takers = frame.form.takers
+        found = takers.get(key)
+        if found is None:
+            found = self._in_scope(frame, item, event)
+            takers.keep(key, found)
+        return found
 
     def _candidates(self, frame: Frame, fiber: Fiber, item: Item | None, event: str) -> Taking:
         """Handlers inside the Command whose event is being handled, and those in scope."""

@@ -27,23 +27,18 @@ class Candidate(NamedTuple, Generic[T]):
     least: int
 
 
-class Takers(Generic[T]):
-    """The handlers that take events, kept for events that come again."""
+class Takers(dict[Hashable, list[Candidate[T]]]):
+    """The handlers that take events, by the event and where it occurs, for events that come again."""
 
-    def __init__(self) -> None:
-        self._kept: dict[Hashable, list[Candidate[T]]] = {}
-        self._room = MOST_KEPT
+    _room = MOST_KEPT
 
-    def of(self, key: Hashable, find: Callable[[], list[Candidate[T]]]) -> list[Candidate[T]]:
-        """The handlers under a key, which names the event and where it occurs."""
-        found = self._kept.get(key)
-        if found is None:
-            found = find()
-            if self._room <= len(found):
-                self._kept, self._room = {}, MOST_KEPT
-            self._room -= 1 + len(found)
-            self._kept[key] = found
-        return found
+    def keep(self, key: Hashable, found: list[Candidate[T]]) -> None:
+        """Keep the handlers that take an event; all others are forgotten if they are too many."""
+        if self._room <= len(found):
+            self.clear()
+            self._room = MOST_KEPT
+        self._room -= 1 + len(found)
+        self[key] = found
 
 
 @dataclass(frozen=True, slots=True)

@@ -106,16 +106,17 @@ class Events:
         if context.page is not self._page:
             self._page, self._kept = context.page, Takers()
         scopes = _scopes(context)
-
-        def find() -> list[Candidate[Node]]:
+        key = (*scopes, thrown.name, thrown.shared)
+        takers = self._kept.get(key)
+        if takers is None:
             found = [one for node in scopes if node is not None for one in node.all(*HANDLERS)]
             self.owner.app.count_handlers(self.owner.document.node, found)
             known = (
                 Candidate(one, tuple(handler_names(one)), handler_number(one)) for one in found
             )
-            return taking(known, thrown.name, by_name=thrown.shared)
-
-        return self._kept.of((*scopes, thrown.name, thrown.shared), find)
+            takers = taking(known, thrown.name, by_name=thrown.shared)
+            self._kept.keep(key, takers)
+        return takers
 
     def _scope(self, thrown: Thrown) -> Scope:
         """The anonymous scope of a handler, with ``_event`` and ``_message`` (5.2.2)."""
