@@ -20,7 +20,7 @@ from prima.interpreter.frame import Fiber, Frame, GoForm
 from prima.interpreter.handling import Handling
 from prima.interpreter.places import source
 from prima.interpreter.sensors import NOTHING_READ, sensors_read
-from prima.interpreter.states import States
+from prima.interpreter.states import States, Timer
 from prima.interpreter.transfers import GoOut, Thrown
 from prima.markup.tree import Node
 from prima.messages import (
@@ -72,7 +72,7 @@ class Interpreter(States):
     def event(self, now: int, event: Event) -> None:
         """Deliver an event for every application, or for this one alone."""
         if now != self.now:
-            if self.timed:
+            if self.document.timed:
                 self._tick(now)
             else:
                 self.renew(now)
@@ -207,9 +207,9 @@ class Interpreter(States):
         """Raise the application's own delayed events that are due."""
         if not self.timers:
             return []
-        due = sorted((t for t in self.timers if t[0] <= now), key=lambda t: t[:2])
-        self.keep_timers([timer for timer in self.timers if timer[0] > now])
-        return [(name, data) for _, _, name, data, _ in due]
+        due = [timer for timer in self.timers if timer.due <= now]
+        self.keep_timers(timer for timer in self.timers if timer.due > now)
+        return [(timer.event, timer.data) for timer in sorted(due, key=lambda timer: timer.due)]
 
     def request(self, steps: list[Step], fiber: Fiber) -> int:
         """Ask the mediator for Commands; the first one after an event is a reaction (C5)."""
@@ -259,13 +259,12 @@ class Interpreter(States):
         due = self.now + max(milliseconds, 1)
         if milliseconds <= 1:  # sending itself one after another, it loops without ever waiting
             self.hurried = due
-        timer = (due, next(self.timer_serial), act.event, data, fiber.frame.state)
-        self.keep_timers([*self.timers, timer])
+        self.keep_timers([*self.timers, Timer(due, act.event, data, fiber.frame.state)])
 
     def _tick(self, now: int) -> None:
         if now != self.now:
             self.renew(now)
-            if self.timed and not self.over:
+            if self.document.timed and not self.over:
                 self.guard(self.engine.clock, self.application, now / 1000)
 
     def _resume(self, fiber: Fiber, notice: Notice) -> None:

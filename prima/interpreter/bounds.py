@@ -58,10 +58,43 @@ class ElementVisit(NamedTuple):
 
 
 class Bounds(Generic[Evaluator]):
-    """Counts what an application does; the base of the interpreters of both languages."""
+    """Counts what an application does; the base of the interpreters of both languages.
+
+    There may be very many applications: most fields have their first values in the class.
+    """
 
     name: str
     """The application's name."""
+    over = False
+    deadline: int | None = None
+    """When the application wants to be called next, if ever (ms)."""
+    began = moment(START)
+    """When the run began by its own calendar (ms since 1970, UTC)."""
+    now = -1
+    """The instant, in ms since the run began."""
+    written = 0
+    """Characters said, logged and sent since the start."""
+    steps = 0
+    """Pieces of content executed in this instant."""
+    hurried = -1
+    """An instant that continues the previous step count, after an event sent without delay."""
+    asked = 0
+    """The number of actions that the session has carried out."""
+    exhausted = ""
+    """Why the application may not continue."""
+    _short = 0
+    """By how much (ms) the waits so far were too short."""
+    _waits = 0
+    """The number of waits since they were last long enough."""
+    _waited = 0
+    """When the latest wait ended."""
+    _latest: Node | None = None
+    """The element executed last."""
+    _output = 0
+    _spent = 0.0
+    """Seconds spent on scripts in earlier instants, and on tags."""
+    _gone = 0
+    """Pieces of content executed in earlier instants."""
 
     def __init__(self, engine: Evaluator) -> None:
         self.engine = engine
@@ -69,38 +102,8 @@ class Bounds(Generic[Evaluator]):
         """The application's requests, for the session to carry out."""
         self.visits: list[ElementVisit] = []
         """The elements that it came to, until the session drains them."""
-        self.over = False
-        self.deadline: int | None = None
-        """When the application wants to be called next, if ever (ms)."""
-        self.began = moment(START)
-        """When the run began by its own calendar (ms since 1970, UTC)."""
-        self.now = -1
-        """The instant, in ms since the run began."""
-        self.written = 0
-        """Characters said, logged and sent since the start."""
-        self.steps = 0
-        """Pieces of content executed in this instant."""
-        self.hurried = -1
-        """An instant that continues the previous step count, after an event sent without delay."""
-        self._short = 0
-        """By how much (ms) the waits so far were too short."""
-        self._waits = 0
-        """The number of waits since they were last long enough."""
-        self._waited = 0
-        """When the latest wait ended."""
-        self._latest: Node | None = None
-        """The element executed last."""
-        self._output = 0
-        self._spent = 0.0
-        """Seconds spent on scripts in earlier instants, and on tags."""
         self._heard = Budget()
         """The budget used to match the latest utterance."""
-        self._gone = 0
-        """Pieces of content executed in earlier instants."""
-        self.asked = 0
-        """The number of actions that the session has carried out."""
-        self.exhausted = ""
-        """Why the application may not continue."""
 
     def note(self, node: Node | None, what: Visited = "in", name: str = "") -> None:
         """Note what happened to an element."""

@@ -47,6 +47,8 @@ HOLD_MS = 15_000
 """The default of hold-for: how long a stream is held for an event (X3)."""
 EVENT = re.compile(r"event|_message|\beval\b|valueOf|\\u")
 """Words in code that may read the event being handled."""
+CLOCK = re.compile(r"session|\beval\b|valueOf|\\u")
+"""Words in code that may read the time of the run."""
 ItemParts = tuple[
     str,
     Expression | None,
@@ -95,6 +97,7 @@ class Builder(ContentBuilder):
             assigns_parts=self.assigns_parts,
             counting=self.counting,
             curious=self.any_has(EVENT),
+            timed=self.any_has(CLOCK),
         )
         self.settle_units(document)
         return document

@@ -187,6 +187,8 @@ class Document:
     """Whether Python can evaluate all its code; None until computed."""
     curious: bool = False
     """Whether any code may read the event being handled."""
+    timed: bool = False
+    """Whether any code may read the time of the run."""
     sensors: tuple[frozenset[str] | None] | None = None
     """The sensors that code may read; None until computed: see :mod:`prima.interpreter.sensors`."""
     _holders: tuple[list[Form | None], list[Holder]] | None = field(

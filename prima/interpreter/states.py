@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from itertools import count, groupby
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from prima.interpreter.acts import Declare, Script
 from prima.interpreter.bounds import ElementVisit
@@ -25,6 +25,17 @@ if TYPE_CHECKING:
     from prima.script.isolated import AnyEngine
 
 
+class Timer(NamedTuple):
+    """A delayed event."""
+
+    due: int
+    """When it is raised (ms)."""
+    event: str
+    data: Data
+    state: int
+    """The state that it belongs to."""
+
+
 class States(App["AnyEngine | PythonEngine"]):
     """One document with its active form, and the content waiting there.
 
@@ -37,6 +48,17 @@ class States(App["AnyEngine | PythonEngine"]):
     execute: Executor
     handling: Handling
     algorithm: Algorithm
+    frame: Frame | None = None
+    timers: tuple[Timer, ...] = ()
+    """Delayed events, in the order in which they were asked for."""
+    untold = False
+    """Whether the variable ``sensor`` is outdated: it is updated when code runs."""
+    reports = 0
+    """How often sensors reported new values."""
+    cause: int | str | None = None
+    """The event that the next request reacts to: its serial, or the name of an own one (C5)."""
+    fresh: tuple[int | str, int] | None = None
+    """A cause, and for how long (ms) a reaction to it is worth starting (X8)."""
 
     def __init__(
         self,
@@ -49,23 +71,9 @@ class States(App["AnyEngine | PythonEngine"]):
         super().__init__(document.id, document.kind, evaluator_of(document, engines or Engines()))
         self.application = self.engine.named("application")
         self.visits.append(ElementVisit(self.name, 0, "document", document.node, document.file))
-        self.frame: Frame | None = None
         self.waiting: dict[int, Fiber] = {}
-        self.timers: list[tuple[int, int, str, Data, int]] = []
-        """Delayed events: when, serial number, name, data, and the state they belong to."""
-        self.timer_serial = count(1)
-        self.untold = False
-        """Whether the variable ``sensor`` is outdated: it is updated when code runs."""
-        self.reports = 0
-        """How often sensors reported new values."""
         self.reported: dict[str, int] = {}
         """The number of the latest report, by the first part of a sensor's name."""
-        self.cause: int | str | None = None
-        """The event that the next request reacts to: its serial, or the name of an own one (C5)."""
-        self.fresh: tuple[int | str, int] | None = None
-        """A cause, and for how long (ms) a reaction to it is worth starting (X8)."""
-        self.timed = "session" in document.node.source.text
-        """Whether the document reads the clock at all."""
 
     def guard(self, act: Callable[..., object], *given: Any) -> None:
         """Do something for the application, handling its errors."""
@@ -97,7 +105,8 @@ class States(App["AnyEngine | PythonEngine"]):
         while self.frame is not None:
             self.leave(self.frame)
             self.frame = self.frame.caller
-        self.keep_timers([])
+        self.note(None, "leave")
+        self.keep_timers(())
 
     def drive(self, fiber: Fiber, notice: Notice | None) -> None:
         """Run a fiber until it waits or ends, then carry out a transfer of control."""
@@ -176,6 +185,7 @@ class States(App["AnyEngine | PythonEngine"]):
             raise GoOut("return")
         self.leave(frame)
         self.frame = caller
+        self.note(None, "leave", caller.form.id)
         main = next((one for one in caller.fibers if one.main), None)
         if main is None or main.content is None:
             return None
@@ -205,16 +215,13 @@ class States(App["AnyEngine | PythonEngine"]):
 
     def leave(self, frame: Frame) -> None:
         """O3: end the state's content, conclude its units, give up its Commands."""
-        outer = frame.caller.form if frame.caller is not None and not self.over else None
-        name = outer.id if outer is not None else ""
-        self.note(None, "leave", name)
         if frame.fibers:
             for fiber in frame.fibers:
                 self.forget(fiber)
         if frame.units:
             self.close_units(frame)
         if self.timers:
-            self.keep_timers([timer for timer in self.timers if timer[4] != frame.state])
+            self.keep_timers(timer for timer in self.timers if timer.state != frame.state)
         if frame.asked:  # otherwise the mediator does not know the state
             self.actions.append(LeaveState(frame.state))
 
@@ -224,10 +231,10 @@ class States(App["AnyEngine | PythonEngine"]):
             self.actions.append(CloseUnit(number))
         frame.units = ()
 
-    def keep_timers(self, timers: list[tuple[int, int, str, Data, int]]) -> None:
+    def keep_timers(self, timers: Iterable[Timer]) -> None:
         """Set the delayed events, and when the first one is due."""
-        self.timers = timers
-        self.deadline = min((timer[0] for timer in timers), default=None)
+        self.timers = tuple(timers)
+        self.deadline = min((timer.due for timer in self.timers), default=None)
 
     def enter(self, form: Form) -> None:
         """Enter the first form."""
