@@ -37,7 +37,6 @@ def e1(mediation: Mediation, ab: Behavior, event: str, reason: str, inbound: boo
     tree = ab.stream.members if ab.unit is None else ab.unit.inner
     delete_rest(mediation, tree, ab.run, "E1")
     if ab.run is not None:
-        ab.run.left = 0
         notice = Notice("failed", ab.run.number, ab.command, event=event, message=reason)
         mediation.tell(ab.app, ab.stream, notice)
 
@@ -136,20 +135,22 @@ def allowance(ab: Behavior) -> int:
     """How long an AB may run (ms): the times among its arguments and :data:`HANG_MS`."""
     row, command = ab.type, ab.command
     assert row is not None and command is not None
-    known = row.arguments
     stated = [
         int(value)
         for name, value in command.args.items()
-        if name in known and known[name].kind == "duration"
+        if row.arguments[name].kind == "duration"
     ]
     return HANG_MS + sum(stated) + _saying_ms(command)
 
 
 def _saying_ms(command: Command) -> int:
     """How long a text may take to say (ms): its letters at its slowest rate, and its cues."""
-    if not command.text and not command.cues:
-        return 0
-    times = [cue.value for cue in command.cues if cue.kind != "rate"]
-    rates = [float(cue.value or 1) for cue in command.cues if cue.kind == "rate"]
-    letters = MS_A_LETTER * len(command.text or "") / min([1.0, *rates])
-    return round(sum(value for value in times if isinstance(value, int | float)) + letters)
+    slowest, times = 1.0, 0.0
+    for cue in command.cues:
+        if not isinstance(cue.value, int | float):
+            continue
+        if cue.kind == "rate":
+            slowest = min(slowest, cue.value)
+        else:
+            times += cue.value
+    return round(times + MS_A_LETTER * len(command.text or "") / slowest)
