@@ -90,7 +90,6 @@ def expire(mediation: Mediation) -> None:
     for ab in [ab for ab in running.values() if ab.late is not None and ab.late <= now]:
         if ab.name not in running:  # it ended with another one
             continue
-        ab.late = None
         if ab.inside is not None:
             unit_timeout(mediation, ab)
         else:
@@ -136,9 +135,7 @@ def allowance(ab: Behavior) -> int:
     row, command = ab.type, ab.command
     assert row is not None and command is not None
     stated = [
-        int(value)
-        for name, value in command.args.items()
-        if row.arguments[name].kind == "duration"
+        int(value) for name, value in command.args.items() if row.arguments[name].kind == "duration"
     ]
     return HANG_MS + sum(stated) + _saying_ms(command)
 

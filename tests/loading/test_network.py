@@ -270,7 +270,7 @@ def fetches(host: str, path: str) -> str:
 def test_a_silent_host_costs_its_application_one_deadline(
     path: str, tmp_path: Path, host: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(web, "REAL_SECONDS", 0.4)
+    monkeypatch.setattr(web, "REAL_SECONDS", 30.0 if path == "/moved" else 0.4)
     Host.pages = {"/one": "<one/>"}
     began = time.monotonic()
     made = played(tmp_path, host, fetches(host, path), SPEAKS)
