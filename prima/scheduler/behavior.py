@@ -189,12 +189,10 @@ class Behavior:
     wait: Wait = field(default_factory=Wait)
     loop: int = 0
     """The number of a feedback Command's loop that is running, or ran last (U2)."""
-    last_loop: bool = False
-    """Whether this is the last loop."""
     resumed: bool = False
     listening: bool = False
     silent: bool = False
-    """Whether nobody is notified of its end any more."""
+    """Whether nobody is notified of its end any more; the loop that runs is then the last."""
     left: bool = False
     """Whether its state has been left (O3): a question then ends as soon as it listens."""
     connect: bool = False

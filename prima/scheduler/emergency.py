@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.scheduler.behavior import GONE, RUNNING, Behavior, Inside
+from prima.scheduler.behavior import RUNNING, Behavior, Inside
 from prima.scheduler.endings import delete, remove, settle, tell_cancelled
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.starvation import forget_waits
@@ -44,7 +44,7 @@ def _give_up(mediation: Mediation) -> None:
     for stream in memory.streams.values():
         stream.hold = None
     for ab in reversed(list(memory.behaviors.values())):
-        if ab.state is not GONE and not ab.in_group:
+        if not ab.in_group:
             delete(mediation, ab, "E5")
             if not ab.silent:
                 tell_cancelled(mediation, ab)
@@ -65,7 +65,7 @@ def halt(mediation: Mediation, ab: Behavior) -> None:
     """Stop a running AB; it waits to start again unless it is no longer wanted."""
     inside = ab.inside
     left = inside is not None and inside.spans and not inside.open
-    given_up = ab.silent or ab.last_loop or left
+    given_up = ab.silent or left
     if inside is not None:
         _halt_inner(mediation, inside, given_up)
         if not (inside.members or inside.open or given_up):

@@ -40,7 +40,7 @@ def question(memory: WorkingMemory) -> Behavior | None:
 
 def u2(mediation: Mediation, ab: Behavior, goal: bool, data: Data, inbound: bool) -> None:
     """U1, U2: an AB, or one loop of a feedback Command, ends by itself."""
-    ending = goal or ab.last_loop or not ab.feedback
+    ending = goal or ab.silent or not ab.feedback
     outcome = str(data.get("outcome", "done")) if ending else "again"
     mediation.recorder.end(ab, outcome, goal, data, inbound)
     if not goal:
@@ -162,7 +162,7 @@ def withdraw(mediation: Mediation, behaviors: list[Behavior], rule: str) -> None
 
 def silence(ab: Behavior) -> None:
     """Let a running AB finish without notifying anybody; a unit's time limit is lifted (U5)."""
-    ab.silent = ab.last_loop = True
+    ab.silent = True
     if ab.inside is not None:
         ab.late = None
 

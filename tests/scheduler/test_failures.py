@@ -12,18 +12,14 @@ import pytest
 from prima.invariants import check
 from prima.language.commands import TABLE_4_2
 from prima.messages import (
-    ApplicationLoaded,
     Command,
     Emergency,
-    Ended,
     Group,
     Occurred,
     Step,
 )
 from tests.helpers.generated.plays import perform
-from tests.helpers.generated.scripts import Ask, Leave, Script, drive
-from tests.helpers.generated.world import World
-from tests.helpers.plays import NESTED, play, stepped, told
+from tests.helpers.plays import play
 from tests.helpers.stage import Stage, chain, command, move, say
 
 EVENT = 7
@@ -324,90 +320,6 @@ def test_e4_starving_is_reported_and_can_be_bounded() -> None:
     assert 0 < loops(30) <= 32
 
 
-def test_e5_an_emergency_stop_ends_everything_until_released() -> None:
-    stage = Stage()
-    stage.request("ea", say("One."), say("Two."))
-    stage.select()
-    stage.at(10).mediator.emergency(True, True, 8)
-    stage.select()
-    assert stage.running == set()
-    stage.request("fa", say(), cause=EVENT)
-    assert stage.select() == []
-    stage.at(20).mediator.emergency(False, True, 9)
-    assert stage.select() == ["fa#1"]
-    stage.at(30).end("fa#1")
-    assert stage.select() == ["ea#1"], "what was cut is done again"
-
-
-def test_e5_only_what_returns_is_recorded_as_halted() -> None:
-    stage = Stage()
-    stage.request("ea", say("One."))
-    stage.request("fa", command("move-head", pan=1))
-    stage.select()
-    stage.at(5).leave("ea")
-    stage.at(10).mediator.emergency(True, True, 8)
-    stage.select()
-    halted = {r["behavior"]: r["outcome"] for r in stage.phases("cancel")}
-    assert halted == {"ea#1": "running", "fa#1": "halted"}
-    assert [r["serial"] for r in stage.phases("emergency")] == [8]
-    stage.at(20).mediator.emergency(False, True, 9)
-    assert stage.select() == ["fa#1"]
-
-
-def test_e5_is_recorded_with_what_the_operator_says() -> None:
-    stage = Stage()
-    stage.mediator.emergency(True, True, 8)
-    stage.at(20).mediator.emergency(False, False, 9)
-    stage.select()
-    names = ("actor", "rule", "outcome", "inbound", "serial", "data")
-    assert [[one.get(name) for name in names] for one in stage.phases("emergency")] == [
-        ["mediator", "E5", "pressed", True, 8, None],
-        ["mediator", "E5", "released", True, 9, {"resume": False}],
-    ]
-
-
-def test_e5_streams_do_not_resume_when_the_operator_says_so() -> None:
-    stage = Stage()
-    stage.request("ea", say("One."), say("Two."))
-    stage.select()
-    stage.at(10).mediator.emergency(True, True, 8)
-    stage.at(20).mediator.emergency(False, False, 9)
-    assert stage.select() == []
-    assert stage.told("ea") == ["cancel.speak", "cancel.speak"]
-
-
-def test_a_unit_that_was_left_does_not_come_back_after_an_emergency() -> None:
-    # The unit is out of time, what runs in it finishes (U5); the emergency ends that, and
-    # with it the unit. Yet the unit is put back among the waiting ones, and starts again.
-    body = (
-        '<form id="f1"><iu longest="1ms"><block><speak>Hello.</speak></block></iu>'
-        '<on event="error"/></form>'
-    )
-    run = perform(play(body, (2, Emergency(True)), (3, Emergency(False))))
-    assert check(run.records) + run.problems == []
-
-
-def test_a_unit_that_is_left_during_an_emergency_is_concluded() -> None:
-    # The application leaves the unit because it is told of the emergency. The unit waits then
-    # for its release, starts again and keeps its devices for ever.
-    body = (
-        '<form id="f1"><iu><block><speak>Hello.</speak></block></iu>'
-        '<on event="emergency.stop"><goto next="#f2"/></on></form><form id="f2"/>'
-    )
-    run = perform(play(body, (1, Emergency(True)), (2, Emergency(False))))
-    assert check(run.records) + run.problems == []
-
-
-def test_a_group_that_was_given_up_ends_whole_in_an_emergency() -> None:
-    # The group (U4) is unheard since its state was left (O3). Halted, it is taken out of
-    # working memory, but not its Commands: its stream stays open, and so does its floor.
-    asked = Ask((("speak", "turn"),), ((),))
-    events = ((1, ((asked,), ())), (2, ((Leave(),), ())))
-    script = Script(((), ()), events, ((3, 1, True),), World())
-    run = drive(script)
-    assert check(run.records) + run.problems == []
-
-
 def test_a_play_meets_touches_units_and_emergencies_without_harm() -> None:
     body = (
         '<form id="f1"><iu><block><speak>Hello.</speak></block></iu>'
@@ -428,19 +340,3 @@ def test_e1_a_unit_in_a_unit_fails_with_it() -> None:
     stage.select()
     assert stage.running == set()
     assert check(stage.records, "prima") == []
-
-
-def test_a_unit_of_which_only_what_was_out_of_time_is_left_ends_in_an_emergency() -> None:
-    # The emergency gave up the inner unit, which was out of time; with it the outer one ended,
-    # and was then put back among the waiting ones.
-    session, records = stepped(
-        NESTED.format("", " longest='1s'"),
-        (0, (ApplicationLoaded("ea"),)),
-        (100, (Ended("ea#3"),)),
-        (1200, ()),
-        (1500, (Emergency(True),)),
-        (3000, (Emergency(False),)),
-    )
-    assert told(records, "ea#4")[-1] == (1500, "cancel")
-    assert told(records, "ea#1")[-1] == (1500, "end")
-    assert session.idle
