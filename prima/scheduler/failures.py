@@ -61,9 +61,7 @@ def deadline(mediation: Mediation) -> int | None:
     late = [ab.late for ab in memory.running.values()]
     late += mediation.holds.values()
     if not mediation.halted:
-        late.append(mediation.starving)
-        if "x8" in mediation.policy.extensions:
-            late += [ab.stale for ab in memory.waiting.values()]
+        late += [mediation.starving, *(ab.stale for ab in memory.waiting.values())]
     return earliest(_lapse(memory, mediation.absence), *late)
 
 

@@ -14,14 +14,12 @@ from prima.scheduler.mediation import Mediation
 from prima.scheduler.selection import able
 
 
-def x8(mediation: Mediation) -> bool:
-    """X8: give up reactions that were not started in time; whether there were any."""
-    if "x8" not in mediation.policy.extensions or mediation.halted:
-        return False
-    stale = [ab for ab in mediation.memory.waiting.values() if _is_stale(ab, mediation.now)]
-    if not stale:
-        return False
+def x8(mediation: Mediation) -> None:
+    """X8: give up reactions that were not started in time."""
     waiting = mediation.memory.waiting.values()
+    stale = [ab for ab in waiting if _is_stale(ab, mediation.now)]
+    if not stale or mediation.halted:
+        return
     ranked = mediation.policy.ranked(waiting, mediation.memory, mediation.now)
     may_start = [ab for _, ab in able(mediation, ranked, {})]
     for ab in stale:
@@ -29,7 +27,6 @@ def x8(mediation: Mediation) -> bool:
             ab.stale = mediation.now + 1  # the selection of this very instant may start it
         elif ab.name in mediation.memory.waiting:
             _give_up(mediation, ab)
-    return True
 
 
 def _is_stale(ab: Behavior, now: int) -> bool:
@@ -44,10 +41,9 @@ def _give_up(mediation: Mediation, root: Behavior) -> None:
         if not kept or mediation.memory.conflict(ab) is not None:
             lost.append(ab)
     reaction = root.reaction
-    freed = [ab for one in lost for ab in one.children if ab.state is LINKED and ab not in lost]
     for ab in reversed(lost):
         delete(mediation, ab, "X8")
-    for ab in freed:
+    for ab in [child for one in lost for child in one.children]:
         if ab.state is WAITING:
             ab.reaction, ab.stale = reaction, mediation.now + 1
             ab.freed = -1  # nothing has ended before it (S2c)
@@ -70,7 +66,7 @@ def _tell(mediation: Mediation, lost: list[Behavior]) -> None:
 
     The rest of the same request goes on, if any of it has started or is yet to start.
     """
-    notified = [ab for ab in lost if ab.run is not None and not (ab.silent or ab.app.gone)]
+    notified = [ab for ab in lost if ab.run is not None]
     for ab in notified:
         assert ab.run is not None
         ab.run.left -= 1

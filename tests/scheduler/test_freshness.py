@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from prima.invariants import check
-from prima.messages import Command, Step
-from tests.helpers.stage import Stage, ask, command, move, say
+from prima.messages import Command, Group, Step
+from tests.helpers.stage import Stage, ask, chain, command, move, say
 
 TOUCH = 7
 POLICY = "prima+x8"
@@ -172,9 +172,9 @@ def test_x8_what_waits_for_more_than_an_answered_question_reacts_to_nothing_new(
 def test_x8_nothing_is_offered_to_what_is_no_reaction() -> None:
     stage = Stage(POLICY)
     stage.request("ea", say("A long story."))
-    stage.request("fa", ask("What's the matter?"))
     stage.select()
-    assert stage.mediator.offered() is None
+    stage.request("fa", ask("What's the matter?"))
+    assert stage.select() == [] and stage.mediator.offered() is None
 
 
 def test_x8_with_x4_the_turn_to_the_user_goes_with_it() -> None:
@@ -186,3 +186,100 @@ def test_x8_with_x4_the_turn_to_the_user_goes_with_it() -> None:
     stage.select()
     assert late(stage) == [] and stage.told("fa") == ["expired.q-and-a"]
     assert check(stage.records, both) == []
+
+
+def test_x8_nothing_is_given_up_while_the_robot_is_stopped() -> None:
+    stage = busy(say("Oh!"))
+    stage.at(2000).mediator.emergency(True, True, 8)
+    assert late(stage, 3500) == [] and stage.told("fa") == []
+    assert stage.mediator.deadline() is None
+    stage.at(4000).mediator.emergency(False, True, 9)
+    assert late(stage, 4000) == ["ea#1"] and stage.told("fa") == ["expired.speak"]
+
+
+def test_x8_nor_when_something_else_is_over_meanwhile() -> None:
+    stage = Stage("prima+x3+x8")
+    stage.request("ea", say(), cause=TOUCH - 1, hold=2500)
+    stage.select()
+    stage.at(1000).end("ea#1")
+    stage.select()
+    stage.request("fa", say("Oh!"), cause=TOUCH, fresh=2000)
+    stage.mediator.emergency(True, True, 8)
+    assert late(stage, 3500) == [] and stage.told("fa") == []
+    assert [one["outcome"] for one in stage.phases("held")] == ["begun", "over"]
+
+
+def test_x8_whoever_cannot_start_in_the_last_instant_is_given_up_in_the_next() -> None:
+    """It could have started when the others ended, but then another reaction was asked for."""
+    stage = busy(say("Oh!"))
+    stage.at(3000).end("ea#1")
+    stage.mediator.expire()
+    stage.request("ea", say("News!"), cause=TOUCH + 1)
+    assert stage.select() == ["ea#2"] and stage.told("fa") == []
+    assert stage.mediator.deadline() == 3001
+    assert late(stage, 3001) == [] and stage.told("fa") == ["expired.speak"]
+
+
+def test_x8_what_follows_goes_first_and_its_application_hears_of_all() -> None:
+    stage = busy(say("Oh!"), Group(chain(say("Who?"), say("You!"))), say("Well."))
+    assert late(stage) == []
+    gone = [(one["behavior"], one["outcome"]) for one in stage.phases("cancel")]
+    assert gone == [("fa#3", "linked"), ("fa#2", "linked"), ("fa#1", "waiting")]
+    told = [(one.what, one.event) for _, one in stage.notices]
+    assert told == [
+        ("cancelled", "expired.speak"),
+        ("cancelled", "expired.iu"),
+        ("cancelled", "expired.speak"),
+    ]
+    assert all(one.command is not None for _, one in stage.notices)
+
+
+def test_x8_what_waits_for_something_else_as_well_is_not_given_up_with_it() -> None:
+    stage = busy(steps=[Step(say("Oh!")), Step(NOD), Step(say("Well."), (0, 1))])
+    assert late(stage) == [] and stage.told("fa") == ["expired.speak"]
+    stage.at(3500).end("fa#2")
+    stage.at(4000).end("ea#1")
+    assert stage.select() == ["fa#3"]
+    stage.at(5000).end("fa#3")
+    told = [one.what for app, one in stage.notices if app == "fa"]
+    assert told == ["expired", "ended", "ended", "done"]
+
+
+def test_x8_what_follows_two_of_them_goes_once() -> None:
+    ah, eh = Step(say("Ah!"), (0,)), Step(say("Eh!"), (0,))
+    stage = busy(steps=[Step(say("Oh!")), ah, eh, Step(say("Well."), (1, 2))])
+    assert late(stage) == [] and stage.told("fa") == ["expired.speak"] * 4
+    assert [one["behavior"] for one in stage.phases("cancel")] == ["fa#4", "fa#3", "fa#2", "fa#1"]
+
+
+def test_x8_a_branch_that_is_given_up_whole_ends_what_began_once() -> None:
+    stage = busy(steps=[Step(NOD), Step(say("Oh!")), Step(say("Ah!"), (1,))])
+    stage.at(2000).end("fa#1")
+    stage.select()
+    late(stage)
+    assert [(one.what, one.event) for _, one in stage.notices] == [
+        ("ended", ""),
+        ("expired", "expired.speak"),
+        ("expired", "expired.speak"),
+        ("done", ""),
+    ]
+
+
+def test_x8_an_application_that_has_left_the_state_or_has_gone_hears_nothing() -> None:
+    for goes in (lambda stage: stage.leave("fa"), lambda stage: stage.mediator.unload("fa", "")):
+        stage = busy(say("Oh!"))
+        goes(stage)
+        late(stage)
+        assert stage.told("fa") == []
+
+
+def test_x8_an_answer_is_offered_to_the_first_question_of_reactions_alone() -> None:
+    stage = Stage(POLICY)
+    stage.request("ea", say("A long story."))
+    stage.select()
+    stage.request("fa", ask("Between us?"))
+    stage.request("fa", Group(chain(say("Now."), ask("In a unit?"))), ask("You?"), cause=TOUCH)
+    stage.select()
+    question = stage.mediator.offered()
+    assert question is not None and question.command is not None
+    assert question.command.text == "You?"
