@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 from prima.language.commands import LETTER_MS, LONGEST_TURN_MS, TABLE_4_2
-from prima.messages import Command, Cue, Group, Step
+from prima.messages import Command, Cue, Group, OpenUnit, Step
 from prima.scheduler.admission import MOST_AT_ONCE
-from tests.helpers.stage import Stage, ask, chain, move, say
+from tests.helpers.stage import Stage, ask, chain, command, inserted, move, say
 
 LOUD = dict(TABLE_4_2, speak=replace(TABLE_4_2["speak"], extra=frozenset({"volume"})))
 LETTERS = LONGEST_TURN_MS // LETTER_MS
@@ -198,3 +198,140 @@ def test_e6_a_unit_keeps_the_speaker_no_longer_than_the_patience(
     stage.request("ea", Group(chain(replace(content)), longest=90_000))
     stage.select()
     assert stage.mediator.deadline() == ends
+
+
+# Requests -----------------------------------------------------------------------------------------
+
+
+def test_e3_a_refusal_is_recorded_and_told_with_the_event_that_led_to_it() -> None:
+    stage = Stage(refuses=True)
+    wrong = Command("turn", {"angel": 5}, source="fa.xml:3:5")
+    stage.at(40).request("fa", wrong, cause=7)
+    stage.select()
+    [record], [(_, notice)] = stage.phases("fail"), stage.notices
+    assert record == {
+        "time": 40,
+        "phase": "fail",
+        "actor": "mediator",
+        "app": "fa",
+        "rule": "E3",
+        "command": "turn",
+        "event": "error.semantic",
+        "message": 'turn has no argument "angel". Did you mean "angle"?',
+        "source": "fa.xml:3",
+    }
+    assert (notice.what, notice.run, notice.cause) == ("failed", 1, 7)
+    assert (notice.event, notice.message) == (record["event"], record["message"])
+
+
+def test_e3_the_words_of_a_topic_are_checked_if_the_robot_speaks() -> None:
+    dumb = {name: row for name, row in TABLE_4_2.items() if name != "speak"}
+    for table, told in ((TABLE_4_2, ["error.semantic"]), (dumb, [])):
+        stage = Stage("prima+x9", table=table, refuses=True)
+        stage.request("fa", command("turn", angle=5), words=say("x" * 1_000_000))
+        stage.select()
+        assert stage.told("fa") == told
+
+
+def test_x4_what_is_asked_for_in_a_unit_does_not_face_the_user() -> None:
+    """The unit does, before it begins."""
+    stage = Stage("prima+x4")
+    stage.mediator.ask("fa", OpenUnit(1, 1, frozenset({"speaker"}), connect=True))
+    stage.request("fa", say("Hello."), unit=1, connect=True)
+    assert stage.select() == ["fa#3"]
+    assert inserted(stage) == [("X4", "face-human")]
+    stage.at(100).end("fa#3")
+    assert stage.select() == ["fa#1", "fa#2"]
+    assert inserted(stage) == [("X4", "face-human")]
+
+
+def test_x8_only_a_reaction_may_come_too_late() -> None:
+    stage = Stage("prima+x8")
+    stage.request("ea", say("A long story."))
+    stage.select()
+    stage.request("fa", say("By the way."), fresh=2000)
+    stage.select()
+    stage.at(9000).mediator.expire()
+    assert stage.select() == [] and stage.told("fa") == []
+
+
+def test_x6_a_substitute_is_recorded_with_its_line() -> None:
+    table = dict(TABLE_4_2, gesture=replace(TABLE_4_2["gesture"], substitute="stop-moving"))
+    stage = Stage("prima+x6", table=table)
+    stage.at(40).request("fa", Command("gesture", source="fa.xml:3:5"))
+    stage.select()
+    assert stage.phases("substitute") == [
+        {
+            "time": 40,
+            "phase": "substitute",
+            "actor": "mediator",
+            "app": "fa",
+            "rule": "X6",
+            "command": "gesture",
+            "by": "stop-moving",
+            "source": "fa.xml:3",
+        }
+    ]
+
+
+@pytest.mark.parametrize(
+    ("policy", "devices"), [("prima", ["speaker"]), ("prima+x6", ["neck", "speaker"])]
+)
+def test_u5_a_unit_owns_the_devices_of_substitutes_if_there_are_any(
+    policy: str, devices: list[str]
+) -> None:
+    """Nor does it own those of Commands that the robot lacks."""
+    table = dict(TABLE_4_2, gesture=replace(TABLE_4_2["gesture"], substitute="move-head"))
+    stage = Stage(policy, table=table)
+    types = ("gesture", "take-picture")
+    stage.mediator.ask("fa", OpenUnit(1, 1, frozenset({"speaker"}), types=types))
+    stage.select()
+    assert stage.phases("request")[0]["devices"] == devices
+
+
+def test_e2_what_an_unloaded_application_leaves_is_recorded_by_the_rule() -> None:
+    stage = Stage()
+    stage.open("ea", 1, "speaker")
+    stage.request("ea", say("One."), say("Two."), unit=1)
+    stage.request("ea", command("turn", angle=5), state=2)
+    stage.select()
+    stage.at(40).mediator.unload("ea", "crash")
+    stage.at(50).end("ea#2")
+    assert stage.select() == [] and stage.running == set(), "its unit ends as well"
+    gone = [(one["behavior"], one["rule"]) for one in stage.phases("cancel")]
+    assert gone == [("ea#4", "E2"), ("ea#3", "E2")]
+    assert stage.phases("unload") == [
+        {
+            "time": 40,
+            "phase": "unload",
+            "actor": "mediator",
+            "app": "ea",
+            "rule": "E2",
+            "outcome": "crash",
+        }
+    ]
+
+
+def test_o3_only_what_the_state_has_asked_for_is_deleted() -> None:
+    stage = Stage()
+    stage.request("fa", say("Long."))
+    stage.select()
+    stage.request("ea", say("One."), cause=7, state=1)
+    stage.request("ea", say("Two."), cause=8, state=2)
+    stage.at(40).leave("ea")
+    stage.select()
+    assert [one["behavior"] for one in stage.phases("cancel")] == ["ea#1"]
+    left = {"time": 40, "phase": "leave", "actor": "mediator", "app": "ea", "rule": "O3"}
+    assert stage.phases("leave") == [{**left, "state": 1}]
+
+
+def test_o2_in_a_unit_only_what_needs_its_devices_is_cancelled() -> None:
+    stage = Stage()
+    stage.open("ea", 1, "speaker", "neck")
+    both = [Step(say("One.")), Step(command("move-head", pan=1))]
+    stage.request("ea", steps=both, unit=1)
+    stage.select()
+    stage.at(10).request("ea", replace(say("Wait!"), now=True), unit=1)
+    assert stage.select() == ["ea#4"]
+    assert stage.running == {"ea#1", "ea#3", "ea#4"}
+    assert stage.told("ea") == ["cancel.speak"]
