@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from prima.errors import did_you_mean
 from prima.language.arguments import check_arguments
 from prima.language.commands import LONGEST_TURN_MS, TABLE_4_2, CommandType, too_long
-from prima.messages import NO_DEVICES, Command, Group, OpenUnit, Step
+from prima.messages import NO_DEVICES, Command, Group, Json, OpenUnit, Step
 from prima.scheduler.behavior import GONE, Application, AwaitedRun, Behavior, Inside, Stream
 
 Table = Mapping[str, CommandType]
@@ -68,10 +68,10 @@ def silence(command: Command) -> float:
     """How long (ms) a Command keeps the speaker silent: its pauses and a question's timeout."""
     if command.text is None and command.type != "q-and-a":
         return 0
-    times = [cue.value for cue in command.cues if cue.kind in ("pause", "lasts")]
-    stated = [one for one in times if isinstance(one, int | float)]
-    timeout = command.args.get("timeout") if command.type == "q-and-a" else 0
-    return sum(stated) + (timeout if isinstance(timeout, int | float) else 0)
+    times: list[Json] = [cue.value for cue in command.cues if cue.kind in ("pause", "lasts")]
+    if command.type == "q-and-a":
+        times.append(command.args["timeout"])
+    return sum(time for time in times if isinstance(time, int | float))
 
 
 def substitute(steps: list[Step], table: Table) -> list[tuple[Command, str]]:

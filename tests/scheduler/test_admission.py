@@ -335,3 +335,46 @@ def test_o2_in_a_unit_only_what_needs_its_devices_is_cancelled() -> None:
     assert stage.select() == ["ea#4"]
     assert stage.running == {"ea#1", "ea#3", "ea#4"}
     assert stage.told("ea") == ["cancel.speak"]
+
+
+def test_e3_at_most_five_hundred_commands_wait_side_by_side() -> None:
+    for number, told in ((500, []), (501, ["error.semantic"])):
+        stage = Stage(refuses=True)
+        stage.request("ea", steps=[Step(say("One."))] * number)
+        stage.select()
+        assert stage.told("ea") == told
+
+
+def test_e3_a_question_may_wait_for_an_answer_as_long_as_a_turn_lasts() -> None:
+    for timeout, told in (("20000ms", []), ("20001ms", ["error.semantic"])):
+        stage = Stage(patience=20_000, refuses=True)
+        stage.request("ea", Command("q-and-a", {"timeout": timeout}))
+        stage.select()
+        assert stage.told("ea") == told
+
+
+def test_u5_all_devices_that_a_unit_lacks_are_named_in_order() -> None:
+    stage = Stage(refuses=True)
+    stage.open("ea", 1, "neck")
+    stage.request("ea", command("turn", angle=5), unit=1)
+    stage.request("ea", command("face-human"), unit=1)
+    stage.request("ea", ask(), unit=1)
+    stage.select()
+    assert [record["message"] for record in stage.phases("fail")] == [
+        f"{name} needs {devices}, which its unit does not own."
+        for name, devices in (
+            ("turn", "locomotion"),
+            ("face-human", "human-detection, locomotion"),
+            ("q-and-a", "speaker, speech-recognition"),
+        )
+    ]
+
+
+def test_o1_in_a_unit_a_command_follows_the_latest_of_the_unit() -> None:
+    stage = Stage()
+    stage.open("ea", 1, "speaker", "neck")
+    stage.request("ea", say("One."), unit=1)
+    stage.request("ea", command("move-head", pan=1), unit=1)
+    assert stage.select() == ["ea#1", "ea#2"], "though its device is free"
+    stage.at(10).end("ea#2")
+    assert stage.select() == ["ea#3"]
