@@ -54,6 +54,14 @@ def test_x4_a_robot_that_cannot_turn_to_the_user_speaks_without() -> None:
     assert stage.select() == ["fa#1"]
 
 
+def test_x4_a_robot_with_something_else_for_the_turn_speaks_without_it_too() -> None:
+    table = dict(TABLE_4_2)
+    table["face-human"] = replace(table["face-human"], substitute="stop-moving")
+    stage = Stage("prima+x4", table=table)
+    stage.request("fa", say(), connect=True)
+    assert stage.select() == ["fa#1"] and inserted(stage) == []
+
+
 def test_x4_with_x2_the_first_word_waits_for_the_turn_and_the_story_for_both() -> None:
     stage = Stage("prima+x2+x4")
     stage.request("ea", restartable(say("A long story.")))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from prima.invariants import check
-from prima.messages import Command, Step
-from tests.helpers.stage import Stage, ask, command, inserted, move, say, search
+from prima.messages import Command, Group, Step
+from tests.helpers.stage import Stage, ask, chain, command, inserted, move, say, search
 
 TOUCH = 7
 POLICY = "prima+x9"
@@ -157,3 +159,107 @@ def test_x9_words_that_fail_do_not_keep_the_topic() -> None:
     stage.at(2100).mediator.failed("ea#3", "speaker", "It is broken.")
     assert stage.select() == ["ea#2"]
     assert check(stage.records, POLICY) == []
+
+
+def test_x9_an_answer_to_a_held_topic_resumes_it_without_words() -> None:
+    """Neither it nor what follows it in the topic: the pause is over (X3)."""
+    both = "prima+x3+x9"
+    stage = Stage(both)
+    stage.request("ea", say("One."), words=words(), cause=TOUCH - 1, hold=9000)
+    stage.select()
+    stage.at(500).end("ea#1")
+    stage.request("fa", say("Oh!"), cause=TOUCH)
+    assert stage.select() == ["fa#1"]
+    stage.at(600).request("ea", say("Two."), words=words(), cause=TOUCH + 1)
+    stage.select()
+    stage.at(1000).end("fa#1")
+    assert stage.select() == ["ea#2"]
+    stage.at(1500).end("ea#2", then=lambda: stage.request("ea", say("Three."), words=words()))
+    assert stage.select() == ["ea#3"] and inserted(stage) == []
+    assert check(stage.records, both) == []
+
+
+def test_x9_what_its_own_application_says_is_no_break() -> None:
+    stage = Stage(POLICY)
+    stage.request("ea", say("One."), say("Two."), words=words())
+    stage.select()
+    stage.at(500).request("fa", command("gesture", name="nod"), cause=TOUCH)
+    stage.select()
+    stage.at(1000).end("ea#1")
+    stage.request("ea", say("Ouch!"), cause=TOUCH + 1)
+    assert stage.select() == ["ea#3"]
+    stage.at(2000).end("fa#1")
+    stage.select()
+    stage.at(3000).end("ea#3")
+    assert stage.select() == ["ea#2"] and inserted(stage) == []
+    assert check(stage.records, POLICY) == []
+
+
+def test_x9_what_is_said_beside_a_topic_is_no_break() -> None:
+    stage = Stage(POLICY)
+    stage.request("ea", say("One."), command("turn", angle=5), words=words())
+    stage.select()
+    stage.at(500).end("ea#1")
+    assert stage.select() == ["ea#2"]
+    stage.at(600).request("fa", say("Hello."))
+    assert stage.select() == ["fa#1"]
+    stage.at(700).end("ea#2", then=lambda: stage.request("ea", say("Two."), words=words()))
+    stage.select()
+    stage.at(900).end("fa#1")
+    assert stage.select() == ["ea#3"] and inserted(stage) == []
+    assert check(stage.records, POLICY) == []
+
+
+def test_x9_a_unit_resumes_in_words_which_have_a_place_of_their_own() -> None:
+    stage = Stage(POLICY)
+    placed = replace(words(), source="ea.xml:2:9")
+    stage.request("ea", say("One."), Group(chain(say("Two."))), words=placed)
+    stage.select()
+    stage.at(500).request("fa", say("Oh!"), cause=TOUCH)
+    stage.at(1000).end("ea#1")
+    stage.select()
+    stage.at(2000).end("fa#1")
+    assert stage.select() == ["ea#3"]
+    assert stage.phases("request")[-1]["source"] == "ea.xml:2"
+    stage.at(3000).end("ea#3")
+    assert stage.select() == ["ea#2", "ea#4"]
+
+
+def test_x9_whatever_is_in_the_stream_waits_for_the_words_behind_the_way_back() -> None:
+    both = "prima+x1+x9"
+    stage = Stage(both)
+    first = [Step(command("move-head", pan=30)), Step(say("One."), (0,))]
+    then = [Step(say("Two."), (1,)), Step(command("point-by-hand", angle=5), (1,))]
+    stage.request("ea", steps=[*first, *then], words=words())
+    stage.select()
+    stage.at(500).end("ea#1")
+    stage.select()
+    stage.at(600).request("fa", command("move-head", pan=-30), say("Oh!"), cause=TOUCH)
+    stage.select()
+    stage.at(1000).end("ea#2")
+    stage.select()
+    stage.at(1100).end("fa#1")
+    stage.select()
+    started = []
+    for time, behavior in ((2000, "fa#2"), (2500, "ea#5"), (3500, "ea#6")):
+        stage.at(time).end(behavior)
+        started.append(stage.select())
+    assert started == [["ea#5"], ["ea#6"], ["ea#3", "ea#4"]]
+    assert check(stage.records, both) == []
+
+
+def test_x9_what_is_wanted_now_waits_for_no_way_back() -> None:
+    stage = Stage("prima+x1+x9")
+    stage.request("ea", command("move-head", pan=30), say("One."), say("Two."), words=words())
+    stage.select()
+    stage.at(500).end("ea#1")
+    stage.select()
+    stage.at(600).request("fa", command("move-head", pan=-30), cause=TOUCH)
+    stage.select()
+    stage.at(1000).end("ea#2")
+    stage.select()
+    stage.at(1100).end("fa#1")
+    assert stage.select() == ["ea#4"]
+    stage.at(1200).request("ea", Command("speak", text="Wait!", now=True), words=words())
+    assert stage.select() == ["ea#5"]
+    assert inserted(stage) == [("X1", "move-head")]
