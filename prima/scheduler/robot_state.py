@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from prima.language.commands import CommandType
@@ -120,19 +119,14 @@ def difference(angle: float, other: float) -> float:
 
 def pose_of(data: Data) -> Pose | None:
     """The pose that a device reports at a Command's end, if any."""
-    if "x" not in data:
-        return None
     values = [data.get(name) for name in ("x", "y", "heading")]
-    if not all(isinstance(value, int | float) and math.isfinite(value) for value in values):
-        return None
-    x, y, heading = (float(value) for value in values if value is not None)
-    return (x, y, heading)
+    known = [one for one in values if isinstance(one, int | float) and math.isfinite(one)]
+    return (float(known[0]), float(known[1]), float(known[2])) if len(known) == 3 else None
 
 
 def head_of(command: Command) -> Head:
     """How a Move Head turns the head."""
-    args: Mapping[str, object] = command.args
-    pan, tilt = args.get("pan", 0.0), args.get("tilt", 0.0)
+    pan, tilt = command.args.get("pan"), command.args.get("tilt")
     return (
         float(pan) if isinstance(pan, int | float) else 0.0,
         float(tilt) if isinstance(tilt, int | float) else 0.0,
