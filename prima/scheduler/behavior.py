@@ -286,4 +286,4 @@ class Behavior:
 
 def application(name: str) -> str:
     """The application of an AB or a stream."""
-    return name.replace("#", ":", 1).partition(":")[0]
+    return name.partition("#")[0].partition(":")[0]

@@ -5,8 +5,11 @@ Each rule by its number, on the smallest case that shows it.
 
 from __future__ import annotations
 
-from prima.messages import Step
-from tests.helpers.stage import Stage, ask, command, say
+from dataclasses import replace
+
+from prima.language.commands import TABLE_4_2
+from prima.messages import Group, Step
+from tests.helpers.stage import Stage, ask, chain, command, say
 
 EVENT = 7
 
@@ -89,3 +92,44 @@ def test_c2_only_a_stream_that_is_suspended_waits_so() -> None:
     stage.at(12).request("fa", say("Listen."))
     stage.select()
     assert stage.mediator.drain_turns() == [], "once is enough"
+
+
+def test_c1_a_stream_is_open_while_it_has_an_ab_or_is_held() -> None:
+    stage = Stage("prima+x3")
+    stage.request("fa", say(), cause=EVENT, hold=5000)
+    stage.select()
+    [stream] = stage.mediator.memory.streams.values()
+    assert stream.open and stream.runs
+    stage.at(10).end("fa#1")
+    stage.select()
+    assert stream.open and not stream.runs, "it is held (X3)"
+    stage.at(5010).mediator.expire()
+    stage.select()
+    assert not stream.open
+
+
+def test_o1_the_latest_of_a_stream_is_what_its_application_has_asked_for_last() -> None:
+    """Neither what is inside a unit nor what the mediator has put in."""
+    stage = Stage("prima+x4")
+    assert not stage.mediator.memory.streams
+    unit = Group(chain(say("One."), say("Two.")))
+    steps = [Step(command("move-head", pan=1)), Step(unit)]
+    stage.request("fa", steps=steps, cause=EVENT, connect=True)
+    stage.select()
+    [stream] = stage.mediator.memory.streams.values()
+    assert [ab.id for ab in stream.members.values()] != ["fa#1", "fa#2"]
+    latest = stream.latest()
+    assert latest is not None and latest.id == "fa#2" and stream.runs
+
+
+def test_x5_what_moves_inside_a_unit_is_not_composed() -> None:
+    dance = replace(TABLE_4_2["turn"], name="dance", motion="faithful")
+    stage = Stage("prima+x5", table={**TABLE_4_2, "dance": dance})
+    stage.request("fa", command("dance", angle=5))
+    stage.request("ea", Group(chain(command("dance", angle=5))))
+    stage.select()
+    stage.at(10).end("fa#1")
+    stage.select()
+    motions = {ab.id: ab.motion for ab in stage.mediator.memory.running.values()}
+    assert motions == {"ea#1": "", "ea#2": ""}
+    assert stage.phases("request")[0]["motion"] == "faithful"
