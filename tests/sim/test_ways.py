@@ -247,3 +247,30 @@ def test_places_on_one_spot_do_not_lead_round_and_round(tmp_path: Path) -> None:
 def test_who_is_slow_is_not_blocked(tmp_path: Path, robot: str) -> None:
     world = '<place id="a" x="0" y="0"/><place id="d" x="3" y="0"/><way from="a" to="d"/>'
     assert told(moved(tmp_path, world, robot))[-1] == "ends mv: exit"
+
+
+@pytest.mark.parametrize(("given", "heading"), [("", 90), (' heading="0"', 0)])
+def test_a_robot_begins_in_the_direction_of_its_place(
+    tmp_path: Path, given: str, heading: int
+) -> None:
+    """No default stands in the table: an editor or a schema would put it in its place."""
+    from prima.sim.vocabulary.scenario import SCENARIO
+
+    (tmp_path / "hall.xml").write_text(
+        '<world xmlns="urn:prima:world:1" version="1.0" id="hall">'
+        '<place id="door" x="0" y="0" heading="90"/></world>'
+    )
+    (tmp_path / "where.xml").write_text(
+        HEAD.format("ea", "where", "en") + '<watch name="never" when="sensor.position.x &gt; 9"/>'
+        '<form id="f"><block><pause time="1s"/><log expr="sensor.position.heading"/><exit/></block>'
+        "</form></prima>"
+    )
+    path = tmp_path / "s.xml"
+    path.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="hall.xml"'
+        f' robot="{ROOT}/documents/robots/papero.xml"><robot at="door"{given}/>'
+        '<application src="where.xml"/></scenario>'
+    )
+    assert f"log: {heading}" in [row.what for row in api.rehearse(path).rows()]
+    attributes = SCENARIO.elements["robot"].attributes
+    assert [one.default for one in attributes if one.name == "heading"] == [""]

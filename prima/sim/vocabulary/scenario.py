@@ -92,7 +92,10 @@ SCENARIO = Vocabulary(
         Element(
             "robot",
             "Where the robot starts.",
-            (attribute("at", "id", "a place", "required"), HEADING),
+            (
+                attribute("at", "id", "a place", "required"),
+                replace(HEADING, doc=f"{HEADING.doc}; by default the place's heading", default=""),
+            ),
         ),
         Element(
             "person",
