@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from prima.devices.goals import RecordingBounds
-from prima.messages import Command, Ended, Inbound
+from prima.messages import Command, Cue, Ended, Inbound
 from prima.messages.times import earliest
 
 
@@ -23,6 +23,8 @@ class Question:
     """Whether it has been asked, so that the user may answer."""
     until: int | None = None
     """When its time for an answer ends (ms); None while somebody speaks."""
+    left: int = 0
+    """When that time would have ended if nobody had spoken (ms)."""
     deaf: bool = False
     """Whether its recogniser hangs."""
     lost: bool = False
@@ -60,8 +62,10 @@ class Ear:
         """
         question = self.questions[behavior]
         question.listens = not question.deaf
-        if question.listens and not self._voices:
+        if question.listens:
             self._wait(now, question)
+            if self._voices:
+                question.until = None
         return question.listens
 
     def drop(self, behavior: str) -> None:
@@ -80,7 +84,7 @@ class Ear:
 
     @staticmethod
     def _wait(now: int, question: Question) -> None:
-        question.until = now + max(int(question.command.args["timeout"]), 1)
+        question.until = question.left = now + max(int(question.command.args["timeout"]), 1)
 
     # The user -----------------------------------------------------------------------
 
@@ -108,11 +112,18 @@ class Ear:
         self._voices -= 1
 
     def listen_on(self, now: int) -> None:
-        """The user's words answered no question: their time to answer begins again."""
+        """The user's words answered no question: their time to answer begins again.
+
+        Where only keys are listened to, words do not count, and the time has gone on.
+        """
         if self._voices:
             return
         for question in self.questions.values():
-            if question.listens and question.until is None:
+            if not question.listens or question.until is not None:
+                continue
+            if Cue(0, "hotword", "dtmf") in question.command.cues:
+                question.until = max(question.left, now + 1)
+            else:
                 self._wait(now, question)
 
     def recording(self) -> RecordingBounds | None:

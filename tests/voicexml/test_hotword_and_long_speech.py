@@ -134,6 +134,22 @@ def test_what_inputmodes_leave_out_breaks_off_nothing(
         assert texts(made)[0] == f"{SECOND} {SECOND} {SECOND}"
 
 
+@pytest.mark.parametrize("at", [500, 4000, 7000])
+@pytest.mark.parametrize(("modes", "later"), [("dtmf", False), ("dtmf voice", True)])
+def test_words_do_not_lengthen_the_time_for_keys(
+    played: Played, at: int, modes: str, later: bool
+) -> None:  # 6.3.6
+    made = played(
+        f"""<property name="inputmodes" value="{modes}"/><form><field name="f" type="boolean">
+        <prompt bargeintype="{"speech" if modes == "dtmf" else "hotword"}">{SECOND} {SECOND} {SECOND}</prompt>
+        <noinput><log>nothing</log><exit/></noinput></field></form>""",
+        (at, "hello"),
+    )
+    assert logs(made) == ["nothing"]
+    ended = of(made, "end")[-1]["time"]
+    assert ended > 8.4 if later and at > 3300 else ended == pytest.approx(8.3, abs=0.02)
+
+
 def test_another_question_than_was_asked_does_not_limit_what_was_said(played: Played) -> None:
     text = LIMITED.replace(
         "</field></form>",
