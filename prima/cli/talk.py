@@ -85,7 +85,7 @@ def talk(
 
     \b
     prima talk documents/scenarios/touched-on-the-way.xml
-    prima talk --fa documents/fa/follow.xml --ea documents/ea/guide.xml --save visit.xml
+    prima talk --fa documents/fa/follow.xml --ea documents/ea/library.xml --save visit.xml
     prima talk --ea museum.xml --world documents/worlds/museum.xml --robot papero.xml
     printf '/back 5s\\n/touch head\\n' | prima talk documents/scenarios/touched-on-the-way.xml
     """
