@@ -98,7 +98,7 @@ class Transcript:
 
     @property
     def early(self) -> str:
-        """A message that the records end before their run did; empty if they do not."""
+        """A message that the records end before their run did; empty if not, or with ``cut``."""
         if self.cut or not self.records or self.records[0]["phase"] != "run":
             return ""
         last = self.records[-1]
