@@ -80,10 +80,12 @@ UNSUPPORTED_COMMAND = Diagnosis(
     "Unsupported Command",
     (
         "The robot's profile lacks the Command or one of its devices. At run time the "
-        "application gets error.unsupported.COMMAND, which it may handle. Each Command of a "
-        "document is reported once, with the number of places. A scenario waits for it in vain."
+        "application gets error.unsupported.COMMAND, which it may handle. A <command> of a type "
+        "that the profile does not add is an error; where a VoiceXML document asks for it, it is "
+        "error.semantic. Each Command of a document is reported once, with the number of places. "
+        "A scenario waits for it in vain."
     ),
-    rule="V2",
+    rule="E1, E3",
     severity="warning",
 )
 
