@@ -27,6 +27,8 @@ class OwnSensors:
         """
         looked_at = ITS_OWN if self.told_of is None or not self._around else self.told_of
         world = self._world
+        if "human" in looked_at:
+            world.sees_person()  # it may attend to another now
         around = (world.position, world.heading, world.pan, world.person, world.drive)
         if around == self._around or looked_at.isdisjoint(ITS_OWN):
             return {}

@@ -11,6 +11,7 @@ from prima.errors import DocumentError
 from prima.loading import load_scenario
 from prima.scheduler.policy import policy_named
 from prima.sim.map import Map
+from prima.sim.measuring import OwnSensors
 from prima.sim.people import TriggeredScript
 from prima.sim.rehearsal import Rehearsal
 from prima.sim.world import World
@@ -67,6 +68,17 @@ def test_when_its_own_leaves_it_attends_to_the_next_whom_it_sees() -> None:
     assert made.sees_person() and made.person == (2.0, 0.0)
     made.leave("ben")
     assert not made.sees_person() and made.person is None
+
+
+def test_its_sensors_are_of_the_one_whom_it_attends_to_from_then_on() -> None:
+    made = world(("ann", (1.0, 0.0)), ("ben", (2.0, 0.0)))
+    sensors = OwnSensors(made)
+    first = sensors.measure()
+    assert (first["human.visible"], first["human.distance"]) == (True, 1.0)
+    made.leave("ann")
+    then = sensors.measure()
+    assert (then["human.visible"], then["human.distance"]) == (True, 2.0)
+    assert sensors.measure() == {}
 
 
 def test_who_has_gone_away_neither_goes_along_nor_goes_away_again(tmp_path: Path) -> None:
