@@ -12,6 +12,7 @@ from prima.interpreter.acts import (
     CommandRun,
     CommandTemplate,
     Expression,
+    GroupTemplate,
     Handler,
     Return,
     SendOut,
@@ -118,6 +119,12 @@ def _commands(acts: Acts) -> Iterator[CommandTemplate]:
         yield from run_commands(run.steps)
 
 
+def _groups(acts: Acts) -> Iterator[GroupTemplate]:
+    """The units around Commands (U4)."""
+    for _, run in acts.of(CommandRun):
+        yield from (step.what for step in run.steps if isinstance(step.what, GroupTemplate))
+
+
 def items_of(document: Document) -> Iterator[Item]:
     """The items of all forms of a document."""
     return (item for form in document.forms.values() for item in all_items(form.items))
@@ -161,6 +168,8 @@ class KnownEvents:
         self.commands = {command.type for command in _commands(acts)}
         if any(isinstance(item, Field) for item in items_of(document)):
             self.commands.add("q-and-a")
+        self.units = {"iu"} if any(_groups(acts)) else set()
+        """The name of units around Commands, which have no event at their end."""
         self.asked = [*_asked(acts)]
         """The services that are asked by their names, and where."""
         self.dynamic = _is_dynamic(acts)
@@ -202,7 +211,8 @@ class KnownEvents:
         first, _, rest = name.partition(".")
         if first in OWN:
             wrong = f'no Command "{rest}" is asked for here'
-            return self._missing(name, rest, self.commands, wrong)
+            known = self.commands if first == "end" else self.commands | self.units
+            return self._missing(name, rest, known, wrong)
         service = name.removeprefix("error.service.").removeprefix("reply.")
         if service != name:
             wrong = f'nothing is sent to "{service}" here'

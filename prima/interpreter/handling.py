@@ -149,13 +149,16 @@ class Handling:
         yield from self.handle_thrown(frame, fiber, frame.item, thrown, 0)
 
     def command_event(self, notice: Notice, kind: str) -> None:
-        """Handle the end or cancellation of a Command, by handlers in it or in scope."""
+        """Handle the end or cancellation of a Command, by handlers in it or in scope.
+
+        A unit around Commands has no Command of its own; its fate has the name ``iu``.
+        """
         frame, command = self.owner.frame, notice.command
-        if frame is None or command is None:
+        if frame is None:
             return
-        name = f"{kind}.{command.type}"
+        name = f"{kind}.{command.type if command is not None else 'iu'}"
         event = Event(name, 0, dict(notice.data), reactive=False)
-        fiber = Fiber(frame, commands=command.hook or ())
+        fiber = Fiber(frame, commands=(command.hook if command is not None else None) or ())
         candidates = self._candidates(frame, fiber, frame.item, name)
         if not candidates:
             return

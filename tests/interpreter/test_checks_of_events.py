@@ -121,6 +121,15 @@ def test_the_end_of_a_question_has_the_name_of_its_command(tmp_path: Path) -> No
     assert not problems(tmp_path, text % "q-and-a", "unknown-event")
 
 
+@pytest.mark.parametrize("what", ["end", "cancel", "interrupted", "expired"])
+def test_a_unit_around_commands_has_events_but_for_its_end(what: str, tmp_path: Path) -> None:
+    text = f"""<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><form id="m">
+    <block><iu><speak>Hello.</speak><gesture name="bow"/></iu><exit/></block>
+    <on event="{what}.iu"><exit/></on></form></prima>"""
+    assert len(problems(tmp_path, text, "unknown-event")) == (what == "end")
+    assert problems(tmp_path, text.replace("iu>", "seq>"), "unknown-event")
+
+
 def test_a_name_of_many_parts_takes_no_more_room_than_a_few_of_them() -> None:
     name = ".".join("a" * 20_000)
     text = app(

@@ -224,3 +224,16 @@ def test_a_unit_that_takes_too_long_throws_and_ends() -> None:
     assert bench.saying() == ["May I?", "iu"], "the Command that runs finishes"
     bench.silence()
     assert bench.saying() == ["Bye."]
+
+
+def test_o2_a_cancelled_unit_around_commands_is_told_by_its_own_name() -> None:
+    bench = Bench(
+        """<form id="a">
+          <block><iu><speak>One.</speak><gesture name="bow"/></iu><speak>Two.</speak></block>
+          <on event="touch"><speak order="now">Stop.</speak></on>
+          <on event="cancel"><log expr="event.name"/></on>
+        </form>"""
+    )
+    bench.event("touch")
+    assert bench.saying() == ["Stop."]
+    assert sorted(bench.logs()) == ["cancel.iu", "cancel.speak"]
