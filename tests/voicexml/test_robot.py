@@ -161,6 +161,22 @@ def test_wrong_arrangements_are_told(body: str, code: str, told: str) -> None:
     assert told in f"{problem.message} {problem.remedy}"
 
 
+@pytest.mark.parametrize("around", ["{}", "<p:seq>{}</p:seq>"])
+@pytest.mark.parametrize("inside", ["p:param", "p:turn", "p:foo", "spek", "field"])
+def test_what_a_command_cannot_hold_is_told(inside: str, around: str) -> None:
+    body = around.format(f"<p:speak>Hello. <{inside}/></p:speak>")
+    [problem] = problems_of(f"<form {P}><block>{body}</block></form>")
+    assert (problem.code, problem.severity) == ("misplaced-element", "error")
+    assert problem.message == f"<{inside}> is not allowed in <p:speak>."
+
+
+def test_a_command_holds_what_a_prompt_holds_and_arguments() -> None:
+    said = "<p:speak>One <emphasis>is</emphasis> <value expr='1'/>.</p:speak>"
+    assert started(Call(f"<form {P}><block>{said}</block></form>")) == ["One is 1."]
+    waves = "<p:command type='wave'><param name='hand' value='left'/></p:command>"
+    assert problems_of(f"<form {P}><block>{said}{waves}</block></form>") == []
+
+
 def test_branches_that_share_a_device_are_told() -> None:
     body = (
         "<p:par><p:speak>a</p:speak><p:seq><p:turn angle='1'/><p:speak>b</p:speak></p:seq></p:par>"

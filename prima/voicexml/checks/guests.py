@@ -14,7 +14,7 @@ from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.spans import name_spans, similar_attribute, value_span
 from prima.markup.tree import Node
 from prima.voicexml.arranging import ARRANGING, check_arranged
-from prima.voicexml.vocabulary import COMMANDS, HOLDING, PRIMA_NAMESPACE, VOICEXML
+from prima.voicexml.vocabulary import COMMANDS, HOLDING, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
 UNKNOWN_COMMAND = UNKNOWN_ELEMENT.says("PRIMA has no Command <{tag}>.")
 NOT_HERE = MISPLACED_ELEMENT.says(
@@ -26,6 +26,9 @@ ARRANGING_NOT_HERE = MISPLACED_ELEMENT.says(
 UNIT_NOT_HERE = MISPLACED_ELEMENT.says(
     "<p:iu> is not allowed in <{parent}>.",
     "Write it around Commands in content, or around the items of a <form>.",
+)
+HOLDS_NONE = MISPLACED_ELEMENT.says(
+    "<{tag}> is not allowed in <p:{parent}>.", "A Command holds text, <value> and <param>."
 )
 NO_ATTRIBUTE = UNKNOWN_ATTRIBUTE.says('<{tag}> has no attribute "{name}".')
 NO_COMMAND = UNSUPPORTED_COMMAND.says('This robot has no Command "{command}".')
@@ -51,7 +54,18 @@ def check_guest(node: Node, parent: Node) -> list[Problem]:
     commands = check_arranged(node, problems) if node.tag in ARRANGING else [node]
     for command in commands:
         problems += _check_arguments(command)
+        problems += _check_content(command)
     return problems
+
+
+def _check_content(command: Node) -> Iterator[Problem]:
+    """What a Command cannot hold: others, and elements that are neither speech nor arguments."""
+    for child in command.nodes:
+        speech = child.tag == "param" or VOICEXML.child("prompt", child.tag) is not None
+        if child.namespace == PRIMA_NAMESPACE:
+            yield HOLDS_NONE.at(child.place, tag=f"p:{child.tag}", parent=command.tag)
+        elif child.namespace == NAMESPACE and not speech:
+            yield HOLDS_NONE.at(child.place, tag=child.tag, parent=command.tag)
 
 
 def _check_arguments(node: Node) -> Iterator[Problem]:
