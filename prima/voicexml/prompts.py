@@ -269,11 +269,11 @@ class Speaker(VoiceEvaluator):
                 if "expr" in child.attributes
                 else child.get("value")
             )
-        speech = Speech(self.lang(node, context), source(node))
+        speech = Speech(language_of(node, lang or context.page.lang), source(node))
         self.read_all(node, context, local, speech)
         said, cues = speech.take()
         self.owner.app.count_output(len(said), node)
-        made = Command(name, args, said or None, lang=lang or context.page.lang)
+        made = Command(name, args, said or None, lang=speech.lang)
         made.source = source(node)
         if said:
             cue_up(made, (*self.ahead, *cues))

@@ -10,6 +10,7 @@ from tests.helpers.dialogs import (
     YES,
     Case,
     Cases,
+    P,
     ask,
     block,
     check_page,
@@ -93,6 +94,28 @@ def test_a_questions_language_is_its_prompts() -> None:  # 4.1
         '<form><field name="f"><prompt xml:lang="ja">どこ？</prompt><option>a</option></field></form>'
     )
     assert languages(call) == [("どこ？", "ja")]
+
+
+@pytest.mark.parametrize(
+    ("body", "spoken"),
+    [
+        ('<p:speak xml:lang="ja">あ</p:speak>', [("あ", "ja")]),
+        ('<p:seq><p:speak xml:lang="ja">あ</p:speak></p:seq>', [("あ", "ja")]),
+        ('<prompt xml:lang="ja">あ<p:speak>い</p:speak></prompt>', [("あ", "ja"), ("い", "ja")]),
+        (
+            '<prompt xml:lang="ja">あ<p:speak xml:lang="en">a</p:speak></prompt>',
+            [("あ", "ja"), ("a", "en")],
+        ),
+        (
+            '<prompt xml:lang="ja"><p:speak>い<voice xml:lang="ja">う</voice></p:speak></prompt>',
+            [("いう", "ja")],
+        ),
+    ],
+)
+def test_a_commands_language_is_its_own_or_what_is_around_it(
+    body: str, spoken: list[tuple[str, str]]
+) -> None:
+    assert languages(Call(block(body.replace(">", f" {P}>", 1)))) == spoken
 
 
 def test_prompts_in_another_document_have_its_language() -> None:  # 4.1
