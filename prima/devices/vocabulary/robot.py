@@ -28,7 +28,7 @@ ROBOT = Vocabulary(
                 attribute(
                     "speed",
                     "number",
-                    "the maximum, in metres a second",
+                    "how fast it drives, in metres a second, where a Command or step names no speed",
                     default="0.5",
                     low=0.01,
                     high=3,
@@ -36,7 +36,7 @@ ROBOT = Vocabulary(
                 attribute(
                     "turn-speed",
                     "number",
-                    "the maximum, in degrees a second",
+                    "how fast it turns, in degrees a second, where a Command or step names no speed",
                     default="90",
                     low=1,
                     high=720,
