@@ -142,6 +142,8 @@ class Algorithm:
         outcome = str(notice.data.get("outcome", "noinput"))
         if outcome != "filled":
             data = {**_shadow(notice), "command": command.type}
+            if outcome not in ("noinput", "nomatch"):  # the event of a link
+                data["text"] = data["utterance"]
             raise Thrown(outcome, "", command.source, data)
         given = {field.name: notice.data["value"], f"{field.name}$": _shadow(notice)}
         self.owner.engine.fill(frame.dialog, given)

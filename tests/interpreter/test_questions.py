@@ -283,6 +283,19 @@ def test_a_link_of_its_own_ends_the_question_that_listens() -> None:
     assert bench.saying() == ["q-and-a"], "it listens again; a reprompt would ask again"
 
 
+@pytest.mark.parametrize("asks", [True, False])
+def test_the_event_of_a_link_has_what_was_said_with_and_without_a_question(asks: bool) -> None:
+    bench = Bench(
+        '<link event="stop"><grammar>stop it</grammar></link>'
+        + (ASK.format("") if asks else '<form id="a"/>')
+        + '<on event="stop"><log expr="event.data.text"/></on>'
+    )
+    if asks:
+        bench.listens()
+    bench.hears("Stop it!")
+    assert bench.logs() == ["Stop it!"]
+
+
 def test_a_link_of_the_robots_own_application_lets_the_question_listen_on() -> None:
     bench = Bench(
         document(
