@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from prima.grammar.answers import Answers
 from prima.grammar.model import Alternatives, BuiltIn, Part, Reference, Repeat, Rule, Special, Words
 from prima.grammar.model import Sequence as Row
+from prima.grammar.numbers import ONES, TENS
 from prima.grammar.text import wide
 
 DEEP = 40
@@ -19,41 +20,7 @@ MOST_INSIDE = 200
 APART = re.compile(r"[^\w']+")
 SPOKEN = re.compile(r"[a-z][a-z']*")
 """A word that can be added to a recogniser's dictionary."""
-NUMBERS = [
-    "zero",
-    "one",
-    "two",
-    "three",
-    "four",
-    "five",
-    "six",
-    "seven",
-    "eight",
-    "nine",
-    "ten",
-    "eleven",
-    "twelve",
-    "thirteen",
-    "fourteen",
-    "fifteen",
-    "sixteen",
-    "seventeen",
-    "eighteen",
-    "nineteen",
-    "twenty",
-    "thirty",
-    "forty",
-    "fifty",
-    "sixty",
-    "seventy",
-    "eighty",
-    "ninety",
-    "hundred",
-    "thousand",
-    "point",
-    "oh",
-    "minus",
-]
+NUMBERS = [*ONES, *TENS, "hundred", "thousand", "point", "oh", "minus"]
 TYPES = {
     "boolean": "( yes | no )",
     "number": f"( {' | '.join(NUMBERS)} )+",
