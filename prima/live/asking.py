@@ -17,6 +17,7 @@ from urllib.request import Request
 
 from prima.devices.endpoints import Endpoint, Unfit
 from prima.live.answers import HIDDEN
+from prima.live.driver import call_in, settle
 from prima.loading.web import end_connections, follow, read_plain, silence
 from prima.sim.services import host_of
 
@@ -117,22 +118,13 @@ async def in_thread(work: Callable[[], T]) -> T:
     loop = asyncio.get_running_loop()
     done: asyncio.Future[T] = loop.create_future()
 
-    def settle(value: T | None, error: BaseException | None) -> None:
-        if done.done():
-            return
-        if error is not None:
-            done.set_exception(error)
-        else:
-            done.set_result(value)  # type: ignore[arg-type]
-
     def run() -> None:
-        value, error = None, None
+        outcome: object
         try:
-            value = work()
-        except Exception as problem:
-            error = problem
-        with suppress(RuntimeError):  # the run is over
-            loop.call_soon_threadsafe(settle, value, error)
+            outcome = work()
+        except Exception as error:
+            outcome = error
+        call_in(loop, settle, done, outcome)
 
     threading.Thread(target=run, daemon=True).start()
     return await done

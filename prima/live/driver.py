@@ -47,6 +47,16 @@ def call_in(
             loop.call_soon_threadsafe(what, *given)
 
 
+def settle(future: asyncio.Future[Any], outcome: object) -> None:
+    """Resolve a future with its result or error, unless nothing waits for it any more."""
+    if future.done():
+        return
+    if isinstance(outcome, BaseException):
+        future.set_exception(outcome)
+    else:
+        future.set_result(outcome)
+
+
 class Unreachable(RunError):
     """The robot, or the program that drives it, cannot be reached."""
 

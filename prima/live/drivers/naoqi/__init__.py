@@ -12,7 +12,7 @@ from typing import Any, Final
 from prima.devices.goals import LISTEN, Begin
 from prima.devices.settings import Does
 from prima.errors import UsageError
-from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in
+from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in, settle
 from prima.live.mapped import MappedDriver, refuse_unmapped
 from prima.messages import Data, Json
 
@@ -243,17 +243,15 @@ class NaoqiDriver(MappedDriver):
         """The future of a call, for this loop."""
         future = self._pending.add_one()
 
-        def settle(asked: Any) -> None:
-            if future.done():
-                return
+        def take(asked: Any) -> None:
             if asked.isCanceled():
-                future.set_exception(Refused("the robot has cancelled it"))
+                settle(future, Refused("the robot has cancelled it"))
             elif asked.hasError():
-                future.set_exception(Refused(_said(asked.error())))
+                settle(future, Refused(_said(asked.error())))
             else:
-                future.set_result(asked.value())
+                settle(future, asked.value())
 
-        asked.addCallback(partial(call_in, asyncio.get_running_loop(), settle))
+        asked.addCallback(partial(call_in, asyncio.get_running_loop(), take))
         return future
 
 

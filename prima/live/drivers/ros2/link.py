@@ -13,7 +13,7 @@ from typing import Any
 
 from prima.devices.settings import Senses
 from prima.errors import UsageError
-from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in
+from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in, settle
 from prima.live.drivers.ros2.messages import fill, interface, paths, plain
 from prima.live.mapped import OFTEN
 from prima.live.ros import Outcome, RosDriver, RosUse, Sent
@@ -227,10 +227,10 @@ class RclpyLink:
     def _settle(self, future: asyncio.Future[Any], give: Callable[[], Any]) -> None:
         """Resolve a future with a result or the error of getting it, from any thread."""
         try:
-            settle = partial(future.set_result, give())
+            outcome = give()
         except BaseException as error:
-            settle = partial(future.set_exception, error)
-        call_in(self._loop, lambda: future.done() or settle())
+            outcome = error
+        call_in(self._loop, settle, future, outcome)
 
     async def _run(self, function: Callable[[], Any]) -> Any:
         """Call something in the node's thread."""
@@ -246,7 +246,7 @@ class RclpyLink:
             try:
                 asked = ask()
             except BaseException as error:
-                self._settle(future, partial(_fail, error))
+                call_in(self._loop, settle, future, error)
             else:
                 asked.add_done_callback(lambda one: self._settle(future, one.result))
 
@@ -270,10 +270,6 @@ class RclpyLink:
             self._thread.join(JOIN_S)
         self._node.destroy_node()
         self._executor = None
-
-
-def _fail(error: BaseException) -> None:
-    raise error
 
 
 def _seldom(pass_on: Callable[[], object]) -> Callable[[Any], None]:

@@ -10,7 +10,7 @@ from typing import Any, Final
 from urllib.parse import urlsplit
 
 from prima.devices.settings import Senses
-from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in
+from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in, settle
 from prima.live.mapped import OFTEN
 from prima.live.ros import Outcome, RosDriver, RosUse, Sent
 from prima.messages import Json
@@ -71,7 +71,8 @@ class RosbridgeLink:
         self._uses = uses
         await self._knock(until)
         self._ros = await asyncio.to_thread(self._join, until)
-        self._ros.on("close", lambda *_: self._closed(driver))
+        # roslibpy calls this in its own thread.
+        self._ros.on("close", lambda *_: call_in(self._loop, self._lose, driver))
         for use in uses:
             if use.kind == "topic":
                 self._topics[use] = topic = roslibpy.Topic(self._ros, use.name, use.type)
@@ -103,10 +104,6 @@ class RosbridgeLink:
         except RosTimeoutError:
             raise Unreachable(f"{self._url} does not answer as a rosbridge. {LAUNCH}") from None
         return ros
-
-    def _closed(self, driver: RosDriver) -> None:
-        """The connection has been closed; called in roslibpy's thread."""
-        call_in(self._loop, self._lose, driver)
 
     def _lose(self, driver: RosDriver) -> None:
         reason = "the connection with the bridge is lost"
@@ -150,8 +147,7 @@ class RosbridgeLink:
         client = ActionClient(self._ros, use.name, use.type)
         end = self._pending.add_one()
         over = partial(self._from_thread, end)
-        feedback = partial(self._post, on)
-        key = client.send_goal(Goal(values), over, feedback, over)
+        key = client.send_goal(Goal(values), over, lambda *_: call_in(self._loop, on), over)
         self._goals[key] = client
         end.add_done_callback(lambda one: self._goals.pop(key, None))
         return Sent(end, partial(client.cancel_goal, key))
@@ -160,7 +156,7 @@ class RosbridgeLink:
         status = getattr(answer["status"], "value", answer["status"])
         values = answer["values"]
         result = dict(values) if isinstance(values, dict) else {"message": str(values)}
-        self._post(partial(_settle, end, Outcome(status, result)))
+        call_in(self._loop, settle, end, Outcome(status, result))
 
     async def call(self, use: RosUse, values: dict[str, Json]) -> dict[str, Json]:
         """Call a service; returns its answer."""
@@ -169,10 +165,10 @@ class RosbridgeLink:
         future = self._pending.add_one()
 
         def answer(values: Any) -> None:
-            self._post(partial(_settle, future, dict(values)))
+            call_in(self._loop, settle, future, dict(values))
 
         def refuse(reason: Any) -> None:
-            self._post(partial(_settle, future, Refused(str(reason))))
+            call_in(self._loop, settle, future, Refused(str(reason)))
 
         Service(self._ros, use.name, use.type).call(ServiceRequest(values), answer, refuse)
         return dict(await future)
@@ -202,11 +198,6 @@ class RosbridgeLink:
         for key, client in list(self._goals.items()):
             client.cancel_goal(key)
 
-    # The thread -----------------------------------------------------------------------------
-
-    def _post(self, what: Callable[[], object], *_: object) -> None:
-        call_in(self._loop, what)
-
     def fail(self, reason: str) -> None:
         """Give up requests that have not been answered."""
         self._pending.fail(reason)
@@ -216,16 +207,6 @@ class RosbridgeLink:
         ros, self._ros = self._ros, None
         if ros is not None and ros.is_connected:
             await asyncio.to_thread(ros.close)
-
-
-def _settle(future: asyncio.Future[Any], outcome: object) -> None:
-    """Resolve a future with its result or error."""
-    if future.done():
-        return
-    if isinstance(outcome, Exception):
-        future.set_exception(outcome)
-    else:
-        future.set_result(outcome)
 
 
 def _not_there(missing: list[RosUse]) -> str:
