@@ -297,10 +297,15 @@ class TaskDriver(Driver):
 
     async def close(self) -> None:
         """Cancel running goals, and wait for them to end."""
+        await self.end_goals()
+
+    async def end_goals(self, longest: float | None = None) -> None:
+        """Cancel all goals, and wait (s) until they have ended."""
         tasks = list(self._tasks.values())
         for task in tasks:
             task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
+        if tasks:
+            await asyncio.wait(tasks, timeout=longest)
 
     def _never_run(self, key: str) -> None:
         """Report the end of a goal that was cancelled before its coroutine first ran."""

@@ -98,13 +98,6 @@ class MappedDriver(TaskDriver):
             self.gone = True
             super().lose(reason)
 
-    async def end_goals(self, longest: float) -> None:
-        """Cancel all goals, and wait (s) until they have ended."""
-        for task in list(self._tasks.values()):
-            task.cancel()
-        if self._tasks:
-            await asyncio.wait(list(self._tasks.values()), timeout=longest)
-
     # Senses -----------------------------------------------------------------------------------
 
     def sense_from_thread(self, senses: Senses, message: Json) -> None:

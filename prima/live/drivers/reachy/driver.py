@@ -224,12 +224,9 @@ class ReachyDriver(TaskDriver):
 
     async def safe(self) -> None:
         """Stop every move; the motors keep their force, or the head would fall."""
-        tasks = list(self._tasks.values())
-        for task in tasks:
-            task.cancel()
         try:
             async with asyncio.timeout(SAFE_S):
-                await asyncio.gather(*tasks, return_exceptions=True)
+                await self.end_goals()
                 if self._link is not None:
                     await self._link.stop_all()
         except (Unreachable, Refused, TimeoutError):
