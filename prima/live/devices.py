@@ -32,7 +32,6 @@ from prima.devices.goals import (
     Stopped,
 )
 from prima.devices.profile import Profile
-from prima.devices.settings import DriverLimits
 from prima.grammar.answers import Answers
 from prima.live.carried import lacking, limits_of, route
 from prima.live.deadlines import within
@@ -97,7 +96,7 @@ class LiveDevices:
         self.conductor = Conductor(
             profile,
             lambda: self._at.where if self._at else {},
-            self.limits,
+            lambda goal: limits_of(drivers, goal, profile.voices),
             exclusive,
             max(start, 0),
         )
@@ -338,10 +337,6 @@ class LiveDevices:
         except Exception as error:
             reason = f"the driver {driver.kind} has failed: {error}"
             self.conductor.report(now, Broke(goal.key, device, reason))
-
-    def limits(self, goal: Begin) -> DriverLimits:
-        """How long a goal's driver may take."""
-        return limits_of(self.drivers, goal, self.profile.voices)
 
 
 def _releases(news: News | Inbound) -> bool:

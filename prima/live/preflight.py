@@ -14,10 +14,10 @@ from prima.devices.profile import Profile, read_robot
 from prima.devices.settings import DriverLimits
 from prima.errors import UsageError
 from prima.language.commands import Argument, CommandType
-from prima.live.carried import SPOKEN, lacking, route
+from prima.live.carried import SPOKEN, lacking, limits_of, route
 from prima.live.chosen import Chosen
 from prima.live.deadlines import run, within
-from prima.live.devices import SAFE_S, LiveDevices
+from prima.live.devices import SAFE_S
 from prima.live.driver import Driver, Unreachable
 from prima.live.shell import open_driver
 from prima.live.signals import heeding_signals
@@ -26,7 +26,6 @@ from prima.loading import documents_folder
 from prima.loading.files import read_file
 from prima.messages import Command, Json
 from prima.sim.map import Map, read_world
-from prima.sim.services import Services
 
 LASTING_MS = 300
 """How long a Command goes on before it is cancelled."""
@@ -120,7 +119,6 @@ class Preflight:
         self._site = site
         self._drivers = drivers
         self._say = say
-        self._devices = LiveDevices(robot, drivers, Services([]), [])
         self._reports: dict[str, asyncio.Queue[Report]] = {}
         self._wrong = 0
         self._opened: list[Driver] = []
@@ -286,7 +284,7 @@ class Preflight:
 
     async def _carried_out(self, driver: Driver, begin: Begin, lasts: int) -> CommandFinding:
         """Begin a Command, let it run for a while (ms), and cancel it."""
-        key, limits = begin.key, self._devices.limits(begin)
+        key, limits = begin.key, limits_of(self._drivers, begin, self._robot.voices)
         self._reports[key] = asyncio.Queue()
         try:
             driver.sample(self._now())
