@@ -7,7 +7,6 @@ import threading
 import time
 import uuid
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -34,17 +33,6 @@ DEPTH = 10
 """The queue size for a topic's messages."""
 
 
-@dataclass(slots=True)
-class Clients:
-    """A node's clients for the interfaces it uses."""
-
-    actions: dict[RosUse, Any] = field(default_factory=dict)
-    cancels: dict[RosUse, Any] = field(default_factory=dict)
-    """For each action, the service that cancels goals."""
-    services: dict[RosUse, Any] = field(default_factory=dict)
-    topics: dict[RosUse, Any] = field(default_factory=dict)
-
-
 class RclpyLink:
     """One node, for as long as the robot is there.
 
@@ -58,7 +46,12 @@ class RclpyLink:
         self._domain = domain
         self._longest = longest
         self._heartbeat = heartbeat
-        self._clients = Clients()
+        self._actions: dict[RosUse, Any] = {}
+        """The clients of the interfaces used."""
+        self._cancels: dict[RosUse, Any] = {}
+        """For each action, the service that cancels goals."""
+        self._services: dict[RosUse, Any] = {}
+        self._topics: dict[RosUse, Any] = {}
         self._untyped: list[RosUse] = []
         """Services whose types the robot has yet to report."""
         self._pending = OpenRequests()
@@ -115,11 +108,10 @@ class RclpyLink:
 
     def _missing(self) -> list[RosUse]:
         """The actions, services and topics that are not available yet."""
-        clients = self._clients
         self._add_untyped()
-        gone = [use for use, one in clients.actions.items() if not one.server_is_ready()]
-        gone += [use for use, one in clients.services.items() if not one.service_is_ready()]
-        gone += [use for use, one in clients.topics.items() if not one.get_subscription_count()]
+        gone = [use for use, one in self._actions.items() if not one.server_is_ready()]
+        gone += [use for use, one in self._services.items() if not one.service_is_ready()]
+        gone += [use for use, one in self._topics.items() if not one.get_subscription_count()]
         return gone + self._untyped
 
     def _add_untyped(self) -> None:
@@ -130,23 +122,23 @@ class RclpyLink:
             self._untyped = [use for use in self._untyped if use.name not in known]
             for use in found:
                 client = self._node.create_client(interface(known[use.name][0]), use.name)
-                self._clients.services[use] = client
+                self._services[use] = client
 
     def _add(self, use: RosUse) -> None:
         from action_msgs.srv import CancelGoal
         from rclpy.action import ActionClient
 
-        node, clients = self._node, self._clients
+        node = self._node
         if not use.type:
             self._untyped.append(use)
         elif use.kind == "action":
-            clients.actions[use] = ActionClient(node, interface(use.type), use.name)
+            self._actions[use] = ActionClient(node, interface(use.type), use.name)
             name = f"{use.name}/_action/cancel_goal"
-            clients.cancels[use] = node.create_client(CancelGoal, name)
+            self._cancels[use] = node.create_client(CancelGoal, name)
         elif use.kind == "service":
-            clients.services[use] = node.create_client(interface(use.type), use.name)
+            self._services[use] = node.create_client(interface(use.type), use.name)
         else:
-            clients.topics[use] = node.create_publisher(interface(use.type), use.name, DEPTH)
+            self._topics[use] = node.create_publisher(interface(use.type), use.name, DEPTH)
 
     def _subscribe(self, senses: Senses, driver: RosDriver) -> None:
         from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -164,7 +156,7 @@ class RclpyLink:
 
     async def send_goal(self, use: RosUse, values: dict[str, Json], on: Callable[[], None]) -> Sent:
         """Send a goal to an action; returns it once it has been accepted."""
-        client = self._clients.actions[use]
+        client = self._actions[use]
         goal = fill(interface(use.type).Goal(), values)
         feedback = _seldom(partial(self._loop.call_soon_threadsafe, on))
         handle = await self._answer(
@@ -182,7 +174,7 @@ class RclpyLink:
 
     async def call(self, use: RosUse, values: dict[str, Json]) -> dict[str, Json]:
         """Call a service; returns its answer."""
-        names = {one.name: client for one, client in self._clients.services.items()}
+        names = {one.name: client for one, client in self._services.items()}
         client = names[use.name]
         request = fill(client.srv_type.Request(), values)
         answer = plain(await self._answer(lambda: client.call_async(request)))
@@ -191,7 +183,7 @@ class RclpyLink:
     def publish(self, use: RosUse, values: dict[str, Json]) -> None:
         """Publish a message."""
         message = fill(interface(use.type)(), values)
-        self._do(partial(self._clients.topics[use].publish, message))
+        self._do(partial(self._topics[use].publish, message))
 
     async def ping(self) -> None:
         """Ask all actions to cancel a goal that does not exist: live servers answer."""
@@ -206,7 +198,7 @@ class RclpyLink:
             except TimeoutError:
                 raise Unreachable(f"{use} does not answer any more") from None
 
-        await asyncio.gather(*(ask(*one) for one in self._clients.cancels.items()))
+        await asyncio.gather(*(ask(*one) for one in self._cancels.items()))
         if missing := await self._run(self._missing):
             raise Unreachable(self._not_there(missing))
 
@@ -214,7 +206,7 @@ class RclpyLink:
         """Ask all actions to cancel all goals."""
         from action_msgs.srv import CancelGoal
 
-        for client in self._clients.cancels.values():
+        for client in self._cancels.values():
             self._do(partial(client.call_async, CancelGoal.Request()))
 
     # The thread -----------------------------------------------------------------------------
