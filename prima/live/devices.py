@@ -90,7 +90,6 @@ class LiveDevices:
         exclusive: bool = True,
         start: int = -1,
     ) -> None:
-        self.profile = profile
         self.drivers = drivers
         self.services = services
         self.conductor = Conductor(
