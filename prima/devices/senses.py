@@ -13,8 +13,7 @@ LOST_AFTER_MS = 1000
 class Sight:
     """Finds and loses the user, ignoring brief interruptions (V4)."""
 
-    def __init__(self, lost_after: int = LOST_AFTER_MS) -> None:
-        self._lost_after = lost_after
+    def __init__(self) -> None:
         self._found = False
         self._unseen_since: int | None = None
 
@@ -24,7 +23,7 @@ class Sight:
         ``searched``: whether a Command that itself reports the user has ended without them.
         """
         if self._unseen_since is not None:
-            return self._unseen_since + self._lost_after
+            return self._unseen_since + LOST_AFTER_MS
         looks = searched and not self._found if visible else self._found
         return now + 1 if looks else None
 
@@ -53,7 +52,7 @@ class Sight:
             return []
         if self._unseen_since is None:
             self._unseen_since = now
-        elif now - self._unseen_since >= self._lost_after:
+        elif now - self._unseen_since >= LOST_AFTER_MS:
             self._found, self._unseen_since = False, None
             return [Occurred("human.lost", "robot")]
         return []
