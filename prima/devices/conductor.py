@@ -194,7 +194,7 @@ class Conductor:
         elif isinstance(report, Done):
             task.data.update(report.data)
         elif isinstance(report, Stopped):
-            self._fail(task, min(goal.begin.devices, default="none"), "it stopped by itself")
+            self._fail(task, goal.begin.device, "it stopped by itself")
         else:
             task.lacks = report.lacks
             self._fail(task, report.device, report.reason)
@@ -320,8 +320,7 @@ class Conductor:
                 self._lose(Lost(goal.begin.devices, reason))
             else:
                 what = "answer" if goal.accepted else "accept it"
-                reason = f"the device does not {what}"
-                self._fail(goal.task, min(goal.begin.devices, default="none"), reason)
+                self._fail(goal.task, goal.begin.device, f"the device does not {what}")
 
     # What the user says ---------------------------------------------------------------
 

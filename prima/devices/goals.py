@@ -49,6 +49,11 @@ class Begin:
     bounds: RecordingBounds = RecordingBounds()
     """When the recording ends."""
 
+    @property
+    def device(self) -> str:
+        """The device to which a failure of the goal as a whole is attributed."""
+        return min(self.devices, default="none")
+
 
 @dataclass(frozen=True, slots=True)
 class Again:

@@ -325,17 +325,17 @@ class LiveDevices:
 
     def _begin(self, goal: Begin) -> None:
         driver = route(self.drivers, goal)
-        now, device = self._now(), min(goal.devices, default="none")
+        now = self._now()
         if driver is None:
-            reason = lacking(self.drivers, goal)
-            self.conductor.report(now, Broke(goal.key, device, reason, goal.kind == RECORD))
+            reason, records = lacking(self.drivers, goal), goal.kind == RECORD
+            self.conductor.report(now, Broke(goal.key, goal.device, reason, records))
             return
         self._routes[goal.key] = driver
         try:
             driver.start(goal)
         except Exception as error:
             reason = f"the driver {driver.kind} has failed: {error}"
-            self.conductor.report(now, Broke(goal.key, device, reason))
+            self.conductor.report(now, Broke(goal.key, goal.device, reason))
 
 
 def _releases(news: News | Inbound) -> bool:

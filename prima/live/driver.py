@@ -321,10 +321,9 @@ class TaskDriver(Driver):
             self.lose(str(error))
             return
         except SystemExit as error:  # a robot's library tries to end the program
-            device = min(goal.devices, default="none")
-            report = Broke(goal.key, device, f"the driver has failed: SystemExit: {error}")
+            report = Broke(goal.key, goal.device, f"the driver has failed: SystemExit: {error}")
         except Exception as error:
-            device = getattr(error, "device", "") or min(goal.devices, default="none")
+            device = getattr(error, "device", "") or goal.device
             lacks = goal.kind == RECORD and isinstance(error, Refused)
             report = Broke(goal.key, device, str(error) or type(error).__name__, lacks)
         finally:
