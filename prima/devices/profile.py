@@ -85,8 +85,7 @@ def _read_parts(reader: Reader, profile: Profile) -> None:
 
 def _check_twice(reader: Reader) -> None:
     """Duplicate entries, of which only one would count."""
-    for extra in reader.root.all("camera")[1:]:
-        reader.problem(extra, "duplicate-element", "There is a second <camera>.", "", "Keep one.")
+    reader.only("camera")
     for tag, key in NAMED:
         _check_names(reader, reader.root.all(tag), key)
     for adds in reader.root.all("adds"):

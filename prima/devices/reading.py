@@ -83,6 +83,14 @@ class Reader:
             hint = nearest(word, words, *value_span(node, name))
             self.problem(node, "no-such-name", message, name, hint)
 
+    def only(self, tag: str) -> Node | None:
+        """The root's child of a tag that may occur once; another one is a problem."""
+        found = self.root.all(tag)
+        for extra in found[1:]:
+            message = f"There is a second <{tag}>."
+            self.problem(extra, "duplicate-element", message, "", "Keep one.")
+        return found[0] if found else None
+
     def finish(self) -> None:
         """Raise the problems found.
 

@@ -124,7 +124,7 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
     reader = Reader(SCENARIO, file, data)
     root = reader.root
     draws = Draws(reader)
-    robot, connection = _only(reader, "robot"), _only(reader, "connection")
+    robot, connection = reader.only("robot"), reader.only("connection")
     applications = _applications(draws)
     persons = _persons(draws)
     _check_ids(reader)
@@ -176,14 +176,6 @@ def _check_ids(reader: Reader) -> None:
             message = f'The id "{name}" is there twice.'
             reader.problem(node, "duplicate-id", message, "id", RENAME)
         seen.add(name)
-
-
-def _only(reader: Reader, tag: str) -> Node | None:
-    """The element of a tag that may occur once; a second one is a problem."""
-    found = reader.root.all(tag)
-    for extra in found[1:]:
-        reader.problem(extra, "duplicate-element", f"There is a second <{tag}>.", "", "Keep one.")
-    return found[0] if found else None
 
 
 def _persons(draws: Draws) -> list[Person]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from prima.devices.reading import Reader
-from prima.errors import DocumentError, has_errors
 from prima.markup.tree import Node
 from prima.sim.chance import Amount, Chance, Draws
 from prima.sim.happenings import When, read_answer, read_when
@@ -46,11 +45,7 @@ def read_user(file: str, data: bytes, person: str = "") -> User:
     reader = Reader(USER, file, data)
     root = reader.root
     draws = Draws(reader, f"{person}:user")  # no id has a colon
-    answers = root.all("answers")
-    for extra in answers[1:]:
-        message = "There is a second <answers>."
-        reader.problem(extra, "duplicate-element", message, "", "Keep one.")
-    manner = answers[0] if answers else None
+    manner = reader.only("answers")
     user = User(
         speed=draws.amount(root, "speed", 1.0),
         after=draws.amount(manner, "after", 1000) if manner is not None else Amount(1000),
@@ -62,6 +57,5 @@ def read_user(file: str, data: bytes, person: str = "") -> User:
     )
     for when in user.whens:
         when.person = person
-    if has_errors(reader.problems):
-        raise DocumentError(reader.problems)
+    reader.finish()
     return user
