@@ -75,12 +75,12 @@ class Motion:
 def _read_parts(reader: Reader, profile: Profile) -> None:
     """The camera, voices and gestures."""
     for node in reader.root.all("camera"):
-        profile.camera_angle = reader.get(node, "angle") or 60.0
-        profile.camera_range = reader.get(node, "range") or 4.0
+        profile.camera_angle = reader.get(node, "angle")
+        profile.camera_range = reader.get(node, "range")
     for node in reader.root.all("voice"):
-        profile.voices[node.get("lang").lower()] = reader.get(node, "rate") or 14.0
+        profile.voices[node.get("lang").lower()] = reader.get(node, "rate")
     for node in reader.root.all("gesture"):
-        profile.gestures[node.get("name")] = _lasts(reader, node)
+        profile.gestures[node.get("name")] = reader.get(node, "duration")
 
 
 def _check_twice(reader: Reader) -> None:
@@ -102,12 +102,6 @@ def _check_names(reader: Reader, nodes: list[Node], key: str) -> None:
         seen.add(name)
 
 
-def _lasts(reader: Reader, node: Node) -> int:
-    """How long a gesture or an added Command takes (ms)."""
-    lasts: int | None = reader.get(node, "duration")
-    return 1000 if lasts is None else lasts
-
-
 def read_robot(file: str, data: bytes) -> Profile:
     """Read a robot profile; its ``commands`` are those that the robot can do.
 
@@ -118,11 +112,11 @@ def read_robot(file: str, data: bytes) -> Profile:
     root = reader.root
     profile = Profile(
         root.get("id"),
-        radius=reader.get(root, "radius") or 0.2,
-        speed=reader.get(root, "speed") or 0.5,
-        turn_speed=reader.get(root, "turn-speed") or 90.0,
-        head_speed=reader.get(root, "head-speed") or 120.0,
-        loop=reader.get(root, "loop") or 500,
+        radius=reader.get(root, "radius"),
+        speed=reader.get(root, "speed"),
+        turn_speed=reader.get(root, "turn-speed"),
+        head_speed=reader.get(root, "head-speed"),
+        loop=reader.get(root, "loop"),
         absence=reader.get(root, "absence"),
         devices=frozenset(node.get("name") for node in root.all("device")),
         touch=frozenset(node.get("sensor") for node in root.all("touch")),
@@ -185,7 +179,7 @@ def _add(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Prof
             or f'Add <device name="{device}"/>.'
         )
         reader.problem(node, "no-such-name", message, "devices", remedy)
-    profile.durations[name] = max(_lasts(reader, node), 1)
+    profile.durations[name] = max(reader.get(node, "duration") or 1, 1)
     motion = _motion(reader, node)
     if motion is not None:
         profile.motions[name] = motion
@@ -249,8 +243,7 @@ def _motion(reader: Reader, node: Node) -> Motion | None:
     if steps and "locomotion" not in node.get("devices").split():
         message = "Its steps move the body, but it does not occupy the locomotion."
         reader.problem(node, "bad-value", message, "devices", 'Add "locomotion" to its devices.')
-    stray = reader.get(node, "stray")
-    return Motion(steps, 0.3 if stray is None else stray) if steps else None
+    return Motion(steps, reader.get(node, "stray")) if steps else None
 
 
 def _added(reader: Reader, node: Node) -> CommandType:
