@@ -19,6 +19,19 @@ if TYPE_CHECKING:
 RENAME = "Rename one."
 
 
+def unknown_name(node: Node, name: str, words: Collection[str], wrong: str) -> list[Problem]:
+    """The problem of an attribute that names something that does not exist, if it does so.
+
+    ``wrong`` begins the message, which ends with the name.
+    """
+    word = node.attributes.get(name)
+    if word is None or word in words:
+        return []
+    hint = nearest(word, words, *value_span(node, name))
+    message = f'{wrong} "{word}".'
+    return [Problem(node.attribute_place(name), "error", "no-such-name", message, hint)]
+
+
 class Reader:
     """Reads typed attributes of one document by its vocabulary, collecting problems."""
 
@@ -77,11 +90,8 @@ class Reader:
 
     def known(self, node: Node, name: str, words: Collection[str], what: str) -> None:
         """Note a problem if an attribute names something that does not exist."""
-        word = node.get(name)
-        if word and word not in words:
-            message = f'There is no {what} "{word}".'
-            hint = nearest(word, words, *value_span(node, name))
-            self.problem(node, "no-such-name", message, name, hint)
+        if node.get(name):
+            self.problems += unknown_name(node, name, words, f"There is no {what}")
 
     def only(self, tag: str) -> Node | None:
         """The root's child of a tag that may occur once; another one is a problem."""

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-
 from prima.devices.profile import Profile
+from prima.devices.reading import unknown_name
 from prima.errors import Problem
 from prima.interpreter.elements import Document
-from prima.interpreter.surroundings import nearest
 from prima.language.commands import TABLE_4_2
-from prima.markup.spans import value_span
 from prima.session import AnyDocument
-from prima.sim.expectations import Expectation
 from prima.sim.scenario import Scenario
 
 COMMANDS = ("does", "finishes", "doing", "done")
@@ -29,25 +25,17 @@ def check_expectations(
     forms: dict[str, set[str] | None] = {}
     for one in scenario.expectations:
         for name in COMMANDS:
-            _known(one, name, commands, "There is no Command", problems)
+            problems += unknown_name(one.node, name, commands, "There is no Command")
         if ":" not in one.words.get("sends", ""):
-            _known(one, "sends", services, "There is no service", problems)
+            problems += unknown_name(one.node, "sends", services, "There is no service")
         if not one.by or one.by in applications:
             if one.by not in forms:
                 forms[one.by] = _forms(one.by, documents)
-            _state(one, forms[one.by], problems)
+            known = forms[one.by]
+            if known is not None:
+                wrong = f"{one.by} has no form" if one.by else "No application has a form"
+                problems += unknown_name(one.node, "state", known, wrong)
     return problems
-
-
-def _known(
-    one: Expectation, name: str, words: Collection[str], wrong: str, problems: list[Problem]
-) -> None:
-    word = one.node.attributes.get(name)
-    if word is None or word in words:
-        return
-    place = one.node.attribute_place(name)
-    remedy = nearest(word, words, *value_span(one.node, name))
-    problems.append(Problem(place, "error", "no-such-name", f'{wrong} "{word}".', remedy))
 
 
 def _forms(by: str, documents: list[AnyDocument]) -> set[str] | None:
@@ -59,10 +47,3 @@ def _forms(by: str, documents: list[AnyDocument]) -> set[str] | None:
                 return None
             forms |= set(document.forms)
     return forms
-
-
-def _state(one: Expectation, forms: set[str] | None, problems: list[Problem]) -> None:
-    """A state named in an expectation has to be in an existing form."""
-    if forms is not None:
-        wrong = f"{one.by} has no form" if one.by else "No application has a form"
-        _known(one, "state", forms, wrong, problems)

@@ -6,11 +6,10 @@ from itertools import chain
 
 from prima.devices.loop import Loop
 from prima.devices.profile import Profile
+from prima.devices.reading import unknown_name
 from prima.errors import DocumentError, Problem
 from prima.interpreter.elements import Document
-from prima.interpreter.surroundings import nearest
 from prima.language.commands import TABLE_4_2
-from prima.markup.spans import value_span
 from prima.scheduler.policy import Policy
 from prima.session import AnyDocument, Session
 from prima.sim.devices import Cast, SimulatedDevices
@@ -51,12 +50,8 @@ def check_names(
     for node in chain.from_iterable(one.walk() for one in nodes):
         for name in node.attributes:
             words, what = known.get((node.tag, name), (None, ""))
-            word = node.attributes[name]
-            if words is not None and word not in words:
-                place = node.attribute_place(name)
-                message = f'There is no {what} "{word}".'
-                remedy = nearest(word, words, *value_span(node, name))
-                problems.append(Problem(place, "error", "no-such-name", message, remedy))
+            if words is not None:
+                problems += unknown_name(node, name, words, f"There is no {what}")
     return problems
 
 
