@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
@@ -107,6 +107,18 @@ class BuiltIn:
 
 
 Part = Words | Sequence | Alternatives | Repeat | Reference | Special | Tag | BuiltIn
+
+
+def walk(body: Part) -> Iterator[Part]:
+    """An expansion and all inside it, without the rules that it refers to."""
+    todo = [body]
+    while todo:
+        part = todo.pop()
+        yield part
+        if isinstance(part, Alternatives | Sequence):
+            todo += part.parts
+        elif isinstance(part, Repeat):
+            todo.append(part.part)
 
 
 @dataclass(slots=True)

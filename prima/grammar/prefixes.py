@@ -5,7 +5,8 @@ An alternative that an index omits cannot match; one that it returns may.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
+from itertools import chain
 from typing import NamedTuple
 
 from prima.grammar.model import (
@@ -19,6 +20,7 @@ from prima.grammar.model import (
     Special,
     Tag,
     Words,
+    walk,
 )
 from prima.grammar.text import join
 
@@ -48,22 +50,9 @@ def index_choices(documents: Iterable[GrammarDocument]) -> None:
     """Index the alternatives of all rules of documents with resolved references."""
     for document in documents:
         finder = _Finder(document.mode == "dtmf")
-        for rule in document.rules.values():
-            for one in _choices(rule.body):
-                one.index = finder.index(one.parts)
-
-
-def _choices(body: Part) -> Iterator[Alternatives]:
-    """All choices in an expansion."""
-    todo = [body]
-    while todo:
-        part = todo.pop()
-        if isinstance(part, Alternatives):
-            yield part
-        if isinstance(part, Alternatives | Sequence):
-            todo += part.parts
-        elif isinstance(part, Repeat):
-            todo.append(part.part)
+        for part in chain.from_iterable(walk(rule.body) for rule in document.rules.values()):
+            if isinstance(part, Alternatives):
+                part.index = finder.index(part.parts)
 
 
 class _Finder:

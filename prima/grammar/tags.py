@@ -6,16 +6,7 @@ from collections.abc import Iterator
 
 from prima.errors import Problem, did_you_mean
 from prima.grammar.legacy import translate
-from prima.grammar.model import (
-    Alternatives,
-    BuiltIn,
-    GrammarDocument,
-    Part,
-    Reference,
-    Repeat,
-    Sequence,
-    Tag,
-)
+from prima.grammar.model import BuiltIn, GrammarDocument, Part, Reference, Tag, walk
 from prima.script.budget import Budget
 from prima.script.globals import GLOBALS, VARIABLES
 from prima.script.names import script_names
@@ -105,18 +96,12 @@ def _held(body: Part) -> tuple[list[Tag], set[str]]:
     """The tags of a rule, and the names of the rules that it refers to."""
     tags: list[Tag] = []
     rules: set[str] = set()
-    todo: list[Part] = [body]
-    while todo:
-        part = todo.pop()
+    for part in walk(body):
         match part:
             case Tag():
                 tags.append(part)
             case Reference(rule=rule) if rule is not None:
                 rules.add(rule.name)
-            case Sequence() | Alternatives():
-                todo += part.parts
-            case Repeat():
-                todo.append(part.part)
             case BuiltIn():
                 rules.add("builtin")
     return tags, rules
