@@ -75,7 +75,7 @@ def _used(codes: Iterable[str]) -> set[str]:
 def _guess(document: GrammarDocument, codes: list[str]) -> str:
     if any(_uses_sisr(code) for code in codes):
         return "script"
-    bare = all(not _dollars(one) and not _slots(one) and not _value(one) for one in codes)
+    bare = all(not _signs(one) and not _slots(one) and not _value(one) for one in codes)
     return "literals" if bare and not document.globals else "legacy"
 
 
@@ -108,10 +108,6 @@ def _signs(code: str) -> list[tuple[int, int, str]]:
     return found
 
 
-def _dollars(code: str) -> bool:
-    return bool(_signs(code))
-
-
 def _value(code: str) -> bool:
     """Whether a tag is a text, an array or an object."""
     code = code.strip()
@@ -127,7 +123,7 @@ def translate(code: str) -> str:
     """A tag as a script of SISR 1.0."""
     if _uses_sisr(code):
         return code
-    if _dollars(code):
+    if _signs(code):
         return _from_dollars(code)
     slots = _slots(code)
     if slots:

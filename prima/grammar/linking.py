@@ -142,7 +142,10 @@ class Library:
             self.problems.note(reference.where, "bad-value", "The reference names no rule.")
             return None
         try:
-            where, name = parted(joined(base_of(document), uri, reference.where))
+            base = document.uri
+            if document.base:  # SRGS 4.9
+                base = joined(base, document.base, document.where)
+            where, name = parted(joined(base, uri, reference.where))
         except GrammarError as error:
             self.problems.extend(error.problems)
             return None
@@ -207,11 +210,6 @@ class Library:
         home = GrammarDocument("", reference.where, dialect="literals")
         home.rules[found.name] = Rule(found.name, found, home)
         return home.rules[found.name]
-
-
-def base_of(document: GrammarDocument) -> str:
-    """The base of a document's relative URIs (SRGS 4.9)."""
-    return joined(document.uri, document.base, document.where) if document.base else document.uri
 
 
 def joined(base: str, uri: str, where: Where) -> str:

@@ -81,7 +81,7 @@ class TagInterpreter:
         """The value of the root rule.
 
         Raises:
-            Failure: a tag failed.
+            TagFailed: a tag failed.
         """
         todo: list[tuple[RuleFrame, int]] = [(top, 0)]
         self._results[id(top)] = _result(top, 0)
@@ -233,7 +233,7 @@ def _check(tags: list[tuple[Tag, str]], document: GrammarDocument, engine: Any) 
     """Check that each tag is a script by itself (SISR 1.0 section 3); each is checked once.
 
     Raises:
-        Failure: one is not.
+        TagFailed: one is not.
     """
     known = document.faults
     for tag, code in tags:
