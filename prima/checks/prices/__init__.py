@@ -26,12 +26,12 @@ __all__ = [
 def outline(document: Document | VoiceDocument, profile: Profile) -> Outline:
     """The outline of an application in either language, with its further documents."""
     if isinstance(document, Document):
-        from prima.checks.prices import dialogue
+        from prima.checks.prices.dialogue import DialoguePrices
 
-        return dialogue.outline(document, profile)
-    from prima.checks.prices import voice
+        return DialoguePrices(document, profile).outline()
+    from prima.checks.prices.voice import VoicePrices
 
-    return voice.outline(document, profile)
+    return VoicePrices(document, profile).outline()
 
 
 UNIT_WAITS = UNIT_PRICE.says(
@@ -42,9 +42,9 @@ UNIT_WAITS = UNIT_PRICE.says(
 def prices(document: Document | VoiceDocument, profile: Profile) -> list[Price]:
     """All indivisible parts of an application, in document order."""
     if isinstance(document, Document):
-        from prima.checks.prices import dialogue
+        from prima.checks.prices.dialogue import DialoguePrices
 
-        return dialogue.parts(document, profile)
+        return DialoguePrices(document, profile).parts
     return outline(document, profile).parts
 
 

@@ -34,17 +34,9 @@ MOST_INNER, MOST_SCOPES = 40_000, 16_000_000
 the application's own, and for any."""
 
 
-def outline(document: Document, profile: Profile) -> Outline:
-    """The outline of an application in PRIMA's language."""
-    return _DialoguePrices(document, profile).outline()
+class DialoguePrices(Times):
+    """The indivisible parts of an application in PRIMA's language, and its outline."""
 
-
-def parts(document: Document, profile: Profile) -> list[Price]:
-    """All indivisible parts of an application in PRIMA's language, in document order."""
-    return _DialoguePrices(document, profile).parts
-
-
-class _DialoguePrices(Times):
     def __init__(self, document: Document, profile: Profile) -> None:
         super().__init__(document, profile)
         self.inside: set[int] = set()
@@ -58,6 +50,7 @@ class _DialoguePrices(Times):
             if node.index not in self.inside:
                 found += self.steps(content)
         self.parts = sorted(found, key=lambda price: price.node.index)
+        """All indivisible parts, in document order."""
         self.firsts = Firsts(document, self.of_items, self.step)
         self.responses = Firsts(document, self.of_items, self.step, response=True)
         self.own = OwnEvents(document, self.parts, self.steps)

@@ -23,12 +23,9 @@ from prima.voicexml.vocabulary import SPOKEN
 SILENT_ACTS = ("assign", "var", "log", "script", "clear", "desc")
 
 
-def outline(document: VoiceDocument, profile: Profile) -> Outline:
+class VoicePrices(VoiceTimes):
     """The outline of a VoiceXML application and its further documents."""
-    return _VoicePrices(document, profile).outline()
 
-
-class _VoicePrices(VoiceTimes):
     def __init__(self, document: VoiceDocument, profile: Profile) -> None:
         super().__init__(document, profile)
         self.thrown = {name for page in self.pages for name in thrown_by(page.root)}
