@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from prima.checks.prices.model import (
@@ -125,13 +125,9 @@ def _busy(outline: Outline, states: list[PricedState]) -> Busy:
 def loops(outline: Outline) -> list[EndlessLoop]:
     """Cycles of states without a wait, and questions repeated endlessly."""
     if outline.loops is None:
-        outline.loops = _loops(outline)
+        found = (_loop_of(outline, states) for states in _cycles(outline))
+        outline.loops = [loop for loop in found if loop.devices]
     return outline.loops
-
-
-def _loops(outline: Outline) -> list[EndlessLoop]:
-    found = (_loop_of(outline, states) for states in _cycles(outline))
-    return [loop for loop in found if loop.devices]
 
 
 def _loop_of(outline: Outline, states: list[PricedState]) -> EndlessLoop:
@@ -177,17 +173,13 @@ def _loop(place: Place, what: str, parts: list[Price], names: frozenset[str]) ->
 def _cycles(outline: Outline) -> list[list[PricedState]]:
     """The cycles of states."""
     order = {name: at for at, name in enumerate(outline.states)}
-    sets = [sorted(ring, key=order.__getitem__) for ring in _rings(outline)]
+    found = rings(outline.states, lambda name: _ways(outline, name))
+    sets = [sorted(ring, key=order.__getitem__) for ring in found]
     return [
         [outline.states[one] for one in ring]
         for ring in sorted(sets, key=lambda ring: order[ring[0]])
         if len(ring) > 1 or ring[0] in _ways(outline, ring[0]) or outline.states[ring[0]].repeats
     ]
-
-
-def _rings(outline: Outline) -> Iterator[list[str]]:
-    """Sets of states that lead to each other."""
-    return rings(outline.states, lambda name: _ways(outline, name))
 
 
 def _ways(outline: Outline, name: str) -> list[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TypeGuard
 
 from prima.interpreter.acts import (
     Act,
@@ -82,9 +81,6 @@ def thrown_by(document: Document) -> set[str]:
     scopes: list[Document | Form] = [document, *document.forms.values()]
     events = {link.event for scope in scopes for link in scope.links}
     for _, content, _ in document.contents():
-        events |= {str(act.event) for act in all_acts(content) if _throws(act)}
+        thrown = [act.event for act in all_acts(content) if isinstance(act, Throw | Return)]
+        events |= {event for event in thrown if isinstance(event, str)}
     return events - {""}
-
-
-def _throws(act: Act) -> TypeGuard[Throw | Return]:
-    return isinstance(act, Throw | Return) and isinstance(act.event, str)

@@ -111,7 +111,8 @@ class Firsts:
                 case Foreach():
                     self._go_through(act.content, form)
                 case Throw():
-                    return self._throw(act, form)
+                    self._handled(act.node, [act.event], form)
+                    return True
                 case SendOut() if act.event and self._response:
                     self.later.append(act)
                     self._handled(act.node, [act.event], form)
@@ -176,10 +177,6 @@ class Firsts:
         for one in [form] if form is not None else self._document.forms.values():
             for item in all_items(one.items):
                 self._visit(item, one)
-
-    def _throw(self, act: Throw, form: Form | None) -> bool:
-        self._handled(act.node, [act.event], form)
-        return True
 
     def _handled(self, node: Node, events: Sequence[str | Expression], form: Form | None) -> None:
         """The content of handlers of events that an element raises."""

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
 from prima.checks.prices.model import UNKNOWN_LETTERS
+from prima.checks.prices.tags import says
 from prima.devices.voice import timeline
 from prima.markup.tree import Node
 from prima.messages import Cue
@@ -124,7 +125,7 @@ def utterances(node: Node) -> Iterator[tuple[Node, list[Node | str]]]:
         if isinstance(piece, str) or (piece is not None and piece.tag in SPOKEN - {"prompt"}):
             loose.append(piece)
             continue
-        if any(isinstance(one, Node) or one.strip() for one in loose):
+        if says(loose):
             first = loose[0]
             yield first if isinstance(first, Node) else node, loose
         loose = []
