@@ -241,7 +241,7 @@ class Checker(Starts):
             self.justified(cut)
         self.channel_kept_inside()
         self.left_rightly()
-        for app in self.ordered(self.taken_out):
+        for app in sorted(self.taken_out):
             self.report(13, "E2", f"{app} is taken out, but its end is not recorded")
         self.taken_out.clear()
         if self.prima:

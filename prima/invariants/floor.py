@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from prima.invariants.model import AB, LINKED, RUNNING, Record, Tree, base
 from prima.invariants.turn import Turn
 
@@ -182,7 +180,7 @@ class FloorRules(Turn):
                 self.report(13, "C2", f"{by} suspends {tree}; the records name {named}")
         for tree, by in self.suspensions.items():
             self.report(13, "C2", f"{tree} is not suspended by {by}, as a record says")
-        for tree in self.ordered(self.resumptions):
+        for tree in sorted(self.resumptions):
             self.report(13, "C2", f"{tree} does not resume, as a record says")
         self.suspensions, self.suspended_by, self.resumptions = {}, {}, {}
 
@@ -207,12 +205,7 @@ class FloorRules(Turn):
             return
         driven = self.driven or any(ab.drives for ab in self.running.values())
         due = set() if driven else set(self.halting)
-        for name in self.ordered(due - self.stops):
+        for name in sorted(due - self.stops):
             self.report(14, "F5", f"{name} is moved on by nobody and not stopped")
-        for name in self.ordered(self.stops - due):
+        for name in sorted(self.stops - due):
             self.report(14, "F5", f"{name} is stopped for no reason")
-
-    @staticmethod
-    def ordered(names: Iterable[str]) -> list[str]:
-        """Names in a deterministic order."""
-        return sorted(names)

@@ -187,11 +187,11 @@ class Selection(Patience):
         losers, count = set(decision["losers"]), decision["losers_count"]
         allowed = {other.shown for other in self.competing(ab) if self.kept_by_s3(other)}
         if strangers := losers - allowed:
-            text = f"{shown} is said to start before {self.ordered(strangers)}"
+            text = f"{shown} is said to start before {sorted(strangers)}"
             self.report(13, "S2", f"{text}, which could not have started")
         elif count <= MANY and (needed - losers or len(losers) != count):
             text = f"{shown} is said to start before {decision['losers']}"
-            self.report(13, "S2", f"{text}, {count}, not {self.ordered(needed)}")
+            self.report(13, "S2", f"{text}, {count}, not {sorted(needed)}")
         elif count > MANY and (len(losers) != MANY or not len(needed) <= count <= len(allowed)):
             self.report(13, "S2", f"{shown} is said to start before {count}, not {len(needed)}")
 

@@ -46,7 +46,7 @@ class Streams(Extensions):
         """C3 at the end of an instant: all windows are closed; each end with a notice had one."""
         for tree in self.windows:
             self.report(15, "C3", f"a window of {tree.name} is not closed")
-        for name in self.ordered(+self.owed):
+        for name in sorted(+self.owed):
             if name.rpartition(":")[0] not in self.gone_apps:
                 self.report(15, "C3", f"an end of {name} is heard, but no window opens")
 
@@ -65,7 +65,7 @@ class Streams(Extensions):
 
     def check_ends(self) -> None:
         """C1 at the end of an instant."""
-        for name in self.ordered(self.ended_trees ^ self.told_ends):
+        for name in sorted(self.ended_trees ^ self.told_ends):
             ended = "not told" if name in self.ended_trees else "told, but it has not ended"
             self.report(13, "C1", f"the end of {name} is {ended}")
 
@@ -75,7 +75,7 @@ class Streams(Extensions):
 
     def placed_rightly(self, ab: AB, new: bool) -> None:
         """O1, O2, C3: the stream that a request belongs to, and what it follows."""
-        for name in self.ordered(ab.parents):
+        for name in sorted(ab.parents):
             if self.abs[name].tree is not ab.tree:
                 self.report(15, "U3", f"{ab.name} of {ab.tree.name} follows {name} of another")
         if ab.inserted:
@@ -109,7 +109,7 @@ class Streams(Extensions):
         trees = {one.ab.tree.name for one in cut if not one.ab.unit}
         ran = {one.ab.tree.name for one in cut if self._ran(one, ab)}
         if trees and ab.tree.name not in (ran or trees) and not self.joined_now(ab.tree):
-            text = f"{ab.name} is of {ab.tree.name}, but cancels {', '.join(self.ordered(trees))}"
+            text = f"{ab.name} is of {ab.tree.name}, but cancels {', '.join(sorted(trees))}"
             self.report(15, "O2", text)
         for tree in self.trees.values():
             if tree.app == ab.app:
@@ -174,7 +174,7 @@ class Streams(Extensions):
 
     def _follows(self, ab: AB) -> list[str]:
         """The ABs that it was requested to follow; a way back, which all join, is not one (X1)."""
-        return [name for name in self.ordered(ab.parents) if not self.abs[name].inserted]
+        return [name for name in sorted(ab.parents) if not self.abs[name].inserted]
 
     def _begins_par(self, ab: AB) -> bool:
         """Whether it may be a branch beside one requested in this instant."""
