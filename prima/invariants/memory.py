@@ -114,7 +114,6 @@ class Memory:
     def _read_ahead(self) -> None:
         """Note the last occurrence of each name, which only later records show."""
         self.last: dict[str, int] = {}
-        self.unit_ends: dict[str, int] = {}
         self.begins: dict[tuple[int, str], int] = {}
         """When streams begin to be held, with the index of the record."""
         self.groups: set[str] = set()
@@ -125,8 +124,6 @@ class Memory:
             if record.get("behavior") and record["phase"] != "halted":
                 self.last[base(record["behavior"])] = place
             match record["phase"]:
-                case "end" if record["command"] == "iu":
-                    self.unit_ends[record["behavior"]] = record["time"]
                 case "held" if record["outcome"] == "begun":
                     self.begins[record["time"], record["tree"]] = place
                 case "start" if record.get("rule") == "U4" and record.get("unit"):

@@ -15,7 +15,6 @@ def ms(seconds: float) -> int:
 
 
 LINKED, WAITING, RUNNING, GONE = "linked", "waiting", "running", "gone"
-BASELINES = ("fifo", "fair", "fixed", "none")
 EXTENSIONS = frozenset(("x1", "x2", "x3", "x4", "x5", "x6", "x7", "x8", "x9", "x10"))
 COMPOSED = {"free", "faithful"}
 SEEKING = ("active-sensing-human", "tracking-human")
