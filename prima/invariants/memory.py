@@ -112,8 +112,7 @@ class Memory:
         self._new_instant()
 
     def _read_ahead(self) -> None:
-        """Note the last occurrence of each name, which only later records show."""
-        self.last: dict[str, int] = {}
+        """Note what only later records show."""
         self.begins: dict[tuple[int, str], int] = {}
         """When streams begin to be held, with the index of the record."""
         self.groups: set[str] = set()
@@ -121,8 +120,6 @@ class Memory:
         self.nested: set[str] = set()
         """Units inside units: their contents are requested by no application, when they start."""
         for place, record in enumerate(self.records):
-            if record.get("behavior") and record["phase"] != "halted":
-                self.last[base(record["behavior"])] = place
             match record["phase"]:
                 case "held" if record["outcome"] == "begun":
                     self.begins[record["time"], record["tree"]] = place
