@@ -100,6 +100,11 @@ class AB:
         return self.phase != LINKED and self.outermost.phase != LINKED
 
     @property
+    def asks(self) -> bool:
+        """Whether it is a question itself: a unit leaves that to its Commands."""
+        return "speech-recognition" in self.devices and self.command != "iu"
+
+    @property
     def drives(self) -> bool:
         """Whether it has the wheels itself: a unit leaves them to its Commands (F5)."""
         return "locomotion" in self.devices and self.command != "iu"

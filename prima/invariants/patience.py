@@ -67,15 +67,13 @@ class Patience(Streams):
         return self.overdue(ab) and not any(map(self._acknowledges, self.waiting.values()))
 
     def _acknowledges(self, ab: AB) -> bool:
-        asks = "speech-recognition" in ab.devices and ab.command != "iu"
         just = ab.followed_at == self.now == self._answered.get(ab.tree.name)
-        return ab.unit is None and just and "speaker" in ab.devices and not asks
+        return ab.unit is None and just and "speaker" in ab.devices and not ab.asks
 
     def note_answer(self, record: Record) -> None:
         """Note that a question was answered without a device's end."""
         ab = self.abs.get(base(record["behavior"]))
-        asks = ab is not None and "speech-recognition" in ab.devices and ab.command != "iu"
-        if ab is not None and asks and not record.get("inbound"):
+        if ab is not None and ab.asks and not record.get("inbound"):
             self._answered[ab.tree.name] = self.now
 
     def answered_now(self, ab: AB) -> None:

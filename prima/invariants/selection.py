@@ -222,15 +222,12 @@ class Selection(Patience):
         elif self.policy == "none":
             self.report(5, "none", f"{ab.shown} waits, though nothing mediates")
         elif self.prima:
-            self._waits_for_a_reason(ab)
+            self.late(ab)
+            self.waits_suspended(ab)
+            if len(self.waiting) <= MANY:
+                self._check_reason(ab)
         elif not self.busy(ab) and not any(self._ahead(one, ab) for one in self.waiting.values()):
             self.report(5, self.policy, f"{ab.shown} waits while its devices are free")
-
-    def _waits_for_a_reason(self, ab: AB) -> None:
-        self.late(ab)
-        self.waits_suspended(ab)
-        if len(self.waiting) <= MANY:
-            self._check_reason(ab)
 
     def late(self, ab: AB) -> None:
         """Invariants 5 and 6: an AB that could start by now does not wait."""

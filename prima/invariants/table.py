@@ -10,20 +10,18 @@ from prima.invariants.model import Record
 
 @dataclass(frozen=True)
 class CommandRow:
-    """One type of Command."""
+    """One type of Command: its devices, and which of :data:`MARKS` it has."""
 
     devices: frozenset[str]
-    feedback: bool = False
-    leaves: bool = False
-    engages: bool = False
+    marks: frozenset[str]
+
+
+MARKS = ("feedback", "leaves", "engages")
 
 
 def row(devices: str, marks: str = "") -> CommandRow:
-    """A row: devices, and which of ``feedback``, ``leaves``, ``engages`` it is marked with."""
-    names = marks.split()
-    return CommandRow(
-        frozenset(devices.split()), "feedback" in names, "leaves" in names, "engages" in names
-    )
+    """A row, with devices and marks separated by spaces."""
+    return CommandRow(frozenset(devices.split()), frozenset(marks.split()))
 
 
 TABLE: Mapping[str, CommandRow] = {
@@ -69,6 +67,6 @@ def contradictions(record: Record) -> Iterable[str]:
     expected = known.devices | ({"speaker"} if record.get("text") else set())
     if devices != expected:
         yield f"it occupies {', '.join(sorted(devices))}"
-    for name in ("feedback", "leaves", "engages"):
-        if bool(record.get(name)) != getattr(known, name):
+    for name in MARKS:
+        if bool(record.get(name)) != (name in known.marks):
             yield f"{name} is {bool(record.get(name))}"

@@ -12,9 +12,8 @@ class Turn(Channel):
     def note_turn(self, record: Record) -> None:
         """A question ends, with the user's answer or otherwise."""
         ab = self.abs.get(base(record["behavior"]))
-        asks = ab is not None and "speech-recognition" in ab.devices and ab.command != "iu"
         answered = not record.get("inbound") and record.get("outcome") == "filled"
-        if ab is not None and asks and answered:
+        if ab is not None and ab.asks and answered:
             self.answered_tree = ab.tree
 
     def look_for_turn(self) -> None:
