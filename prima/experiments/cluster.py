@@ -55,15 +55,6 @@ def pool_of(address: str | None, workers: int | None) -> Pool:
         return local(workers or 0)
     if workers is not None:
         raise UsageError("--workers is for this machine; a cluster has the workers it has.")
-    return cluster(address)
-
-
-def cluster(address: str) -> Pool:
-    """The workers of a scheduler of Dask.
-
-    Raises:
-        UsageError: it is not an address, or Dask is not installed.
-    """
     if ADDRESS.fullmatch(address) is None:
         message = f'--on "{escaped(address)}": write the address of a scheduler of Dask'
         raise UsageError(f"{message}, as tcp://127.0.0.1:8786.")

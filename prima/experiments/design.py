@@ -55,11 +55,14 @@ class Design:
             if not factors:
                 raise UsageError(f"--design {kind} needs something to vary: --vary PATH=LEVELS.")
             self.count = runs
-        _check_count(self.count)
-        self._check_drawn()
+        self._check_size()
 
-    def _check_drawn(self) -> None:
-        """Reject seeds that no scenario has, and a hypercube that is too large."""
+    def _check_size(self) -> None:
+        """Reject too many runs, seeds that no scenario has, and a hypercube that is too large."""
+        if self.count > MOST_RUNS:
+            these = f"{self.count:,}" if self.count < 10**20 else "far too many"  # else too long
+            message = f"These are {these} runs; a sweep has at most {MOST_RUNS:,}."
+            raise UsageError(f"{message} Take fewer levels or seeds, or --design lhs --runs 10000.")
         if self.kind != "full" and self.seeds + self.count - 1 > MOST_SEED:
             raise UsageError(f"--seeds: the last run has a seed above {MOST_SEED:,}.")
         if self.kind == "lhs" and self.count * len(self.factors) > MOST_POINTS:
@@ -96,14 +99,6 @@ class Design:
     @cached_property
     def _points(self) -> Sequence[Sequence[float]]:
         return _hypercube(len(self.factors), self.count, self.seeds)
-
-
-def _check_count(runs: int) -> None:
-    """Reject more runs than a sweep may have."""
-    if runs > MOST_RUNS:
-        these = f"{runs:,}" if runs < 10**20 else "far too many"  # too long for text
-        message = f"These are {these} runs; a sweep has at most {MOST_RUNS:,}."
-        raise UsageError(f"{message} Take fewer levels or seeds, or --design lhs --runs 10000.")
 
 
 def _hypercube(factors: int, runs: int, seed: int) -> Sequence[Sequence[float]]:

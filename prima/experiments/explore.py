@@ -149,7 +149,9 @@ class Exploration:
 
     def _lines(self) -> Iterator[int]:
         yield from self._make([self.base])
-        self._check_base()
+        base = self.seen[self.base]
+        if not base.times:
+            raise UsageError(f"{self.plan.scenario}: it cannot be run: {base.failures}")
         reached: set[Point] = {self.base}
         frontier = [self.base]
         for depth in range(1, self.plan.depth + 1):
@@ -161,11 +163,6 @@ class Exploration:
                 frontier += [one for one in self._next(line, found[line]) if one not in reached]
                 reached.update(frontier)
             frontier.sort(key=lambda point: (*shift(self.base, point), point))
-
-    def _check_base(self) -> None:
-        seen = self.seen[self.base]
-        if not seen.times:
-            raise UsageError(f"{self.plan.scenario}: it cannot be run: {seen.failures}")
 
     def _from(self, point: Point, exact: bool) -> Iterator[EventLine]:
         """The lines along the events that have not been moved."""

@@ -15,7 +15,7 @@ from prima.errors import UsageError, counted
 from prima.errors.visible import visible
 from prima.experiments.examine import Finding, Seen
 from prima.experiments.explore import Exploration, FoundOrder, FoundProblem
-from prima.experiments.lines import LinePiece, Point
+from prima.experiments.lines import Point
 from prima.experiments.pools import Pool
 from prima.experiments.variants import discard
 from prima.loading.writing import write_whole
@@ -85,7 +85,10 @@ class Explored:
             "runs": len(one.seen),
             "orders": [self._order(order) for order in one.orders],
             "boundaries": {
-                target.path: [_piece(piece) for piece in one.boundaries(which)]
+                target.path: [
+                    {"from": piece.first / 1000, "to": piece.last / 1000, "order": piece.order}
+                    for piece in one.boundaries(which)
+                ]
                 for which, target in enumerate(one.targets)
             },
             "problems": [
@@ -151,10 +154,6 @@ class Explored:
         depth = min(one.plan.depth, len(one.targets))
         events = counted(depth, "event")
         return f"{runs}: {found}; complete for {events} moved at once by up to {one.plan.within / 1000:g} s"
-
-
-def _piece(piece: LinePiece) -> dict[str, Json]:
-    return {"from": piece.first / 1000, "to": piece.last / 1000, "order": piece.order}
 
 
 class ExplorationFolder:

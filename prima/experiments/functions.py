@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from prima.api.rehearsing import check_numbers
 from prima.errors import UsageError
@@ -143,15 +143,12 @@ def _table(made: Sweep, output: str | Path | None, pool: Pool, resume: bool) -> 
         if resume:
             raise UsageError("resume needs the output that it goes on with.")
         names = [one.name for one in made.columns]
-        return arrow_table((_named(names, row) for row in made.results(pool)), made.columns)
+        rows = (dict(zip(names, row, strict=True)) for row in made.results(pool))
+        return arrow_table(rows, made.columns)
     out = Output(made, os.fspath(output), pool)
     for _ in out.write(resume):
         pass
     return arrow_table(out.read(), made.columns)
-
-
-def _named(names: Sequence[str], row: Sequence[Any]) -> dict[str, Any]:
-    return dict(zip(names, row, strict=True))
 
 
 def _names(scenarios: str | Path | Iterable[str | Path]) -> tuple[str, ...]:

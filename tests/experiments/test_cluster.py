@@ -22,7 +22,7 @@ from types import SimpleNamespace
 
 import prima as package
 from prima.errors import RunError, UsageError
-from prima.experiments.cluster import cluster
+from prima.experiments.cluster import pool_of
 from prima.experiments.scenariotext import Variant
 from prima.experiments.sweep import Sweep, SweepQuestion
 from prima.experiments.variants import Made, Stage
@@ -185,7 +185,7 @@ def test_a_worker_that_dies_each_time_costs_that_run(dask: Cluster) -> None:
     sweep = Sweep(SweepQuestion(("visit.xml",), {"touch": "0s..1s/100ms"}))
     deadly = Deadly.of(["visit.xml"], ["touch"], sweep.stage.settings)
     results: list[Any] = []
-    with cluster(dask.address)(deadly) as runs:
+    with pool_of(dask.address, None)(deadly) as runs:
         results = [made for _, made in runs(sweep)]
     assert [number for number, made in enumerate(results) if isinstance(made, Died)] == [3]
     assert results[4] == sweep.stage.run(list(sweep)[4])
