@@ -146,23 +146,11 @@ class DocumentEntering(Protocol):
         """The application root of a leaf."""
 
     def find(
-        self,
-        context: Context,
-        uri: str,
-        node: Node,
-        request: UriRequest | None = None,
-        base: Page | None = None,
+        self, context: Context, uri: str, node: Node, request: UriRequest | None = None
     ) -> Generator[None, Resume, tuple[Page | None, str]]:
         """The dialog that a URI names, and its document where that is fetched."""
 
-    def go(
-        self,
-        context: Context,
-        uri: str,
-        node: Node,
-        request: UriRequest | None = None,
-        base: Page | None = None,
-    ) -> Flow:
+    def go(self, context: Context, uri: str, node: Node, request: UriRequest | None = None) -> Flow:
         """Follow a URI to a dialog (5.3.7)."""
 
 

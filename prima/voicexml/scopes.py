@@ -110,32 +110,20 @@ class Documents:
             case _:
                 content.declare(node, scope, context, local)
 
-    def go(
-        self,
-        context: Context,
-        uri: str,
-        node: Node,
-        request: UriRequest | None = None,
-        base: Page | None = None,
-    ) -> Flow:
-        """Follow a URI, written in ``base`` or in this document, to a dialog (5.3.7).
+    def go(self, context: Context, uri: str, node: Node, request: UriRequest | None = None) -> Flow:
+        """Follow a URI to a dialog (5.3.7).
 
         Raises:
             GoDialog: with the page, or without where it is this one.
             Thrown: ``error.badfetch``.
         """
-        page, dialog = yield from self.find(context, uri, node, request, base)
+        page, dialog = yield from self.find(context, uri, node, request)
         if page is not None:
             yield from self.root(page, context)  # a document needs its root
         raise GoDialog(page, dialog, submitted=request is not None)
 
     def find(
-        self,
-        context: Context,
-        uri: str,
-        node: Node,
-        request: UriRequest | None = None,
-        base: Page | None = None,
+        self, context: Context, uri: str, node: Node, request: UriRequest | None = None
     ) -> Generator[None, Resume, tuple[Page | None, str]]:
         """The dialog that a URI names, and its document where that is fetched.
 
@@ -149,7 +137,7 @@ class Documents:
         target, fragment = parted(legal(uri))
         page = None
         if target or request is not None:
-            whole = urldefrag((base or context.page).resolve(uri, node))[0]
+            whole = urldefrag(context.page.resolve(uri, node))[0]
             root = context.root
             if request is None and root is not None and root.uri == whole:
                 page = root  # it is loaded, even if it is what a submit was answered with
