@@ -43,7 +43,7 @@ class Events:
         self._count(context, thrown)
         try:
             if isinstance(thrown, HungUp) and not self.owner.gone:
-                yield from self._hang_up(context, thrown)
+                yield from self._hang_up(thrown)
             handler = self.find(context, thrown)
             if handler is None:
                 yield from self._default(context, thrown)
@@ -137,11 +137,11 @@ class Events:
             raise
         context.quiet = not self.owner.reprompted
 
-    def _hang_up(self, context: Context, thrown: HungUp) -> Flow:
+    def _hang_up(self, thrown: HungUp) -> Flow:
         """The user is gone: play what is queued before, and nothing after (5.3.11)."""
         try:
             if self.owner.queue and not thrown.outside:
-                yield from self.owner.play(context)
+                yield from self.owner.play()
         finally:
             self.owner.gone = thrown.name
 

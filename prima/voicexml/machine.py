@@ -131,15 +131,14 @@ class Machine:
         self.context = None
         if self.queue and not self.gone:
             try:
-                yield from self.play(context)
+                yield from self.play()
             except Thrown as thrown:
                 yield from self.events.unhandled(context, thrown)
 
-    def execute(
-        self, context: Context, page: Page, dialog: str, heard: TakenUtterance | None = None
-    ) -> Flow:
+    def execute(self, context: Context, page: Page, dialog: str) -> Flow:
         """Run documents and dialogs of one context until it is left."""
         fetched: Page | None = page
+        heard: TakenUtterance | None = None
         submitted = False
         while True:
             try:
@@ -241,7 +240,7 @@ class Machine:
             context.item = item
             yield from self.visit(context, item, wanted)
         elif context.unit is not None and self.queue and not self.gone:
-            yield from self.play(context)  # a unit ends when all of it has been played
+            yield from self.play()  # a unit ends when all of it has been played
         else:
             return False
         return True
@@ -315,9 +314,8 @@ class Machine:
 
     # Waiting --------------------------------------------------------------------------
 
-    def play(self, context: Context) -> Flow:
+    def play(self) -> Flow:
         """Play what is queued and wait until it has been said."""
-        del context
         resume = yield from self.wait(self.queue)
         if resume.event is not None:
             raise thrown_outside(resume)

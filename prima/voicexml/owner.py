@@ -282,7 +282,7 @@ class MachineOwner(Protocol):
     def enumeration(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
         """Read an enumerate (2.2.4)."""
 
-    def play(self, context: Context) -> Flow:
+    def play(self) -> Flow:
         """Play what is queued and wait until it has been said."""
 
     def wait(
@@ -298,9 +298,7 @@ class MachineOwner(Protocol):
     def visit_all(self, context: Context, wanted: str = "") -> Flow:
         """Visit the items of the dialog, or of the unit that it is in, until none is left."""
 
-    def execute(
-        self, context: Context, page: Page, dialog: str, heard: TakenUtterance | None = None
-    ) -> Flow:
+    def execute(self, context: Context, page: Page, dialog: str) -> Flow:
         """Run documents and dialogs of one context until it is left."""
 
     def finish(self, context: Context) -> Flow:

@@ -37,7 +37,7 @@ class Units:
             wanted: the name of the item in it to begin with, if a goto names one.
         """
         if self.owner.queue:
-            yield from self.owner.play(context)  # earlier speech is not part of it
+            yield from self.owner.play()  # earlier speech is not part of it
         app, items = self.owner.app, self.owner.items_of
         app.waits.open_unit(self._reach(context, unit), longest_of(unit), unit)
         context.unit = unit
@@ -47,19 +47,19 @@ class Units:
             items.mark(context, unit)  # a clear in it makes its items be visited again, not itself
         except Transfer as way:
             if not (isinstance(way, GoOut) and way.failed):
-                yield from self._say_rest(context)
+                yield from self._say_rest()
             raise
         finally:
             context.item, context.unit = unit, None
             app.waits.close_unit()
 
-    def _say_rest(self, context: Context) -> Flow:
+    def _say_rest(self) -> Flow:
         """Play what is queued before a unit is left: it belongs to the unit (O3), uninterrupted."""
         if not self.owner.queue or self.owner.gone:
             return
         self.owner.app.waits.leaving = True
         try:
-            yield from self.owner.play(context)
+            yield from self.owner.play()
         finally:
             self.owner.app.waits.leaving = False
 
