@@ -32,11 +32,7 @@ def of_web(place: str) -> bool:
 
 
 class FetchError(Exception):
-    """A resource cannot be fetched; ``event`` is thrown in the application."""
-
-    def __init__(self, message: str, event: str = "error.badfetch") -> None:
-        super().__init__(message)
-        self.event = event
+    """A resource cannot be fetched: ``error.badfetch`` in the application."""
 
 
 @dataclass(slots=True)

@@ -148,7 +148,7 @@ def _file(owner: MachineOwner, uri: str, node: Node) -> bytes:
     try:
         return owner.document.fetch(uri)
     except FetchError as error:
-        raise Thrown.at(node, error.event, f"{uri}: {error}") from None
+        raise Thrown.at(node, "error.badfetch", f"{uri}: {error}") from None
 
 
 # Grammars -----------------------------------------------------------------------------------
