@@ -89,7 +89,7 @@ Reader = Callable[[dict[str, str], str, str, str], "Json"]
 """Parameters, language, text and mode to value; None if it does not match."""
 
 
-def built_in(uri: str, mode: str, lang: str) -> BuiltIn:
+def built_in(uri: str, lang: str) -> BuiltIn:
     """The built-in type that a URI names.
 
     Raises:

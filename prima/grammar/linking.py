@@ -199,7 +199,7 @@ class Library:
 
     def _built_in(self, document: GrammarDocument, reference: Reference) -> Rule | None:
         try:
-            found = built_in(reference.uri, document.mode, document.lang)
+            found = built_in(reference.uri, document.lang)
         except ValueError as error:
             kind = UnsupportedBuiltIn
             self.problems.unsupported(kind, reference.where, "no-such-name", str(error))

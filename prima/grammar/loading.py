@@ -101,7 +101,7 @@ def _named(uri: str, mode: Mode | None, lang: str) -> Grammar:
     mode = uri_mode(uri) or mode
     where = partial(Place, uri)
     try:
-        found = built_in(uri, mode or "", lang)
+        found = built_in(uri, lang)
     except Conflict as error:
         raise refuse(GrammarError, where(), "exclusive", str(error)) from None
     except ValueError as error:

@@ -15,7 +15,7 @@ def read(type: str, text: str) -> Json:
     """The value of an utterance, or None if the type does not match it."""
     if type == "text":
         return " ".join(text.split()) if fold(text) else None
-    value = built_in(type, "voice", "").read(text, "voice")
+    value = built_in(type, "").read(text, "voice")
     reader = _VALUES.get(type)
     return reader(value) if reader is not None and isinstance(value, str) else value
 

@@ -170,7 +170,7 @@ def _type_problems(node: Node) -> Iterator[Problem]:
     if not kind or (node.key != "field" and not kind.startswith("builtin:")):
         return
     try:
-        built_in(kind, "voice", "en")
+        built_in(kind, "en")
     except Conflict as error:
         yield TWO_MEANINGS.at(place, wrong=error)
     except ValueError as error:
