@@ -11,6 +11,7 @@ from prima.errors import DocumentError, Problem
 from prima.markup.tree import Node
 from prima.markup.uris import join
 from prima.voicexml.checks import check_code
+from prima.voicexml.recordings import HEADER_BYTES, length_ms
 from prima.voicexml.site import Site
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
@@ -119,6 +120,17 @@ class VoiceDocument:
         except FetchError:
             return False
         return True
+
+    def recording_ms(self, name: str) -> int | None:
+        """How long a recording of the folder plays (ms), if it can be played.
+
+        Raises:
+            FetchError: it is not there.
+        """
+        if self.glance is not None:
+            return length_ms(*self.glance(name))
+        whole = self.fetch(name)
+        return length_ms(whole[:HEADER_BYTES], len(whole))
 
     def seen(self, name: str) -> str:
         """A name in the folder as messages show it: relative to the first document's folder."""

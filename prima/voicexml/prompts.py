@@ -17,7 +17,6 @@ from prima.voicexml.document import FetchError, Page, of_web
 from prima.voicexml.elements import SILENT
 from prima.voicexml.evaluating import WORD, VoiceEvaluator
 from prima.voicexml.owner import MachineOwner
-from prima.voicexml.recordings import HEADER_BYTES, length_ms
 from prima.voicexml.settings import setting
 from prima.voicexml.speech import Speech, language_of, read_markup
 from prima.voicexml.state import Context
@@ -217,17 +216,10 @@ class Speaker(VoiceEvaluator):
             if uri not in self._known:
                 if len(self._known) >= MAX_KNOWN:
                     self._known.clear()
-                self._known[uri] = self._look_at(uri)
+                self._known[uri] = self.owner.document.recording_ms(uri)
         except (FetchError, ValueError):
             return None
         return self._known[uri]
-
-    def _look_at(self, uri: str) -> int | None:
-        document = self.owner.document
-        if document.glance is not None:
-            return length_ms(*document.glance(uri))
-        whole = document.fetch(uri)
-        return length_ms(whole[:HEADER_BYTES], len(whole))
 
     # Commands of the robot ---------------------------------------------------------------
 

@@ -15,7 +15,6 @@ from prima.script.choices import choices
 from prima.voicexml.document import FetchError, Page, VoiceDocument
 from prima.voicexml.pages import MOST_PAGES
 from prima.voicexml.reading import read_page
-from prima.voicexml.recordings import HEADER_BYTES, length_ms
 
 TARGETS = {
     "goto": ("next", "expr"),
@@ -45,7 +44,7 @@ class PricedPages:
         self._known: dict[str, Page | None] = {document.page.uri: document.page}
         for page in self:
             if page.application:
-                self._open(page.application, page.root)
+                self._open(page.application)
             for node in page.root.walk():
                 if node.tag in TARGETS:
                     gap = self.target(page, node).gap
@@ -86,13 +85,13 @@ class PricedPages:
         if urlsplit(base).scheme or base.startswith("//"):
             place = node.attribute_place(plain)
             return PageTarget(gap=Gap(place, f"the document that {base} answers is not known"))
-        found = self._open(base, node) if base else page
+        found = self._open(base) if base else page
         if found is None:
             return PageTarget(gap=self._full(node))
         first = next(iter(found.dialogs), "")
         return PageTarget(found, (dialog or first,))
 
-    def _open(self, uri: str, node: Node) -> Page | None:
+    def _open(self, uri: str) -> Page | None:
         """A document of the application's folder, read once; None if it cannot be read."""
         if uri not in self._known:
             self._known[uri] = None
@@ -109,13 +108,10 @@ class PricedPages:
             return None
         return Gap(node.place, f"only {MOST_PAGES} documents of an application are read")
 
-    def recording(self, page: Page, node: Node, name: str) -> int | None:
+    def recording(self, page: Page, name: str) -> int | None:
         """How long (ms) a recording of the application's folder plays, if it can be played."""
         try:
             uri = urldefrag(page.join(page.base(), name))[0]
-            if self.document.glance is not None:
-                return length_ms(*self.document.glance(uri))
-            whole = self.document.fetch(uri)
-            return length_ms(whole[:HEADER_BYTES], len(whole))
+            return self.document.recording_ms(uri)
         except (FetchError, ValueError):
             return None

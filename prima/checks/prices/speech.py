@@ -45,7 +45,7 @@ class Said:
 class SpeechReader:
     """Reads the speech of elements; ``recording`` returns a recording's duration (ms), if known."""
 
-    def __init__(self, recording: Callable[[Node, str], int | None]) -> None:
+    def __init__(self, recording: Callable[[str], int | None]) -> None:
         self._recording = recording
 
     def read(self, pieces: Iterable[Node | str], lang: str, menu: Node | None = None) -> Said:
@@ -104,7 +104,7 @@ class SpeechReader:
             self._guess(said, "an expression says what is played")
             self._inner(node, said, menu)
             return
-        ms, speech = self._recording(node, node.get("src")), said.speech
+        ms, speech = self._recording(node.get("src")), said.speech
         spoken = node.text or any(one.tag not in SILENT for one in node.nodes)
         opened = speech.open(UNKNOWN_MS if ms is None and not spoken else ms)
         if spoken:

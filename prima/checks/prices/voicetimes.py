@@ -122,7 +122,7 @@ class VoiceTimes:
         self, node: Node, pieces: list[Node | str], menu: Node | None
     ) -> tuple[int, str]:
         page = self.page
-        reader = SpeechReader(lambda one, name: self.pages.recording(page, one, name))
+        reader = SpeechReader(lambda name: self.pages.recording(page, name))
         said: Said = reader.read(pieces, node.get("xml:lang") or page.lang, menu)
         return max(said.lasts(self.profile.voices), 1), said.unknown
 
