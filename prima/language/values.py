@@ -13,8 +13,10 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, lru_cache
+from typing import TypeVar
 
 Value = str | int | float | bool
+Otherwise = TypeVar("Otherwise", bound=int | None)
 
 
 class BadValue(ValueError):
@@ -277,7 +279,7 @@ def read_value(kind: str, text: str) -> Value:
     return KINDS[kind].read(text if kind == "text" else text.strip(XML_SPACE))
 
 
-def milliseconds(text: str, default: int) -> int:
+def milliseconds(text: str, default: Otherwise) -> int | Otherwise:
     """A time such as ``5s`` or ``500ms`` in ms, or the default for any other text."""
     try:
         return int(read_value("duration", text.strip())) if text.strip() else default

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from prima.language.values import LONGEST_MS, read_value
+from prima.language.values import milliseconds
 from prima.messages import Cue
 
 PAUSES = {"none": 0, "x-weak": 100, "weak": 250, "medium": 500, "strong": 750, "x-strong": 1000}
@@ -26,19 +26,10 @@ NUMBER = re.compile(r"([+-]?)([0-9]{1,9}(?:\.[0-9]{0,9})?|\.[0-9]{1,9})(%?)")
 
 def break_ms(time: str, strength: str, size: str) -> int:
     """How long a break is: by its time, else its strength or size; medium with none of them."""
-    known = milliseconds(time)
+    known = milliseconds(time, None)
     if known is not None:
         return known
     return PAUSES.get(strength, SIZES.get(size, PAUSES["medium"]))
-
-
-def milliseconds(text: str) -> int | None:
-    """A time such as ``2s`` or ``500ms`` in ms; None for anything else."""
-    try:
-        value = read_value("duration", text.strip())
-    except ValueError:
-        return None
-    return min(int(value), LONGEST_MS) if isinstance(value, int) and value >= 0 else None
 
 
 def is_rate(text: str) -> bool:

@@ -6,9 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from prima.interpreter.expressions import MAX_TEXT
+from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Cue
-from prima.voicexml.cues import break_ms, clipped, fold, milliseconds, rate_of
+from prima.voicexml.cues import break_ms, clipped, fold, rate_of
 from prima.voicexml.elements import SILENT
 
 APART = frozenset(["p", "s", "paragraph", "sentence"])
@@ -94,7 +95,7 @@ def _prosody(node: Node, speech: Speech, inner: Callable[[], None]) -> None:
     """Speech at a rate, or of a set duration, which goes before the rate (SSML 1.0, 3.2.4)."""
     around = speech.rate
     speech.say_at(rate_of(node.get("rate"), around))
-    opened = speech.open(milliseconds(node.get("duration")))
+    opened = speech.open(milliseconds(node.get("duration"), None))
     inner()
     speech.close(opened)
     speech.say_at(around)
