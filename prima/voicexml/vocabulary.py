@@ -178,16 +178,8 @@ VALUES = {
 from 1; an element's own come first."""
 EXPRESSIONS = frozenset(
     [
-        "expr",
-        "cond",
-        "eventexpr",
-        "messageexpr",
-        "srcexpr",
-        "destexpr",
-        "expritem",
-        "aaiexpr",
-        "array",
-        "nameexpr",
+        *("expr", "cond", "eventexpr", "messageexpr", "srcexpr"),
+        *("destexpr", "expritem", "aaiexpr", "array", "nameexpr"),
     ]
 )
 """Attributes that hold ECMAScript."""
