@@ -21,9 +21,9 @@ from prima.script.globals import IDENTIFIER
 from prima.script.known import Known, NameScope
 from prima.script.names import Names, Use, expression_names, script_names
 from prima.script.walk import OBJECTS
-from prima.voicexml.checks import FORM_ITEMS, NAMING, is_code
+from prima.voicexml.checks import NAMING, is_code
 from prima.voicexml.document import Page
-from prima.voicexml.elements import HANDLERS, INPUTS
+from prima.voicexml.elements import HANDLERS, INPUTS, ITEMS
 
 ALWAYS = frozenset(
     [
@@ -271,7 +271,7 @@ def _with_it(node: Node, level: Level) -> set[str]:
 
 def _in_order(read: Read) -> bool:
     """Whether code of a document or dialog is evaluated where it is written, and not later."""
-    return read.node.tag in SETUP or (read.node.tag in FORM_ITEMS and read.attribute == "expr")
+    return read.node.tag in SETUP or (read.node.tag in ITEMS and read.attribute == "expr")
 
 
 def _reads(node: Node) -> Iterator[Read]:

@@ -1,12 +1,10 @@
 """Checks of VoiceXML documents against the Recommendation's schema and rules."""
 
-from prima.voicexml.checks.elements import FORM_ITEMS
 from prima.voicexml.checks.guests import check_commands
 from prima.voicexml.checks.later import check_code, grammar_problems, is_code
 from prima.voicexml.checks.names import NAMING
 from prima.voicexml.checks.tree import check_tree
 
 __all__ = [
-    "FORM_ITEMS", "NAMING", "check_code", "check_commands", "check_tree", "grammar_problems",
-    "is_code",
+    "NAMING", "check_code", "check_commands", "check_tree", "grammar_problems", "is_code",
 ]  # fmt: skip

@@ -14,9 +14,7 @@ from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.voicexml.arranging import is_unit, parts_of
 from prima.voicexml.checks.attributes import missing
-
-INPUT_ITEMS = ("field", "record", "object", "subdialog", "transfer")
-FORM_ITEMS = (*INPUT_ITEMS, "block", "initial")
+from prima.voicexml.elements import INPUTS, ITEMS
 
 NUMBERED = EXCLUSIVE.says("This menu numbers its choices itself: a choice may add *, # or 0 alone.")
 OF_ITEM = UNKNOWN_ATTRIBUTE.says(
@@ -42,10 +40,10 @@ def _check_item(item: Node) -> Iterator[Problem]:
 
 
 def _check_form(form: Node) -> Iterator[Problem]:
-    items = [one for one in parts_of(form) if one.tag in FORM_ITEMS or is_unit(one)]
+    items = [one for one in parts_of(form) if one.tag in ITEMS or is_unit(one)]
     named = [node for node in items if node.get("name")]
     yield from _check_names(named)
-    yield from _check_filled(form, {node.get("name") for node in named if node.tag in INPUT_ITEMS})
+    yield from _check_filled(form, {node.get("name") for node in named if node.tag in INPUTS})
 
 
 def _check_names(items: list[Node]) -> Iterator[Problem]:
@@ -82,6 +80,6 @@ RULES: dict[str, Callable[[Node], Iterator[Problem]]] = {
     "menu": _check_menu,
     "if": _check_if,
     "say-as": _check_say_as,
-    **dict.fromkeys((*INPUT_ITEMS, "choice", "link"), _check_item),
+    **dict.fromkeys((*INPUTS, "choice", "link"), _check_item),
 }
 """The checks of elements, by their keys."""

@@ -10,7 +10,7 @@ from prima.markup.tree import Node
 from prima.script.names import script_names
 from prima.script.walk import OBJECTS
 from prima.voicexml.arranging import UNIT
-from prima.voicexml.checks.elements import FORM_ITEMS
+from prima.voicexml.elements import ITEMS
 from prima.voicexml.variablenames import wrong_name
 
 HIDING = {
@@ -19,7 +19,7 @@ HIDING = {
 }
 """Names that variables should not have, each with what it hides (5.1.2)."""
 NAMING = {
-    **dict.fromkeys([*FORM_ITEMS, UNIT, "var", "data"], "name"),
+    **dict.fromkeys([*ITEMS, UNIT, "var", "data"], "name"),
     **dict.fromkeys(["foreach", "said-foreach"], "item"),
 }
 """Elements that declare a variable, with the attribute that names it."""
