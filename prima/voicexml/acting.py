@@ -20,7 +20,7 @@ from prima.interpreter.acts import (
     Throw,
 )
 from prima.markup.tree import Node
-from prima.voicexml.arranging import ARRANGING
+from prima.voicexml.arranging import ARRANGING, type_of
 from prima.voicexml.cues import break_ms
 from prima.voicexml.elements import SILENT
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
@@ -57,8 +57,8 @@ def commands_in(piece: Node) -> list[CommandTemplate]:
 
 def command_of(node: Node) -> CommandTemplate:
     """A Command's element as PRIMA's language has it, without its arguments."""
-    name = node.get("type") if node.tag == "command" else node.tag
-    return CommandTemplate(name, {}, text_of(node.content) or None, False, (), (), node)
+    words = text_of(node.content) or None
+    return CommandTemplate(type_of(node), {}, words, False, (), (), node)
 
 
 def speak(words: Text, node: Node) -> CommandTemplate:

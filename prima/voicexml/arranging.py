@@ -14,7 +14,7 @@ from prima.errors.diagnoses.values import BAD_VALUE
 from prima.interpreter.acts import CommandTemplate, arrange
 from prima.interpreter.units import LONGEST_UNIT_MS, Reached, now_inside, unit_problem
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
-from prima.language.commands import TABLE_4_2
+from prima.language.commands import TABLE_4_2, CommandType
 from prima.language.values import BadValue, milliseconds, read_value
 from prima.markup.spans import similar_attribute
 from prima.markup.tree import Node
@@ -68,6 +68,22 @@ def holds(item: Node, name: str) -> bool:
     """Whether a form item has a name, or is a unit around the one that has."""
     inner = item.nodes if is_unit(item) else ()
     return any(one.get("name") == name for one in (item, *inner))
+
+
+def type_of(command: Node) -> str:
+    """The type of a Command of PRIMA's namespace."""
+    return command.get("type") if command.tag == "command" else command.tag
+
+
+def arguments_of(command: Node, row: CommandType | None) -> dict[str, str | None]:
+    """The arguments of a Command with the values written; None for an expression."""
+    given: dict[str, str | None] = {}
+    known = row.arguments if row is not None and command.tag != "command" else {}
+    for name, text in command.attributes.items():
+        bare = name.removesuffix("-expr")
+        if bare in known:
+            given[bare] = text if bare == name else None
+    return given | {one.get("name"): one.attributes.get("value") for one in command.all("param")}
 
 
 Queued = Command | Arranged
@@ -247,7 +263,7 @@ def _check_now(node: Node, problems: list[Problem]) -> None:
 def _check_unit(commands: list[Node], problems: list[Problem]) -> None:
     """U4: a unit must not contain feedback Commands or Commands that leave the user."""
     for command in commands:
-        name = _type(command)
+        name = type_of(command)
         one = Reached(CommandTemplate(name, {}, None, False, (), (), command), True)
         problem = unit_problem(one, TABLE_4_2.get(name), prefix="p:")
         problems += [problem] if problem is not None else []
@@ -263,14 +279,10 @@ def _check_branches(branches: list[list[Node]], problems: list[Problem]) -> None
             return
 
 
-def _type(command: Node) -> str:
-    return command.get("type") if command.tag == "command" else command.tag
-
-
 def _devices(commands: list[Node]) -> frozenset[str]:
     found: frozenset[str] = frozenset()
     for command in commands:
-        row = TABLE_4_2.get(_type(command))
+        row = TABLE_4_2.get(type_of(command))
         if row is not None:
             found |= row.occupied("x" if command.content else None)
     return found

@@ -11,7 +11,14 @@ from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Step
 from prima.script.evaluation import Scope
-from prima.voicexml.arranging import ARRANGING, Arranged, Queued, longest_of, said_last
+from prima.voicexml.arranging import (
+    ARRANGING,
+    Arranged,
+    Queued,
+    longest_of,
+    said_last,
+    type_of,
+)
 from prima.voicexml.cues import MAX_CUES, MAX_NAME, later
 from prima.voicexml.document import FetchError, Page, of_web
 from prima.voicexml.elements import SILENT
@@ -248,7 +255,7 @@ class Speaker(VoiceEvaluator):
 
     def command(self, node: Node, context: Context, local: Scope, lang: str = "") -> Command:
         """A Command of PRIMA's namespace among executable content."""
-        name = node.get("type") if node.tag == "command" else node.tag
+        name = type_of(node)
         row = TABLE_4_2.get(name)
         args: dict[str, Json] = {}
         for key, text in node.attributes.items():

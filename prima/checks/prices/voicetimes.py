@@ -16,7 +16,7 @@ from prima.interpreter.acts import arrange
 from prima.language.commands import TABLE_4_2
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
-from prima.voicexml.arranging import UNIT, longest_of
+from prima.voicexml.arranging import UNIT, arguments_of, longest_of, type_of
 from prima.voicexml.calls import CONNECT_MS, kind_of
 from prima.voicexml.document import VoiceDocument
 from prima.voicexml.elements import HANDLERS
@@ -105,15 +105,8 @@ class VoiceTimes:
 
     def _command(self, node: Node) -> Price:
         """A Command of PRIMA's namespace."""
-        name = node.get("type") if node.tag == "command" else node.tag
-        row = self.profile.commands.get(name) or TABLE_4_2.get(name)
-        args: dict[str, object | None] = {}
-        for key, text in node.attributes.items():
-            bare = key.removesuffix("-expr")
-            if row is not None and bare in row.arguments:
-                args[bare] = text if bare == key else None
-        for param in node.all("param"):
-            args[param.get("name")] = param.attributes.get("value")
+        name = type_of(node)
+        args = arguments_of(node, self.profile.commands.get(name) or TABLE_4_2.get(name))
         pieces = [one for one in node.content if isinstance(one, str) or one.tag != "param"]
         said = self._read_aloud(node, pieces, None) if says(pieces) else None
         return command_price(node, name, args, said, self.profile)

@@ -13,7 +13,7 @@ from prima.language.arguments import excluding_arguments
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.spans import name_spans, similar_attribute, value_span
 from prima.markup.tree import Node
-from prima.voicexml.arranging import ARRANGING, check_arranged
+from prima.voicexml.arranging import ARRANGING, arguments_of, check_arranged
 from prima.voicexml.vocabulary import COMMANDS, HOLDING, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
 UNKNOWN_COMMAND = UNKNOWN_ELEMENT.says("PRIMA has no Command <{tag}>.")
@@ -96,7 +96,7 @@ def check_commands(root: Node, commands: Mapping[str, CommandType]) -> list[Prob
 
 def command_problems(node: Node, row: CommandType) -> list[Problem]:
     """Arguments and texts that make a Command fail with an event when it is requested."""
-    given = _arguments(node, row)
+    given = arguments_of(node, row)
     says = bool(node.own_text.strip() or node.all("value"))
     found = [
         one._replace(severity="warning") for one in given_to(node, row, given, says, prefix="p:")
@@ -109,13 +109,3 @@ def command_problems(node: Node, row: CommandType) -> list[Problem]:
     if row.text == "required" and not says and not node.nodes:
         found.append(SAYS_NOTHING.at(node.place, tag=node.tag))
     return found
-
-
-def _arguments(node: Node, row: CommandType) -> dict[str, str | None]:
-    """The arguments of a Command with the values written; None for an expression."""
-    given: dict[str, str | None] = {}
-    for name, text in node.attributes.items() if node.tag != "command" else ():
-        bare = name.removesuffix("-expr")
-        if bare in row.arguments:
-            given[bare] = text if bare == name else None
-    return given | {one.get("name"): one.attributes.get("value") for one in node.all("param")}
