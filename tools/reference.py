@@ -44,7 +44,7 @@ from prima.language.commands import LONGEST_TURN_MS, PATIENCE_MS, TABLE_4_2, Com
 from prima.language.values import KINDS, LONGEST_MS
 from prima.lsp.descriptions import VOICEXML_ATTRIBUTES
 from prima.markup.limits import LIMITS
-from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
+from prima.markup.vocabulary import Attribute, Element, Vocabulary
 from prima.scheduler import admission, failures, starvation
 from prima.script import budget, evaluation, host, parse, sandbox, syntax
 from prima.sim.vocabulary.scenario import SCENARIO
@@ -55,6 +55,7 @@ from prima.transcript.phases import PHASES
 from prima.transcript.record import model
 from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, VALUES, VOICEXML
+from tools.guests import Guests, OpenVocabulary
 from tools.rnc import make_rnc
 from tools.xsd import (
     XML_SCHEMA,
@@ -660,10 +661,7 @@ def voicexml() -> Vocabulary:
         )
         for element in VOICEXML.elements.values()
     ]
-    free = ("grammar", "metadata")
-    return Vocabulary(
-        VOICEXML.namespace, VOICEXML.name, VOICEXML.root, elements, free=free, guests=_guests()
-    )
+    return OpenVocabulary(VOICEXML, elements, ("grammar", "metadata"), _guests())
 
 
 def _guests() -> Guests:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from prima.language.values import KINDS
 from prima.markup.vocabulary import Attribute, Element, Vocabulary
+from tools.guests import OpenVocabulary, is_free
 
 HEAD = """\
 # Made from the tables of elements by python -m tools.reference.
@@ -17,7 +18,6 @@ start = e-{root}
 ANYTHING = """
 anything = (attribute * { text } | text | element * { anything })*
 """
-FOREIGN = "foreign = element * - own:* { anything }\n"
 GUESTS = """\
 foreign = element * - (own:* | p:*) { anything } | guest
 guest = {names}
@@ -26,7 +26,7 @@ guest = {names}
 
 def make_rnc(vocabulary: Vocabulary) -> str:
     """Give the RELAX NG schema of a kind of document in the compact syntax."""
-    guests = vocabulary.guests
+    guests = vocabulary.guests if isinstance(vocabulary, OpenVocabulary) else None
     more = f'namespace p = "{guests.namespace}"\n' if guests is not None else ""
     parts = [HEAD.format(namespace=vocabulary.namespace, root=vocabulary.root, more=more)]
     parts += [_element(vocabulary, element) for element in vocabulary.elements.values()]
@@ -39,10 +39,8 @@ def make_rnc(vocabulary: Vocabulary) -> str:
 
 def _foreign(vocabulary: Vocabulary) -> list[str]:
     """The elements of other namespaces, where any are allowed."""
-    if not vocabulary.open:
+    if not isinstance(vocabulary, OpenVocabulary):
         return []
-    if vocabulary.guests is None:
-        return [ANYTHING, FOREIGN]
     guests = vocabulary.guests.elements
     names = " | ".join(f"p-{one.key}" for one in guests)
     return [ANYTHING, GUESTS.replace("{names}", names), *map(_guest, guests)]
@@ -61,11 +59,11 @@ def _element(vocabulary: Vocabulary, element: Element) -> str:
 
 def _content(vocabulary: Vocabulary, element: Element) -> list[str]:
     """The possible content of an element, if any."""
-    if element.key in vocabulary.free:
+    if is_free(vocabulary, element.key):
         return ["(text | element * { anything })*"]
     held = ["text"] if element.text else []
     held += [f"e-{key}" for key in element.children]
-    held += ["foreign"] if vocabulary.open and element.children else []
+    held += ["foreign"] if isinstance(vocabulary, OpenVocabulary) and element.children else []
     return held if held in ([], ["text"]) else [f"({' | '.join(held)})*"]
 
 

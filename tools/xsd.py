@@ -6,7 +6,8 @@ from collections.abc import Iterable, Mapping
 from html import escape
 
 from prima.language.values import KINDS
-from prima.markup.vocabulary import Attribute, Element, Guests, Vocabulary
+from prima.markup.vocabulary import Attribute, Element, Vocabulary
+from tools.guests import Guests, OpenVocabulary, is_free
 
 XML_SCHEMA = r"""<?xml version="1.0" encoding="UTF-8"?>
 <xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema"
@@ -65,7 +66,7 @@ def make_schema(vocabulary: Vocabulary) -> str:
         f'           xmlns="{vocabulary.namespace}" targetNamespace="{vocabulary.namespace}"',
         '           elementFormDefault="qualified">',
         '  <xs:import namespace="http://www.w3.org/XML/1998/namespace" schemaLocation="xml.xsd"/>',
-        *_import(vocabulary.guests),
+        *(_import(vocabulary.guests) if isinstance(vocabulary, OpenVocabulary) else ()),
         f'  <xs:element name="{vocabulary.root_tag}" type="{vocabulary.root}"/>',
     ]
     for element in vocabulary.elements.values():
@@ -94,9 +95,7 @@ def make_guest_schema(guests: Guests) -> str:
     return "\n".join([*lines, *_kinds(guests.elements), "</xs:schema>", ""])
 
 
-def _import(guests: Guests | None) -> list[str]:
-    if guests is None:
-        return []
+def _import(guests: Guests) -> list[str]:
     return [f'  <xs:import namespace="{guests.namespace}" schemaLocation="{guests.name}.xsd"/>']
 
 
@@ -137,8 +136,8 @@ def _content(vocabulary: Vocabulary, element: Element) -> list[str]:
         f'<xs:element name="{vocabulary.elements[child].tag}" type="{child}"/>'
         for child in element.children
     ]
-    held += [FOREIGN] if held and vocabulary.open else []
-    held = [ANYTHING] if element.key in vocabulary.free else held
+    held += [FOREIGN] if held and isinstance(vocabulary, OpenVocabulary) else []
+    held = [ANYTHING] if is_free(vocabulary, element.key) else held
     if not held:
         return []
     lines = [f"      {one}" for one in held]

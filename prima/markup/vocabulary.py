@@ -63,19 +63,6 @@ class Element:
         return self.name or self.key
 
 
-@dataclass(frozen=True, slots=True)
-class Guests:
-    """Elements of a foreign namespace that are allowed among a vocabulary's own.
-
-    They may contain each other and anything else; of the vocabulary only the elements listed in
-    their ``children``, if any.
-    """
-
-    namespace: str
-    name: str
-    elements: tuple[Element, ...]
-
-
 class Vocabulary:
     """All elements of one kind of document."""
 
@@ -86,8 +73,6 @@ class Vocabulary:
         root: str,
         elements: Iterable[Element],
         hints: Mapping[str, str | Instead] | None = None,
-        free: Iterable[str] = (),
-        guests: Guests | None = None,
     ) -> None:
         self.namespace = namespace
         self.name = name
@@ -95,10 +80,6 @@ class Vocabulary:
         self.elements = {element.key: element for element in elements}
         self.hints = dict(hints or {})
         """Replacements of elements that authors expect but this language lacks."""
-        self.free = frozenset(free)
-        """Keys of elements that may contain anything; if there are any, elements of foreign
-    namespaces are allowed elsewhere as well."""
-        self.guests = guests
         self._children = {
             key: {self.elements[child].tag: child for child in element.children}
             for key, element in self.elements.items()
@@ -111,11 +92,6 @@ class Vocabulary:
     def root_tag(self) -> str:
         """The name of the root element as written in documents."""
         return self.elements[self.root].tag
-
-    @property
-    def open(self) -> bool:
-        """Whether elements of foreign namespaces are allowed in elements that hold others."""
-        return bool(self.free)
 
     def child(self, key: str, tag: str) -> str | None:
         """The key of the element written ``tag`` inside the element ``key``, if allowed."""
