@@ -15,7 +15,6 @@ import os
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
@@ -23,6 +22,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 from prima.errors import UsageError, did_you_mean
 from prima.experiments.sweep import SweepQuestion
 from prima.language.values import read_value
+from prima.loading.files import read_bytes
 from prima.markup.encodings import byte_place
 from prima.markup.toml import parse_toml
 
@@ -143,16 +143,11 @@ def read_study(path: str) -> SweepQuestion:
 
 
 def _read(path: str) -> str:
+    data = read_bytes(path, MOST_BYTES + 1)
+    if len(data) > MOST_BYTES:
+        raise UsageError(f"{path}: larger than {MOST_BYTES:,} bytes.")
     try:
-        if Path(path).exists() and not Path(path).is_file():
-            raise UsageError(f"{path}: cannot be read: it is not a file.")
-        with Path(path).open("rb") as stream:
-            data = stream.read(MOST_BYTES + 1)
-        if len(data) > MOST_BYTES:
-            raise UsageError(f"{path}: larger than {MOST_BYTES:,} bytes.")
         return data.decode("utf-8-sig")
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
     except UnicodeDecodeError as error:
         place = byte_place(path, "utf-8-sig", error)
         raise UsageError(f"{place}: not TOML: it is not UTF-8.") from None

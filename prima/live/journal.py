@@ -11,13 +11,13 @@ import re
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from re import Pattern
 
 from prima.errors import RunError, UsageError
 from prima.grammar.answers import Answers
 from prima.grammar.text import fold
 from prima.journal import replay_instants
+from prima.loading.files import read_bytes
 from prima.loading.writing import locked
 from prima.messages import Emergency, Inbound, Json, Narrated, Order, Record
 from prima.session import Session
@@ -177,12 +177,7 @@ def read_broken(path: str) -> CutJournal:
     Raises:
         UsageError: it is not a journal, cannot be read, or its run has ended.
     """
-    try:
-        if Path(path).exists() and not Path(path).is_file():
-            raise UsageError(f"{path}: cannot be read: it is not a file.")
-        data = Path(path).read_bytes()
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
+    data = read_bytes(path)
     kept = data.rfind(b"\n") + 1
     try:
         text = data[:kept].decode()

@@ -119,14 +119,23 @@ def read_file(path: str | Path) -> bytes:
         if len(text) > LIMITS.bytes:
             raise too_large(str(path), len(text))
         return text
+    data = read_bytes(path, LIMITS.bytes + 1)
+    if len(data) > LIMITS.bytes:
+        raise too_large(str(path), max(getsize(path), len(data)))
+    return data
+
+
+def read_bytes(path: str | Path, most: int = -1) -> bytes:
+    """Read a file on the disk, or its beginning.
+
+    Raises:
+        UsageError: it cannot be read.
+    """
     try:
         if exists(path) and not isfile(path):
             raise UsageError(f"{path}: cannot be read: it is not a file.")
         with open(path, "rb") as stream:
-            data = stream.read(LIMITS.bytes + 1)
-            if len(data) > LIMITS.bytes:
-                raise too_large(str(path), max(getsize(path), len(data)))
-            return data
+            return stream.read(most)
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
     except ValueError:
