@@ -42,10 +42,7 @@ def run_batch(
 ) -> Generator[BatchRow, None, None]:
     """Make the runs of a plan; yield their rows in order. See :func:`prima.pool.spread`.
 
-    Args:
-        plan: the runs.
-        options: their common options.
-        workers: the number of processes; 0 for the number of cores.
+    There are so many processes, or with 0 as many as there are cores.
 
     Raises:
         UsageError: the folder for the transcripts cannot be written to, or is full.

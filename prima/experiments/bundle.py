@@ -40,14 +40,7 @@ TYPES = {
 
 
 def write_bundle(path: str, out: Output) -> int:
-    """Write the archive of a finished table.
-
-    Args:
-        path: the archive.
-        out: the table.
-
-    Returns:
-        The number of files in it.
+    """Write the archive of a finished table; returns the number of files in it.
 
     Raises:
         UsageError: it cannot be written, or a file that was read is not below this folder.
@@ -66,10 +59,6 @@ def write_bundle(path: str, out: Output) -> int:
 
 def check_bundle(path: str, out: Output) -> None:
     """Check before the first run whether a bundle can be made.
-
-    Args:
-        path: the archive.
-        out: the table.
 
     Raises:
         UsageError: the archive cannot be there, or something that is read is not below this

@@ -112,10 +112,7 @@ class ScenarioText:
     def moved(self, variant: Variant, folder: Path, robot: Path | None = None) -> bytes:
         """The scenario of a run with its policy, as a file of another folder.
 
-        Args:
-            variant: the run.
-            folder: the folder.
-            robot: another document of the robot.
+        ``robot`` is another document of its robot.
         """
         changed = [one for one in self._changed(variant) if not one[0].of_robot]
         files = {
@@ -137,9 +134,7 @@ class ScenarioText:
     ) -> Iterator[TextEdit]:
         """Edits that make all file names relative to another folder.
 
-        Args:
-            folder: the other folder.
-            varied: the files that a run uses instead of those written, by element and attribute.
+        ``varied`` has the files that a run uses instead of those written, by element and attribute.
         """
         here = os.path.dirname(os.path.abspath(self.path))
         for node in self.root.walk():

@@ -209,13 +209,8 @@ class Output:
     def __init__(self, sweep: Sweep, path: str, pool: Pool) -> None:
         """Choose where a table is written.
 
-        Args:
-            sweep: what is run.
-            path: a ``.csv`` or ``.parquet`` file.
-            pool: where runs are made.
-
         Raises:
-            UsageError: it is neither.
+            UsageError: it is neither a ``.csv`` nor a ``.parquet`` file.
         """
         self.sweep = sweep
         self.path = Path(path)

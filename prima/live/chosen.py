@@ -96,11 +96,7 @@ def _check_owners(endpoints: Iterable[Endpoint], known: list[str]) -> None:
 
 
 def chosen_then(head: Record, name: str) -> Chosen:
-    """The parts that a journal was made with.
-
-    Args:
-        head: its first record.
-        name: its path, from which paths in it lead.
+    """The parts that a journal with this first record was made with, by paths from its own.
 
     Raises:
         UsageError: the record does not name files.
@@ -131,10 +127,6 @@ def chosen_then(head: Record, name: str) -> Chosen:
 
 def reloaded(head: Record, name: str) -> Loaded:
     """Load the parts that a journal was made with; the robot is the one in the journal.
-
-    Args:
-        head: its first record.
-        name: its path, from which paths in it lead.
 
     Raises:
         DocumentError: documents are wrong.

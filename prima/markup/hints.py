@@ -53,10 +53,7 @@ def half(text: str) -> str:
 def meant_value(kind: str, text: str, usual: str = "") -> str:
     """The value of a kind that a wrong text most likely means, or nothing.
 
-    Args:
-        kind: the kind.
-        text: the text.
-        usual: the default, if any: it distinguishes seconds from milliseconds.
+    ``usual`` is the default, if any: it distinguishes seconds from milliseconds.
     """
     if len(text) > LONG:
         return ""

@@ -21,10 +21,7 @@ from prima.markup.wellformed import explain
 def parse(file: str, data: bytes, vocabularies: Sequence[Vocabulary] = ()) -> Node:
     """Parse bytes into nodes.
 
-    Args:
-        file: its name in places.
-        data: the bytes.
-        vocabularies: languages to which a misspelt opening tag may belong.
+    ``vocabularies`` are languages to which a misspelt opening tag may belong.
 
     Raises:
         DocumentError: it is not well-formed, or exceeds a limit.

@@ -93,9 +93,7 @@ class _Seen(Exception):
 def explain(source: Source, vocabularies: Sequence[Vocabulary]) -> None:
     """Check that a text is well-formed XML.
 
-    Args:
-        source: the text.
-        vocabularies: languages to which a misspelt opening tag may belong.
+    ``vocabularies`` are languages to which a misspelt opening tag may belong.
 
     Raises:
         DocumentError: it is not well-formed, or its DOCTYPE declares something.

@@ -249,12 +249,7 @@ class Locomotion:
     ) -> bool:
         """Perform the steps of an added motion, on top of a move that goes on (X5).
 
-        Args:
-            plan: the motion's memory.
-            motion: its steps.
-            now: the time (ms).
-            began: when it began.
-            track: the whole way of that move; empty if there is none.
+        ``track`` is the whole way of that move, empty if there is none. Times are ms.
         """
         speed, turning = motion.at(now - began)
         if not track:

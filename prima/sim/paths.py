@@ -102,10 +102,7 @@ class ScenarioValue(NamedTuple):
 def find(root: Node, path: str, robot: Callable[[], Node]) -> ScenarioValue:
     """The value that a path denotes in a scenario.
 
-    Args:
-        root: the scenario.
-        path: the path.
-        robot: returns the document of its robot, if the path leads there.
+    ``robot`` returns the document of its robot, if the path leads there.
 
     Raises:
         DocumentError: the robot's document has errors.

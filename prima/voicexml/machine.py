@@ -210,9 +210,7 @@ class Machine:
     def visit_all(self, context: Context, wanted: str = "") -> Flow:
         """Visit the items of the dialog, or of the unit that it is in, until none is left.
 
-        Args:
-            context: the dialog's.
-            wanted: the name of the item to begin with.
+        ``wanted`` is the name of the item to begin with.
 
         Raises:
             GoItem: to an item outside of the unit.

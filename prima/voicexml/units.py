@@ -31,10 +31,7 @@ class Units:
     def span(self, context: Context, unit: Node, wanted: str) -> Flow:
         """Visit the items of a unit; closes it however it is left.
 
-        Args:
-            context: that of its dialog.
-            unit: its element.
-            wanted: the name of the item in it to begin with, if a goto names one.
+        ``wanted`` is the name of the item in it to begin with, if a goto names one.
         """
         if self.owner.queue:
             yield from self.owner.play()  # earlier speech is not part of it

@@ -92,9 +92,7 @@ class Waits:
     ) -> Generator[None, Resume, Resume]:
         """Request Commands, one after another, and wait for the end of the last.
 
-        Args:
-            commands: the Commands.
-            open_to_answers: those during which the question behind them may be answered.
+        During those that are open to answers, the question behind them may be answered.
         """
         self.run = next(self._app.runs)
         self._state = next(self._app.states)

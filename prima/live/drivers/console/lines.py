@@ -17,13 +17,10 @@ AHEAD = 100
 
 
 class LineSource:
-    """Reads the lines of a terminal, a pipe or a file until its end.
+    """Reads the lines of a terminal, a pipe or a file, by its descriptor, until its end.
 
     A thread reads, as no other way serves all three. It may wait for input for ever, so it does
     not keep the program from ending.
-
-    Args:
-        source: the file descriptor.
     """
 
     def __init__(self, source: int) -> None:
