@@ -148,11 +148,7 @@ def _read_drivers(reader: Reader, profile: Profile) -> None:
                 reader.problem(node, "duplicate-name", message, "devices", "Name it in one.")
             elif device not in profile.devices:
                 message = f'The robot has no device "{device}".'
-                remedy = (
-                    suggestion(device, profile.devices, *value_span(node, "devices", device))
-                    or f'Add <device name="{device}"/>.'
-                )
-                reader.problem(node, "no-such-name", message, "devices", remedy)
+                _lacks(reader, node, device, profile, message)
             seen[device] = node.get("kind")
         for does in node.all("does"):
             if does.get("command"):
@@ -161,6 +157,12 @@ def _read_drivers(reader: Reader, profile: Profile) -> None:
                 reader.known(does, "gesture", profile.gestures, "gesture")
         profile.drivers.append(read_driver(reader, node))
     share_devices(profile.drivers, profile.devices)
+
+
+def _lacks(reader: Reader, node: Node, device: str, profile: Profile, message: str) -> None:
+    hint = suggestion(device, profile.devices, *value_span(node, "devices", device))
+    remedy = hint or f'Add <device name="{device}"/>.'
+    reader.problem(node, "no-such-name", message, "devices", remedy)
 
 
 def _add(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Profile) -> None:
@@ -174,11 +176,7 @@ def _add(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Prof
     if lacking:
         device = min(lacking)
         message = f'"{name}" needs the device "{device}", which the robot lacks.'
-        remedy = (
-            suggestion(device, profile.devices, *value_span(node, "devices", device))
-            or f'Add <device name="{device}"/>.'
-        )
-        reader.problem(node, "no-such-name", message, "devices", remedy)
+        _lacks(reader, node, device, profile, message)
     profile.durations[name] = max(reader.get(node, "duration") or 1, 1)
     motion = _motion(reader, node)
     if motion is not None:
