@@ -61,10 +61,11 @@ class Reply:
 
 @dataclass(slots=True)
 class Service:
-    """A service, and the URI by which it is reached."""
+    """A service, found by its name or its URI."""
 
     name: str
     uri: str
+    """The address at and below which fetches reach it; empty if only its name does."""
     replies: list[Reply]
     application: str = ""
     """The only application that may use it; empty if all may."""

@@ -6,12 +6,15 @@ from bisect import insort
 from collections.abc import Callable, Iterable
 from html import escape
 from operator import itemgetter
-from typing import Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 from urllib.parse import urlsplit
 
 from prima.language.values import shown
 from prima.messages import Data, Fetched, Inbound, Occurred, Order
 from prima.sim.happenings import Reply, Service
+
+if TYPE_CHECKING:
+    from prima.devices.endpoints import Endpoint
 
 SCHEME = "service:"
 """The prefix of the URI of a scenario's service."""
@@ -27,30 +30,16 @@ Web = Callable[[str, str, str, Data], Answering]
 and serial are not yet set."""
 
 
-class Addressed(Protocol):
-    """The keys by which a service is found."""
-
-    @property
-    def name(self) -> str:
-        """The name in ``<send>`` and ``service:NAME``."""
-
-    @property
-    def application(self) -> str:
-        """The only application that may use it; empty if all may."""
-
-    @property
-    def uri(self) -> str:
-        """The address at and below which fetches reach it; empty if only its name does."""
-
-
-Found = TypeVar("Found", bound=Addressed)
+Found = TypeVar("Found", Service, "Endpoint")
 
 
 class Directory(Generic[Found]):
-    """Services, each for one application or for all."""
+    """Services of a scenario or of a live run, each for one application or for all."""
 
     def __init__(self, services: Iterable[Found]) -> None:
-        self._services = {(one.name, one.application): one for one in services}
+        self._services: dict[tuple[str, str], Found] = {
+            (one.name, one.application): one for one in services
+        }
         self._names = {name for name, _ in self._services}
 
     def named(self, name: str, app: str) -> Found | None:
