@@ -6,10 +6,10 @@ It has no clock. Its caller jumps to the next due time, or waits until then.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import Protocol
 
-from prima.devices.protocol import Devices
 from prima.interpreter.bounds import ElementVisit
-from prima.messages import Inbound, Record
+from prima.messages import Inbound, Order, Record
 from prima.messages.times import earliest
 from prima.session import Session
 
@@ -17,6 +17,33 @@ MAX_RECORDS = 500_000
 """Maximum number of records of a run."""
 MAX_WRITTEN = 50_000_000
 """Maximum number of characters that the applications of a run say, log and send."""
+
+
+class Devices(Protocol):
+    """A robot with its surroundings, simulated or real. Times are ms from the run's start.
+
+    :class:`Loop` drives it: when an instant is due, it collects the inbound values, passes them
+    to the session, and passes back the session's orders, one at a time.
+    """
+
+    def due(self) -> int | None:
+        """When there is next something to collect; None if unknown.
+
+        It is called before each :meth:`collect`.
+        """
+
+    def collect(self, now: int) -> list[Inbound]:
+        """Everything that has come in by ``now``, in order."""
+
+    def order(self, now: int, order: Order) -> None:
+        """Carry out an order of the mediator, or send what an application sends."""
+
+    def observe(self, now: int, records: list[Record]) -> None:
+        """Observe the records of an instant, after its last order."""
+
+    @property
+    def awaits(self) -> bool:
+        """Whether an application is yet to be loaded: until then the run is not over."""
 
 
 class Loop:

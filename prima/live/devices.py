@@ -64,7 +64,7 @@ class Answering(Protocol):
 
 
 class LiveDevices:
-    """The :class:`~prima.devices.protocol.Devices` of a real robot. Times are ms of the run.
+    """The :class:`~prima.devices.loop.Devices` of a real robot. Times are ms of the run.
 
     Args:
         profile: the robot.

@@ -37,7 +37,7 @@ class Cast:
 
 
 class SimulatedDevices:
-    """The :class:`~prima.devices.protocol.Devices` of a scenario."""
+    """The :class:`~prima.devices.loop.Devices` of a scenario."""
 
     def __init__(self, cast: Cast, web: Web | None = None, exclusive: bool = True) -> None:
         scenario = cast.scenario

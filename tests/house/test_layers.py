@@ -209,7 +209,7 @@ INSIDE = {
         {"__init__"},
     ],
     "devices": [
-        {"goals", "lines", "protocol", "reading", "senses", "vocabulary", "voice"},
+        {"goals", "lines", "reading", "senses", "vocabulary", "voice"},
         {"ear", "endpoints", "settings"},
         {"loop", "profile", "speech"},
         {"tasks"},
