@@ -26,7 +26,8 @@ def may_read(data: list[dict[str, Any]], host: str) -> bool:
     Without an instruction every host may. With one, the longest name that matches the host decides;
     between equal ones ``deny`` wins. A host that no name matches may not.
     """
-    said = [one["value"] for one in data if _is_rule(one)]
+    rule = (INSTRUCTION, "access-control")
+    said = [one["value"] for one in data if (one["type"], one.get("name")) == rule]
     rules = [
         (len(name.lstrip("*.")), verdict)
         for text in said
@@ -35,10 +36,6 @@ def may_read(data: list[dict[str, Any]], host: str) -> bool:
         if _fits(name, host)
     ]
     return not said or max(rules, default=(0, "deny"))[1] == "allow"
-
-
-def _is_rule(node: dict[str, Any]) -> bool:
-    return (node["type"], node.get("name")) == (INSTRUCTION, "access-control")
 
 
 def _fits(name: str, host: str) -> bool:

@@ -155,7 +155,7 @@ class Sketch:
             commands = commands_in(node)
             yield from [run_of(commands)] if commands else ()  # none in a document with errors
             return
-        if node.tag in FETCHING and self._plays(node):
+        if node.tag in FETCHING and (node.get("fetchaudio") or self._plays_somewhere):
             yield run_of([speak((Expression("", node, "fetchaudio"),), node)])
         if node.tag == "if":
             parts = branches(node)
@@ -167,14 +167,9 @@ class Sketch:
         elif node.tag in ACTS:
             yield ACTS[node.tag](node)
 
-    def _plays(self, node: Node) -> bool:
-        """Whether something is played while an element's resource is fetched."""
-        if node.get("fetchaudio"):
-            return True
-        return self._plays_somewhere
-
     @cached_property
     def _plays_somewhere(self) -> bool:
+        """Whether a property says what is played while an element's resource is fetched."""
         properties = (one for wider in self._wider for one in wider.walk() if one.key == "property")
         return any(one.get("name") == "fetchaudio" for one in properties)
 

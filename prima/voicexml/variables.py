@@ -235,7 +235,7 @@ class _Look:
                 if read.name not in level.names:
                     yield self._undeclared(read, Known(level.names, *outer.scopes))
                 elif read.at_once and (level.ordered or _in_order(read)):
-                    yield _early(read)
+                    yield DECLARED_AFTER.at(read.place, name=read.name)
             yield from self.members(node, members)
             seen |= level.by_node.get(node.index, set())
 
@@ -335,10 +335,6 @@ NO_MEMBER = UNDECLARED_VARIABLE.says(
     'Declare it there: <var name="{name}"/>.',
     "warning",
 )
-
-
-def _early(read: Read) -> Problem:
-    return DECLARED_AFTER.at(read.place, name=read.name)
 
 
 def _no_member(read: Read, holder: str, name: str, scope: NameScope) -> Problem:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from prima.checks.prices.commands import command_price, group_price, unit_price
 from prima.checks.prices.contents import again, contents_of, inside, thrown_by
@@ -76,8 +76,12 @@ class Times:
     def speech(self, text: Text, lang: str) -> tuple[int, str]:
         """The longest duration of a text (ms), and why it may be longer."""
         known = [self._texts(one) for one in text if not isinstance(one, Pause)]
+
+        def weight(piece: str) -> int:
+            return duration(f"{piece} x", lang, self.profile.voices)
+
         said = "".join(
-            "x" * UNKNOWN_LETTERS if one is None else max(one, key=self._weight(lang), default="")
+            "x" * UNKNOWN_LETTERS if one is None else max(one, key=weight, default="")
             for one in known
         )
         spoken = duration(said, lang, self.profile.voices) if known else 0
@@ -85,9 +89,6 @@ class Times:
 
     def _texts(self, piece: str | Expression) -> list[str] | None:
         return self.constants.texts(piece.code) if isinstance(piece, Expression) else [piece]
-
-    def _weight(self, lang: str) -> Callable[[str], int]:
-        return lambda text: duration(f"{text} x", lang, self.profile.voices)
 
     def question(self, field: Field, form: Form) -> Price:
         """A question: its longest prompts and the time without an answer (C4)."""

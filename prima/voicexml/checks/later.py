@@ -227,14 +227,10 @@ def _compile(node: Node, name: str, code: str, checker: IsolatedSyntax) -> Itera
         (checker.expression if name else checker.script)(code)
     except ScriptError as error:
         if name not in ("", "cond") and checker.has_statements(code):
-            yield _statements(node, name)
+            # It is a script: accepted here as on other platforms.
+            diagnosis = STATEMENTS if code.strip() else EMPTY
+            yield diagnosis.at(node.attribute_place(name), name=name)
             return
         place = node.code_place(name, error.line, error.column)
         diagnosis = NOT_CHECKED if isinstance(error, EngineLost) else NOT_ECMASCRIPT
         yield diagnosis.at(place, code=" ".join(code.split())[:LONGEST_CODE], error=error)
-
-
-def _statements(node: Node, name: str) -> Problem:
-    """Warn of an expression that is a script: accepted here as on other platforms."""
-    diagnosis = STATEMENTS if node.get(name).strip() else EMPTY
-    return diagnosis.at(node.attribute_place(name), name=name)
