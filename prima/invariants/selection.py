@@ -166,7 +166,11 @@ class Selection(Patience):
             self.report(13, "S2", f"{shown} starts, but nobody has decided so")
             return
         rivals = [other for other in self.competing(ab) if self.could_start(other, ab)]
-        needed = {other.shown for other in rivals if self._keeps_from(ab, other)}
+        needed = {  # those that cannot run beside it (S1)
+            other.shown
+            for other in rivals
+            if other.devices & ab.devices and not self.composes(ab, other)
+        }
         self._check_losers(ab, shown, decision, needed)
         named = {*decision["losers"], *needed}
         rivals = [other for other in rivals if other.shown in named]
@@ -177,10 +181,6 @@ class Selection(Patience):
         """The losers of a decision to which F2 is open."""
         named = [other for other in self.competing(ab) if other.shown in losers]
         return [other for other in named if self.could_start(other, ab, surely=False)]
-
-    def _keeps_from(self, ab: AB, other: AB) -> bool:
-        """S1: whether two cannot run at once."""
-        return bool(other.devices & ab.devices) and not self.composes(ab, other)
 
     def _check_losers(self, ab: AB, shown: str, decision: Record, needed: set[str]) -> None:
         """S2: the losers could have started; all are named, up to the limit."""

@@ -64,9 +64,5 @@ async def leave(tasks: Collection[asyncio.Task[Any]]) -> None:
     for task in left:
         if not task.done():
             asyncio._unregister_task(task)
-            _keep_for_ever(task)
-
-
-def _keep_for_ever(task: asyncio.Task[Any]) -> None:
-    """Prevent Python from destroying a task: that would run its code again, which may never end."""
-    ctypes.pythonapi.Py_IncRef(ctypes.py_object(task))
+            # Python must not destroy it: that would run its code again, which may never end.
+            ctypes.pythonapi.Py_IncRef(ctypes.py_object(task))

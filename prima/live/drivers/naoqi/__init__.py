@@ -202,7 +202,8 @@ class NaoqiDriver(MappedDriver):
     def stand(self) -> None:
         """Do what ``stop-moving`` does."""
         if not self.gone and (does := self.settings.how("stop-moving")) is not None:
-            self._call(does.by, [])[0].add_done_callback(_heed)
+            calling, _ = self._call(does.by, [])
+            calling.add_done_callback(lambda one: one.cancelled() or one.exception())
 
     async def safe(self) -> None:
         """Call all stopping methods, even over a link that seems to be lost."""
@@ -253,11 +254,6 @@ class NaoqiDriver(MappedDriver):
 
         asked.addCallback(partial(call_in, asyncio.get_running_loop(), take))
         return future
-
-
-def _heed(future: asyncio.Future[Any]) -> None:
-    if not future.cancelled():
-        future.exception()
 
 
 def _said(error: object) -> str:
