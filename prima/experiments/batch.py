@@ -36,9 +36,7 @@ FULL = (errno.ENOSPC, errno.EROFS, getattr(errno, "EDQUOT", errno.ENOSPC))
 
 
 def run_batch(
-    plan: BatchPlan,
-    options: Options,
-    workers: int = 0,
+    plan: BatchPlan, options: Options, workers: int = 0
 ) -> Generator[BatchRow, None, None]:
     """Make the runs of a plan; yield their rows in order. See :func:`prima.pool.spread`.
 

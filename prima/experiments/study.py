@@ -131,12 +131,7 @@ def format_csv(results: Iterable[StudyResult]) -> str:
     """Results as CSV: a line for each situation and policy."""
     made = io.StringIO()
     names = [one.name for one in fields(StudyResult) if one.name != "criteria"]
-    writer = csv.DictWriter(
-        made,
-        [*names, *CRITERIA],
-        lineterminator="\n",
-        extrasaction="ignore",
-    )
+    writer = csv.DictWriter(made, [*names, *CRITERIA], lineterminator="\n", extrasaction="ignore")
     writer.writeheader()
     for result in results:
         writer.writerow({**result_data(result), "failures": visible("; ".join(result.failures))})

@@ -36,11 +36,7 @@ class Shell:
     """
 
     def __init__(
-        self,
-        loop: Loop,
-        clock: Clock,
-        warn: Callable[[str], None],
-        late: int | None = LATE_MS,
+        self, loop: Loop, clock: Clock, warn: Callable[[str], None], late: int | None = LATE_MS
     ) -> None:
         self.loop = loop
         self.clock = clock

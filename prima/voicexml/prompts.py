@@ -11,14 +11,7 @@ from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Step
 from prima.script.evaluation import Scope
-from prima.voicexml.arranging import (
-    ARRANGING,
-    Arranged,
-    Queued,
-    longest_of,
-    said_last,
-    type_of,
-)
+from prima.voicexml.arranging import ARRANGING, Arranged, Queued, longest_of, said_last, type_of
 from prima.voicexml.cues import MAX_CUES, MAX_NAME, later
 from prima.voicexml.document import FetchError, Page, of_web
 from prima.voicexml.elements import SILENT

@@ -7,12 +7,7 @@ from contextlib import suppress
 from typing import Literal
 
 from prima.errors import Hint, Problem, one_of, suggestion
-from prima.errors.diagnoses.names import (
-    BAD_EXPRESSION,
-    NO_SUCH_FORM,
-    NO_SUCH_ITEM,
-    NO_SUCH_NAME,
-)
+from prima.errors.diagnoses.names import BAD_EXPRESSION, NO_SUCH_FORM, NO_SUCH_ITEM, NO_SUCH_NAME
 from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE
 from prima.errors.diagnoses.values import BAD_VALUE, EXCLUSIVE
 from prima.language.commands import TABLE_4_2

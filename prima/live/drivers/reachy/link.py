@@ -18,10 +18,7 @@ PORT = 8000
 ADDRESS = f"http://127.0.0.1:{PORT}"
 """The daemon's address, unless the robot's document says otherwise."""
 ENDS = {"move_completed", "move_failed", "move_cancelled"}
-PAST = {
-    "time value is out of range [0,1]",
-    "Tried to evaluate recorded move beyond its duration.",
-}
+PAST = {"time value is out of range [0,1]", "Tried to evaluate recorded move beyond its duration."}
 """What the daemon reports of a move that it has made: it reads its clock once to see whether the
 move's time is up and again to move on, and fails if the time is up in between."""
 ANSWER_S = 2.0
