@@ -85,10 +85,19 @@ class MappedDriver(TaskDriver):
             heading = math.degrees(math.atan2(place.y - at.y, place.x - at.x))
         return (heading - at.heading + 180) % 360 - 180
 
-    async def hear(self, goal: Begin) -> None:
-        """Listen without a ``does``: the ear is always open."""
-        self.accept(goal)
-        await asyncio.get_running_loop().create_future()
+    async def way(self, goal: Begin) -> Does:
+        """How a goal is carried out; without a ``does`` listening just goes on: the ear is open.
+
+        Raises:
+            Refused: the robot's document does not say.
+        """
+        does = self.does(goal)
+        if does is not None:
+            return does
+        if goal.kind == LISTEN:
+            self.accept(goal)
+            await asyncio.get_running_loop().create_future()
+        raise Refused(f'the robot\'s document has no <does command="{goal.kind}">')
 
     # The connection -------------------------------------------------------------------------
 
@@ -122,14 +131,3 @@ class MappedDriver(TaskDriver):
             if isinstance(news, At):
                 self._at = news
             self.tell(news)
-
-
-def refuse_unmapped(does: Does | None, goal: Begin) -> Does:
-    """How a goal is carried out.
-
-    Raises:
-        Refused: the robot's document does not say.
-    """
-    if does is None:
-        raise Refused(f'the robot\'s document has no <does command="{goal.kind}">')
-    return does

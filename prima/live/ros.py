@@ -14,7 +14,7 @@ from prima.devices.goals import SAY, Begin
 from prima.devices.settings import Does, DriverSettings
 from prima.errors import UsageError
 from prima.live.driver import Refused, Unreachable
-from prima.live.mapped import MappedDriver, refuse_unmapped
+from prima.live.mapped import MappedDriver
 from prima.messages import Data, Json
 
 KINDS: Final = {"action": "action", "srv": "service", "msg": "topic"}
@@ -222,10 +222,7 @@ class RosDriver(MappedDriver):
 
     async def perform(self, goal: Begin) -> Data:
         """Carry out a goal by the action, service or topic that it is mapped to."""
-        does = self.does(goal)
-        if does is None and goal.kind in self.own:
-            await self.hear(goal)
-        does = refuse_unmapped(does, goal)
+        does = await self.way(goal)
         use = use_of(does, self.kind)
         values = does.filled(self.values(goal))
         if use.kind == "action":

@@ -13,7 +13,7 @@ from prima.devices.goals import LISTEN, Begin
 from prima.devices.settings import Does
 from prima.errors import UsageError
 from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in, settle
-from prima.live.mapped import MappedDriver, refuse_unmapped
+from prima.live.mapped import MappedDriver
 from prima.messages import Data, Json
 
 INSTALL: Final = "the library qi is not there ({}). Write: pip install 'prima[naoqi]'."
@@ -157,10 +157,7 @@ class NaoqiDriver(MappedDriver):
 
     async def perform(self, goal: Begin) -> Data:
         """Call a method; the goal is done when it returns, or after the Command's time."""
-        does = self.does(goal)
-        if does is None and goal.kind == LISTEN:
-            await self.hear(goal)
-        does = refuse_unmapped(does, goal)
+        does = await self.way(goal)
         arguments = list(does.filled(self.values(goal)).values())
         stopped = False
         calling, cancel = self._call(does.by, arguments)
