@@ -13,11 +13,7 @@ from prima.markup.uris import join
 from prima.voicexml.checks import check_code
 from prima.voicexml.recordings import HEADER_BYTES, length_ms
 from prima.voicexml.site import Site
-from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
-__all__ = [
-    "PRIMA_NAMESPACE", "Fetch", "FetchError", "Page", "VoiceDocument", "broken", "join", "of_web",
-]  # fmt: skip
 REMOTE = frozenset(["http", "https", "service"])
 """URI schemes of resources outside the application."""
 Fetch = Callable[[str], bytes]

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from prima import loading
-from prima.voicexml.document import join
+from prima.markup.uris import join
 from tests.helpers.dialogs import (
     CITIES,
     LEAF,
