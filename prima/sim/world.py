@@ -7,6 +7,7 @@ from math import atan2, cos, degrees, inf, pi, radians, sin
 
 import pymunk
 
+from prima.devices.goals import At
 from prima.devices.profile import Profile
 from prima.sim.map import EPSILON, Corner, Map, Point, distance
 from prima.sim.plan import crosses, off_line
@@ -100,8 +101,7 @@ class World:
 
     def pose(self) -> dict[str, float]:
         """The robot's pose, rounded to mm and tenths of a degree."""
-        x, y = self.position
-        return {"x": round(x, 3), "y": round(y, 3), "heading": round(self.heading, 1) % 360.0}
+        return At(*self.position, self.heading).where
 
     def turn_head(self, pan: float) -> None:
         """Turn the head (degrees from the front)."""
