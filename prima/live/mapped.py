@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+from collections.abc import Awaitable, Iterable
 from typing import ClassVar, Final
 
 from prima.devices import voice
@@ -17,6 +18,10 @@ DEGREES: Final = ("angle", "heading", "pan", "tilt", "down", "turn", "turn-speed
 """Values that are also available in radians: ``{NAME-radians}``."""
 FLUSH_S: Final = 0.05
 """How long sensor values are collected before the newest is reported."""
+SAFE_S: Final = 2.0
+"""How long to wait until goals have stopped in an emergency, or at the end."""
+SHARE: Final = 0.9
+"""The share of the opening time, or of a heartbeat, after which missing answers are reported."""
 OFTEN: Final = frozenset({"sensor", "pose", "human"})
 """Kinds of which only the newest value is reported; for others each message counts."""
 
@@ -106,6 +111,20 @@ class MappedDriver(TaskDriver):
         if not self.gone:
             self.gone = True
             super().lose(reason)
+
+    async def close(self) -> None:
+        """Cancel running goals, and disconnect."""
+        await self.end_goals(SAFE_S)
+        await self.leave()
+
+    async def leave(self) -> None:
+        """End the connection, if there is one."""
+        raise NotImplementedError
+
+    async def end_all(self, stops: Iterable[Awaitable[object]]) -> None:
+        """Cancel all goals, and wait for them and for calls that stop the robot."""
+        async with asyncio.timeout(SAFE_S):
+            await asyncio.gather(self.end_goals(SAFE_S), *stops, return_exceptions=True)
 
     # Senses -----------------------------------------------------------------------------------
 

@@ -21,8 +21,6 @@ KINDS: Final = {"action": "action", "srv": "service", "msg": "topic"}
 """The kinds of interfaces, by the middle part of their types."""
 PERIOD_S: Final = 0.1
 """How often a message that moves the body is published."""
-SAFE_S: Final = 2.0
-"""How long to wait until goals have stopped in an emergency."""
 SUCCEEDED, CANCELED = 4, 5
 """States of a goal, of ``action_msgs/msg/GoalStatus``."""
 AGAIN_S: Final = 0.5
@@ -150,7 +148,7 @@ class RosDriver(MappedDriver):
 
     async def open(self) -> None:
         """Connect, and wait until everything that the document maps to is available."""
-        await self._leave()
+        await self.leave()
         link = self.make_link()
         try:
             await link.connect(uses(self.settings), self)
@@ -163,16 +161,12 @@ class RosDriver(MappedDriver):
         """Whether this is the connection that is used."""
         return self._link is link
 
-    async def _leave(self) -> None:
+    async def leave(self) -> None:
+        """End the connection, if there is one."""
         link, self._link, self.gone = self._link, None, True
         if link is not None:
             link.fail("the connection was closed")
             await link.close()
-
-    async def close(self) -> None:
-        """Cancel running goals, and disconnect."""
-        await self.end_goals(SAFE_S)
-        await self._leave()
 
     async def ping(self) -> None:
         """Check that all servers are available."""
@@ -196,21 +190,21 @@ class RosDriver(MappedDriver):
 
     async def _stop_all(self, link: RosLink) -> None:
         link.cancel_all()
-        for does in self.settings.does:
-            if self._moves(does):
-                link.publish(use_of(does, self.kind), {})
+        self._halt(link)
         stops = {does.stop for does in self.settings.does if does.stop}
         calls = [link.call(RosUse("service", name, ""), {}) for name in sorted(stops)]
-        async with asyncio.timeout(SAFE_S):
-            await asyncio.gather(self.end_goals(SAFE_S), *calls, return_exceptions=True)
+        await self.end_all(calls)
 
     def stand(self) -> None:
         """Publish a zero velocity, and do what ``stop-moving`` does."""
-        if self._link is None or self.gone:
-            return
+        if self._link is not None and not self.gone:
+            self._halt(self._link)
+
+    def _halt(self, link: RosLink) -> None:
+        """Publish a zero velocity."""
         for does in self.settings.does:
             if self._moves(does):
-                self._link.publish(use_of(does, self.kind), {})
+                link.publish(use_of(does, self.kind), {})
 
     def _moves(self, does: Does) -> bool:
         """Whether a message moves the body, so that one without values stops it."""

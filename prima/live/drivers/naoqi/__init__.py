@@ -13,16 +13,12 @@ from prima.devices.goals import LISTEN, Begin
 from prima.devices.settings import Does
 from prima.errors import UsageError
 from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in, settle
-from prima.live.mapped import MappedDriver
+from prima.live.mapped import SAFE_S, SHARE, MappedDriver
 from prima.messages import Data, Json
 
 INSTALL: Final = "the library qi is not there ({}). Write: pip install 'prima[naoqi]'."
 PORT: Final = 9559
 ADDRESS: Final = re.compile(r"tcps?://(?:[\w.-]+|\[[0-9a-fA-F:.]+\])(?::(?P<port>[0-9]{1,5}))?")
-SAFE_S: Final = 2.0
-"""How long to wait until goals have stopped in an emergency."""
-SHARE: Final = 0.9
-"""The share of the opening time after which a missing answer is reported."""
 MEMORY: Final = "ALMemory"
 LANGUAGES: Final = {
     "de": "German",
@@ -63,7 +59,7 @@ class NaoqiDriver(MappedDriver):
         except ImportError as error:
             raise Unusable(INSTALL.format(error)) from None
         methods = self._methods()
-        await self._leave()
+        await self.leave()
         self._services, self._links, self._pending = {}, [], OpenRequests()
         self._session = session = qi.Session()
         url = _url(self.settings.address)
@@ -74,10 +70,10 @@ class NaoqiDriver(MappedDriver):
                     await self._find(service, method)
                 await self._subscribe()
         except TimeoutError:
-            await self._leave()
+            await self.leave()
             raise Unreachable(f"{url} does not answer.") from None
         except BaseException:
-            await self._leave()
+            await self.leave()
             raise
         self.gone = False
         session.disconnected.connect(partial(self._gone, session))
@@ -135,18 +131,14 @@ class NaoqiDriver(MappedDriver):
         session = self._session
         await self._answer(lambda: session.services(_async=True))
 
-    async def _leave(self) -> None:
+    async def leave(self) -> None:
+        """End the connection, if there is one."""
         session, self._session, self.gone = self._session, None, True
         if session is not None:
             self._links.clear()
             self._services.clear()
             closing = asyncio.to_thread(session.close)
             await asyncio.wait([asyncio.ensure_future(closing)], timeout=SAFE_S)
-
-    async def close(self) -> None:
-        """Cancel running goals, and disconnect."""
-        await self.end_goals(SAFE_S)
-        await self._leave()
 
     # Goals ----------------------------------------------------------------------------------
 
@@ -214,8 +206,7 @@ class NaoqiDriver(MappedDriver):
 
     async def _stop_all(self, named: set[str]) -> None:
         calls = [self._ask_method(name, [])[0] for name in sorted(named)]
-        async with asyncio.timeout(SAFE_S):
-            await asyncio.gather(self.end_goals(SAFE_S), *calls, return_exceptions=True)
+        await self.end_all(calls)
 
     # Calls ----------------------------------------------------------------------------------
 

@@ -14,7 +14,7 @@ from prima.devices.settings import Senses
 from prima.errors import UsageError
 from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in, settle
 from prima.live.drivers.ros2.messages import fill, interface, paths, plain
-from prima.live.mapped import OFTEN
+from prima.live.mapped import OFTEN, SHARE
 from prima.live.ros import Outcome, RosDriver, RosUse, Sent
 from prima.messages import Json
 
@@ -24,8 +24,6 @@ SETUP = (
 )
 LOOK_S = 0.05
 """How often to check whether a server has appeared."""
-SHARE = 0.9
-"""The share of the opening time, or of a heartbeat, after which missing servers are reported."""
 REPORT_S = 0.2
 """The minimum interval at which a goal's feedback is passed on."""
 JOIN_S = 2.0

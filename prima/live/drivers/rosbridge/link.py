@@ -11,7 +11,7 @@ from urllib.parse import urlsplit
 
 from prima.devices.settings import Senses
 from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in, settle
-from prima.live.mapped import OFTEN
+from prima.live.mapped import OFTEN, SHARE
 from prima.live.ros import Outcome, RosDriver, RosUse, Sent
 from prima.messages import Json
 
@@ -24,8 +24,6 @@ BLOCKED: Final = (
     "the bridge does not answer while a goal goes on, so nothing can be cancelled either;"
     " start it with send_action_goals_in_new_thread:=true"
 )
-SHARE: Final = 0.9
-"""The share of the opening time, or of a heartbeat, after which missing servers are reported."""
 LOOK_S: Final = 0.2
 """How often to check whether a server has appeared."""
 THROTTLE_MS: Final = 100
