@@ -8,32 +8,32 @@ from pathlib import PurePath
 
 from prima.grammar.answers import Answers
 from prima.interpreter.bounds import ElementVisit
-from prima.interpreter.protocol import Answer, App
+from prima.interpreter.protocol import Answer
 from prima.interpreter.transfers import GoOut, Thrown
 from prima.markup.tree import Node
 from prima.messages import Command, Data, Event, Hypothesis, Json, Notice, Say, Understood
 from prima.messages import Heard as Spoken
-from prima.script.isolated import AnyEngine, Engines
+from prima.script.isolated import Engines
 from prima.voicexml.document import Page, VoiceDocument
 from prima.voicexml.machine import Machine
+from prima.voicexml.owner import VoiceApplication
 from prima.voicexml.state import SCOPES, Flow, Resume, TakenUtterance, thrown_of_event
 from prima.voicexml.waits import Waits
 
 
-class VoiceInterpreter(App[AnyEngine]):
+class VoiceInterpreter(VoiceApplication):
     """Runs one VoiceXML application."""
 
     def __init__(self, document: VoiceDocument, engines: Engines | None = None) -> None:
         self.document = document
         engine = (engines or Engines()).engine(document.id, document.kind, SCOPES)
         super().__init__(document.id, document.kind, engine)
-        self.heard: TakenUtterance | None = None
+        self.heard = None
         self.note_document(document.page)
         self.waits = Waits(self, self._here, self._begun)
         self._machine = Machine(self)
         self._flow: Flow | None = None
-        self.marked: str | None = None
-        """The last mark of what is being said."""
+        self.marked = None
         self._missed: deque[Event] = deque()
         """Events that arrived while waiting for an answer (4.1.8): none is lost."""
 

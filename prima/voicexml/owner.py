@@ -1,20 +1,20 @@
-"""Protocols: the requirements of a VoiceXML interpreter's parts on the whole and on each other.
+"""What a VoiceXML interpreter's parts require of the whole and of each other.
 
 The machine (:mod:`~prima.voicexml.machine`) runs the Form Interpretation Algorithm. Its parts
 run content, listen, enter documents, fill items and handle events; they know each other, the
-machine, and the application that owns it by the protocols here alone.
+machine, and the application that owns it by what is here alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence, Sized
-from typing import NoReturn, Protocol
+from abc import abstractmethod
+from collections.abc import Generator, Sequence
+from typing import Protocol
 
-from prima.interpreter.bounds import Visited
+from prima.interpreter.protocol import App
 from prima.interpreter.transfers import Thrown
 from prima.markup.tree import Node
-from prima.messages import Action, Command, Cue, Data, Event, Json
-from prima.script.budget import Budget
+from prima.messages import Command, Cue, Data, Event, Json
 from prima.script.evaluation import Scope
 from prima.script.isolated import AnyEngine
 from prima.voicexml.arranging import Queued
@@ -24,59 +24,21 @@ from prima.voicexml.state import Context, Flow, Resume, TakenUtterance, UriReque
 from prima.voicexml.waits import Waits
 
 
-class VoiceApplication(Protocol):
-    """The application, as a session drives it."""
+class VoiceApplication(App[AnyEngine]):
+    """The application, as its parts know it besides what every application has."""
 
-    name: str
-    now: int
-    """The instant (ms)."""
-    connection: Data
-    """The user's connection, as far as known (VoiceXML 5.1.4)."""
     heard: TakenUtterance | None
     """The user's latest utterance, as a grammar took it."""
     marked: str | None
     """The last mark of what is being said."""
-    actions: list[Action]
-    """Its requests, for the session to carry out."""
+    waits: Waits
+    """Its waits."""
+    document: VoiceDocument
+    """The document that it runs."""
 
-    @property
-    def waits(self) -> Waits:
-        """Its waits."""
-
-    @property
-    def engine(self) -> AnyEngine:
-        """Evaluates its code."""
-
-    @property
-    def document(self) -> VoiceDocument:
-        """The document that it runs."""
-
-    def note(self, node: Node | None, what: Visited = "in", name: str = "") -> None:
-        """An element is gone through, or its condition has been evaluated."""
-
+    @abstractmethod
     def note_document(self, page: Page) -> None:
-        """Note a loaded document, usable or not."""
-
-    def count_step(self, node: Node, steps: int = 1) -> None:
-        """Bound what is done in one instant."""
-
-    def count_handlers(self, node: Node, handlers: Sized) -> None:
-        """Bound the handlers looked at: a document may have very many."""
-
-    def utterance(self) -> Budget:
-        """The budget for matching one more utterance."""
-
-    def count_output(self, characters: int, node: Node) -> None:
-        """Bound what comes out in one instant."""
-
-    def count_value(self, value: Json, node: Node) -> None:
-        """Count a value that leaves its variables."""
-
-    def give_up(self, node: Node, reason: str) -> NoReturn:
-        """End the application: it has gone past a limit."""
-
-    def send(self, service: str, data: Data, place: str) -> int:
-        """Send something to a service, or to a URI; gives its serial."""
+        """Note a loaded document, usable or not; its path is relative to the first one's."""
 
 
 class VoiceContentRunner(Protocol):
