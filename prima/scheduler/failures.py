@@ -30,6 +30,7 @@ def e1(mediation: Mediation, ab: Behavior, event: str, reason: str, inbound: boo
         inbound=inbound or None,
     )
     note_rolling(mediation, ab)
+    command = ab.command
     ab = _unit_that_fails(mediation, ab, event, reason)
     remove(mediation, ab)
     if ab.inserted or ab.silent:
@@ -37,7 +38,7 @@ def e1(mediation: Mediation, ab: Behavior, event: str, reason: str, inbound: boo
     tree = ab.stream.members if ab.unit is None else ab.unit.inner
     delete_rest(mediation, tree, ab.run, "E1")
     if ab.run is not None:
-        notice = Notice("failed", ab.run.number, ab.command, event=event, message=reason)
+        notice = Notice("failed", ab.run.number, command, event=event, message=reason)
         mediation.tell(ab.app, ab.stream, notice)
 
 

@@ -237,3 +237,14 @@ def test_o2_a_cancelled_unit_around_commands_is_told_by_its_own_name() -> None:
     bench.event("touch")
     assert bench.saying() == ["Stop."]
     assert sorted(bench.logs()) == ["cancel.iu", "cancel.speak"]
+
+
+def test_e1_an_error_in_a_unit_of_commands_has_the_commands_place_and_handlers() -> None:
+    unit = """<form id="a"><block><iu><speak>One.{}</speak><turn angle="5"/></iu></block></form>"""
+    bench = Bench(unit.format('<on event="error"><log expr="event.data.command"/></on>'))
+    bench.fail("One.")
+    assert bench.logs() == ["speak"]
+    bench = Bench(unit.format(""))
+    bench.fail("One.")
+    [error] = bench.phases("error")
+    assert error["message"].startswith("error.device.speaker: app.xml:1:")

@@ -68,6 +68,7 @@ def test_e1_two_devices_that_hang_in_one_unit_fail_once() -> None:
     failed = [(record["behavior"], record["rule"]) for record in stage.phases("fail")]
     assert failed == [("ea#2", "E1"), ("ea#1", "E1")], "the Command, and its unit"
     assert stage.told("ea") == ["error.device.locomotion"]
+    assert stage.notices[0][1].command is both[0].what, "whose place and handlers count"
     assert stage.running == set() and check(stage.records) == []
 
 
