@@ -19,6 +19,9 @@ UNREADABLE = NO_SUCH_FILE.says('"{name}" {wrong}')
 NOT_SERVED = UNKNOWN_ATTRIBUTE.says(
     '"{src}" is not VoiceXML, which alone is served at a URI.', "Remove uri and folder."
 )
+OWN_ID = UNKNOWN_ATTRIBUTE.says(
+    '"{src}" has the id "{own}": another is for VoiceXML documents.', "Remove it.", "warning"
+)
 NEEDS_URI = MISSING_ATTRIBUTE.says('A folder is served at a "uri".', "Add it.")
 BAD_SITE = BAD_VALUE.says("{wrong}")
 NO_AREA = NO_SUCH_NAME.says('The world "{world}" has no <area> that offers an application.')

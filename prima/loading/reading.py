@@ -30,6 +30,7 @@ from prima.loading.diagnoses import (
     NO_AREA,
     NO_FAVOURITE,
     NOT_SERVED,
+    OWN_ID,
     RUNS_AS_OTHER,
     UNREADABLE,
 )
@@ -125,10 +126,18 @@ class Reading:
             who = "this scenario says FA" if said == "fa" else who
             remedy = f'Write kind="{document.node.get("kind")}" here, or change the document.'
             self.problems += other_kind(document, f'"{src}"', who, place, remedy)
-        if site is not None and node is not None and isinstance(document, Document):
+        if node is not None and isinstance(document, Document):
+            self._voice_alone(src, document, node, site)
+        return document
+
+    def _voice_alone(self, src: str, document: Document, node: Node, site: Site | None) -> None:
+        """What only an application in VoiceXML may have."""
+        if site is not None:
             where = node.attribute_place("uri", value=False)
             self.problems.append(NOT_SERVED.at(where, src=src))
-        return document
+        if node.get("id") not in ("", document.id):
+            where = node.attribute_place("id", value=False)
+            self.problems.append(OWN_ID.at(where, src=src, own=document.id))
 
     def site(self, src: str, node: Node) -> Site | None:
         """Where an application is served, if the scenario says so; a wrong URI is a problem."""

@@ -211,6 +211,18 @@ def test_an_application_of_prima_s_language_is_served_nowhere(tmp_path: Path) ->
     assert [one.code for one in errors] == ["unknown-attribute"]
 
 
+@pytest.mark.parametrize(("given", "problems"), [("follow", 0), ("pal", 1)])
+def test_an_application_of_prima_s_language_has_its_own_id(
+    tmp_path: Path, given: str, problems: int
+) -> None:
+    copied(tmp_path, "there.vxml")
+    demo = loading.documents_folder() / "fa" / "follow.xml"
+    path = served(tmp_path, f'/><application src="{demo}" id="{given}"')
+    found = [one for one in loading.validate([path]) if one.code == "unknown-attribute"]
+    assert [one.severity for one in found] == ["warning"] * problems
+    assert all('has the id "follow"' in one.message for one in found)
+
+
 @pytest.mark.parametrize("text", ["site", "=site", "https://e.example/app/=", "ftp://x/=site"])
 def test_a_mapping_that_is_none_is_wrong_usage(tmp_path: Path, text: str) -> None:
     site = copied(tmp_path, "there.vxml")
