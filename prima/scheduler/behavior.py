@@ -41,8 +41,8 @@ class Stream:
     """Whether another stream has taken the floor and no AB of this one has started since (C2)."""
     waits: bool = False
     """Whether another application has kept an AB of it waiting since it was suspended (C2)."""
-    answered: int = -1
-    """The instant in which the user answered one of its questions (E6)."""
+    answered: int | None = None
+    """The instant in which the user last answered one of its questions, if ever (E6)."""
     place: int = 0
     """When the stream was suspended, as a counter: the greatest was suspended last (S2d). One
     that resumes keeps its place until the selection is over; 0 for others."""
@@ -184,8 +184,8 @@ class Behavior:
     parent: str | None = None
     waits_for: set[str] = field(default_factory=set)
     children: list[Behavior] = field(default_factory=list)
-    freed: int = -1
-    """The instant in which the AB's parent ended or its window opened (S2c)."""
+    freed: int | None = None
+    """The instant in which the AB's parent ended or its window opened, if either did (S2c)."""
     wait: Wait = field(default_factory=Wait)
     loop: int = 0
     """The number of a feedback Command's loop that is running, or ran last (U2)."""

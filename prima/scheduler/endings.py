@@ -187,7 +187,7 @@ def delete_rest(
     for other in list(reversed(list(tree.values()))):
         if other.state in (LINKED, WAITING) and not other.in_group:
             delete(mediation, other, rule)
-            if other.run is not run and not other.silent:
+            if other.run is not run:
                 tell_cancelled(mediation, other)
 
 

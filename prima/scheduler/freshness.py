@@ -46,7 +46,7 @@ def _give_up(mediation: Mediation, root: Behavior) -> None:
     for ab in [child for one in lost for child in one.children]:
         if ab.state is WAITING:
             ab.reaction, ab.stale = reaction, mediation.now + 1
-            ab.freed = -1  # nothing has ended before it (S2c)
+            ab.freed = None  # nothing has ended before it (S2c)
     _tell(mediation, lost)
 
 
@@ -90,6 +90,6 @@ def offered(mediation: Mediation) -> Behavior | None:
     reactions = [ab for ab in mediation.memory.waiting.values() if ab.reaction is not None]
     for _, root in mediation.policy.ranked(reactions, mediation.memory, mediation.now):
         for ab in followers(root):
-            if ab.command is not None and ab.command.type == "q-and-a" and ab.run is not None:
+            if ab.command is not None and ab.command.type == "q-and-a":
                 return ab
     return None

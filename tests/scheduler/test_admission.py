@@ -8,7 +8,7 @@ import pytest
 
 from prima.language.commands import LETTER_MS, LONGEST_TURN_MS, TABLE_4_2
 from prima.messages import Command, Cue, Group, OpenUnit, Step
-from prima.scheduler.admission import MOST_AT_ONCE
+from prima.scheduler.admission import MOST_AT_ONCE, CommandRefused
 from tests.helpers.stage import Stage, ask, chain, command, inserted, move, say
 
 LOUD = dict(TABLE_4_2, speak=replace(TABLE_4_2["speak"], extra=frozenset({"volume"})))
@@ -222,6 +222,10 @@ def test_e3_a_refusal_is_recorded_and_told_with_the_event_that_led_to_it() -> No
     }
     assert (notice.what, notice.run, notice.cause) == ("failed", 1, 7)
     assert (notice.event, notice.message) == (record["event"], record["message"])
+
+
+def test_e3_a_refusal_reads_as_its_message() -> None:
+    assert str(CommandRefused("error.semantic", "It is too long.", None)) == "It is too long."
 
 
 def test_e3_the_words_of_a_topic_are_checked_if_the_robot_speaks() -> None:

@@ -283,3 +283,35 @@ def test_x8_an_answer_is_offered_to_the_first_question_of_reactions_alone() -> N
     question = stage.mediator.offered()
     assert question is not None and question.command is not None
     assert question.command.text == "You?"
+
+
+def test_x8_nobody_is_given_up_before_their_time_because_something_else_is_over() -> None:
+    stage = Stage("prima+x3+x8")
+    stage.request("ea", say(), cause=TOUCH - 1, hold=2500)
+    stage.select()
+    stage.at(1000).end("ea#1")
+    stage.request("fa", command("turn", angle=5), cause=TOUCH)
+    assert stage.select() == ["fa#1"]
+    stage.request("fa", command("turn", angle=9), cause=TOUCH + 1, fresh=9000)
+    stage.select()
+    assert late(stage, 3500) == [] and stage.told("fa") == []
+    assert stage.mediator.deadline() == 10_000
+
+
+def test_x8_what_is_left_of_it_may_start_in_that_instant_alone() -> None:
+    stage = busy(say("Oh!"), NOD)
+    stage.at(3000).mediator.expire()
+    stage.request("ea", NOD, cause=TOUCH + 1)
+    assert stage.select() == ["ea#2"] and stage.told("fa") == ["expired.speak"]
+    assert stage.mediator.deadline() == 3001
+    assert late(stage, 3001) == [] and stage.told("fa")[1:] == ["expired.gesture"]
+
+
+def test_x8_an_answered_question_is_not_given_up_with_what_comes_before_it() -> None:
+    stage = busy(say("Oh!"), ask("What's the matter?"), say("Well."))
+    question = stage.mediator.offered()
+    assert question is not None
+    stage.at(1500).mediator.answered(question, {"outcome": "filled"}, "X8", TOUCH + 1)
+    stage.select()
+    assert late(stage) == []
+    assert stage.told("fa") == ["ended", "expired.speak", "expired.speak"]

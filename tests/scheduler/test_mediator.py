@@ -86,8 +86,9 @@ def test_x10_the_question_that_comes_is_asked_by_its_author_and_still_wanted() -
 def test_o3_what_is_requested_in_a_later_instant_begins_a_stream_of_its_own() -> None:
     stage = Stage()
     stage.request("ea", say("One."))
-    stage.request("ea", say("Oh!"), cause=TOUCH)
     stage.select()
+    stage.request("ea", say("Oh!"), cause=TOUCH)
+    assert stage.select() == []
     stage.at(10).leave("ea")
     stage.select()
     stage.at(20).request("ea", say("Two."), state=2)

@@ -133,3 +133,56 @@ def test_x5_what_moves_inside_a_unit_is_not_composed() -> None:
     motions = {ab.id: ab.motion for ab in stage.mediator.memory.running.values()}
     assert motions == {"ea#1": "", "ea#2": ""}
     assert stage.phases("request")[0]["motion"] == "faithful"
+
+
+def test_s2c_only_what_was_freed_in_this_very_instant_goes_first() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.request("fa", say("Me."))
+    stage.at(1).end("ea#1")
+    assert stage.select() == ["ea#2"] and stage.rule("ea#2") == "S2c"
+
+
+def test_f2_what_a_running_unit_holds_contends_and_what_a_linked_one_holds_does_not() -> None:
+    stage = Stage()
+    inner = Group(chain(say("Three.")))
+    stage.request("fa", Group(chain(say("One."), inner)), Group(chain(say("Four."))), cause=EVENT)
+    stage.select()
+    [stream] = stage.mediator.memory.streams.values()
+    assert [ab.id for ab in stream.contending()] == ["fa#1", "fa#3"]
+    assert [ab.id for ab in stream.present()] == ["fa#1", "fa#3"]
+    states = {ab.id: str(ab.state) for ab in stream.members.values()}
+    assert states == {"fa#1": "running", "fa#2": "linked", "fa#3": "running", "fa#4": "linked"}
+
+
+def test_x4_what_was_put_in_counts_for_itself_once_the_rest_is_gone() -> None:
+    stage = Stage("prima+x4")
+    stage.request("fa", say("Hello."), cause=EVENT, connect=True)
+    assert stage.select() == ["fa#2"]
+    [stream] = stage.mediator.memory.streams.values()
+    assert [ab.id for ab in stream.contending()] == ["fa#1"]
+    stage.at(10).leave("fa")
+    stage.select()
+    assert [ab.id for ab in stream.contending()] == ["fa#2"]
+
+
+def test_x2_what_was_left_does_not_start_again() -> None:
+    stage = Stage("prima+x2")
+    stage.request("ea", replace(say("A long story."), restartable=True))
+    stage.select()
+    stage.at(10).leave("ea")
+    stage.request("fa", say("Oh!"), cause=EVENT)
+    assert stage.select() == [] and stage.running == {"ea#1"}
+
+
+def test_the_end_of_a_unit_is_recorded_as_the_mediators_own() -> None:
+    stage = Stage()
+    stage.request("fa", Group(chain(say("One."))))
+    stage.select()
+    stage.at(10).end("fa#2")
+    stage.select()
+    command, unit = stage.phases("end")
+    assert (command["behavior"], command["inbound"]) == ("fa#2", True)
+    assert (unit["behavior"], unit["outcome"]) == ("fa#1", "done")
+    assert not {"inbound", "goal", "data"} & set(unit)
