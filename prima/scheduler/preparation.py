@@ -20,10 +20,7 @@ def prepare(mediation: Mediation, ab: Behavior) -> bool:
 
 def x1(mediation: Mediation, ab: Behavior) -> bool:
     """X1: restore the robot's state on which a suspended stream relies."""
-    if (
-        not (ab.stream.suspended and "x1" in mediation.policy.extensions)
-        or first_of(ab.stream) is not None
-    ):
+    if not ab.stream.suspended or first_of(ab.stream) is not None:
         return False
     own = ab.type.effects if ab.type is not None else frozenset()
     return insert(mediation, ab, ab.stream.effects.missing(own, mediation.robot), "X1")

@@ -57,8 +57,7 @@ class Recorder:
     def start(self, ab: Behavior, rule: str, reaction: int | None) -> None:
         """Record the start of an AB, or of a loop of one."""
         fields: Record = {"devices": ab.in_order, "rule": rule}
-        if ab.feedback and ab.parent is not None:
-            fields["parent"] = ab.parent
+        fields["parent"] = ab.parent if ab.feedback else None
         if reaction is not None:
             fields["reactive"] = True
             fields["cause"] = reaction if reaction > 0 else None

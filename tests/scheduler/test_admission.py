@@ -247,6 +247,7 @@ def test_x4_what_is_asked_for_in_a_unit_does_not_face_the_user() -> None:
     stage.at(100).end("fa#3")
     assert stage.select() == ["fa#1", "fa#2"]
     assert inserted(stage) == [("X4", "face-human")]
+    assert [one.get("connect") for one in stage.phases("request")] == [True, None, None]
 
 
 def test_x8_only_a_reaction_may_come_too_late() -> None:
@@ -279,7 +280,7 @@ def test_x6_a_substitute_is_recorded_with_its_line() -> None:
 
 
 @pytest.mark.parametrize(
-    ("policy", "devices"), [("prima", ["speaker"]), ("prima+x6", ["neck", "speaker"])]
+    ("policy", "devices"), [("prima", ["arm", "speaker"]), ("prima+x6", ["arm", "neck", "speaker"])]
 )
 def test_u5_a_unit_owns_the_devices_of_substitutes_if_there_are_any(
     policy: str, devices: list[str]
@@ -287,7 +288,7 @@ def test_u5_a_unit_owns_the_devices_of_substitutes_if_there_are_any(
     """Nor does it own those of Commands that the robot lacks."""
     table = dict(TABLE_4_2, gesture=replace(TABLE_4_2["gesture"], substitute="move-head"))
     stage = Stage(policy, table=table)
-    types = ("gesture", "take-picture")
+    types = ("gesture", "take-picture", "point-by-hand")
     stage.mediator.ask("fa", OpenUnit(1, 1, frozenset({"speaker"}), types=types))
     stage.select()
     assert stage.phases("request")[0]["devices"] == devices
@@ -382,3 +383,12 @@ def test_o1_in_a_unit_a_command_follows_the_latest_of_the_unit() -> None:
     assert stage.select() == ["ea#1", "ea#2"], "though its device is free"
     stage.at(10).end("ea#2")
     assert stage.select() == ["ea#3"]
+
+
+def test_o1_a_reaction_begins_a_stream_of_its_own_even_in_a_window() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.at(10).end("ea#1", then=lambda: stage.request("ea", say("Oh!"), cause=7))
+    stage.select()
+    assert [one["tree"] for one in stage.phases("request")] == ["ea:1", "ea:1", "ea:2"]

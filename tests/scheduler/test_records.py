@@ -174,6 +174,19 @@ def test_starts_ends_holds_and_decisions_are_recorded() -> None:
     }
 
 
+def test_only_the_next_loop_is_recorded_with_what_it_follows() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.at(10).end("ea#1")
+    stage.select()
+    assert recorded(stage, "ea#2", "start") == {
+        "actor": "robot",
+        "devices": ["speaker"],
+        "rule": "S1",
+    }
+
+
 def test_a_decision_names_eight_losers_and_counts_all() -> None:
     stage = Stage(apps={f"a{number}": "ea" for number in range(10)})
     for number in range(10):
