@@ -125,3 +125,35 @@ def test_the_head_is_straight_where_a_command_says_nothing_of_it() -> None:
     assert head_of(command("move-head", pan=5)) == (5.0, 0.0)
     assert head_of(command("move-head", tilt=5)) == (0.0, 5.0)
     assert head_of(Command("look", {"pan": "left", "tilt": None})) == (0.0, 0.0)
+
+
+def test_x1_the_state_is_what_was_reported_last() -> None:
+    body = RobotState()
+    body.moved(DIRECTION, command("set-direction", pan=9), pose(1, 2, 90))
+    assert (body.pose, body.head) == ((1.0, 2.0, 90.0), (0.0, 0.0))
+    body.moved(HEAD, command("move-head", pan=20, tilt=-10), {})
+    assert (body.pose, body.head) == ((1.0, 2.0, 90.0), (20.0, -10.0))
+
+
+def test_x1_what_reports_no_place_changes_no_place_and_no_direction() -> None:
+    effects = Effects(position=(1.0, 2.0), heading=30.0)
+    effects.add(PLACE, command("topological-move"), {}, RobotState())
+    effects.add(DIRECTION, command("set-direction"), {}, RobotState())
+    assert (effects.position, effects.heading) == ((1.0, 2.0), 30.0)
+
+
+def test_x1_a_turn_of_its_own_ends_what_was_turned_to_the_human() -> None:
+    effects = Effects()
+    effects.add(HUMAN, command("face-human"), {}, RobotState((1.0, 1.0, 90.0)))
+    effects.add(DIRECTION, command("set-direction"), pose(1, 1, 30), RobotState())
+    assert restored(effects, pose(1, 1, 90)) == [("set-direction", {"heading": 30.0})]
+
+
+def test_x1_after_a_way_back_it_turns_to_the_human_again() -> None:
+    """Wherever it came from, unless what follows turns by itself."""
+    effects = Effects(position=(1.0, 1.0), human=True, body=RobotState((5.0, 5.0, 0.0)))
+    back = ("set-position", {"x": 1.0, "y": 1.0})
+    assert restored(effects, pose(5, 5, 0)) == [back, ("face-human", {})]
+    assert restored(effects, pose(5, 5, 0), frozenset({"direction"})) == [back]
+    turned = Effects(heading=45.0, human=True, body=RobotState((1.0, 1.0, 0.0)))
+    assert restored(turned, pose(1, 1, 0)) == [("set-direction", {"heading": 45.0})]
