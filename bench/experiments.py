@@ -110,10 +110,10 @@ def _seconds(sweep: Sweep, make: Callable[[Any], object]) -> float:
 
 def on_dask(runs: int) -> float:
     """Runs a second on two workers of Dask, as processes of this machine."""
-    from prima.experiments.cluster import cluster
+    from prima.experiments.cluster import pool_of
 
     with _dask() as address:
-        return _rate(runs, cluster(address))
+        return _rate(runs, pool_of(address, None))
 
 
 @contextmanager

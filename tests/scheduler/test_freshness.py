@@ -11,7 +11,7 @@ POLICY = "prima+x8"
 NOD = command("gesture", name="nod")
 
 
-def busy(*whats: Command, policy: str = POLICY, steps: list[Step] | None = None) -> Stage:
+def busy(*whats: Command | Group, policy: str = POLICY, steps: list[Step] | None = None) -> Stage:
     """The EA speaks, and the FA wants to react within two seconds."""
     stage = Stage(policy)
     stage.request("ea", say("A long story."))
@@ -266,9 +266,10 @@ def test_x8_a_branch_that_is_given_up_whole_ends_what_began_once() -> None:
 
 
 def test_x8_an_application_that_has_left_the_state_or_has_gone_hears_nothing() -> None:
-    for goes in (lambda stage: stage.leave("fa"), lambda stage: stage.mediator.unload("fa", "")):
-        stage = busy(say("Oh!"))
-        goes(stage)
+    left, gone = busy(say("Oh!")), busy(say("Oh!"))
+    left.leave("fa")
+    gone.mediator.unload("fa", "crash")
+    for stage in (left, gone):
         late(stage)
         assert stage.told("fa") == []
 
