@@ -206,9 +206,7 @@ def o2(
         cancel(mediation, inside, devices)
         return unit.stream
     streams = {
-        ab.stream.name: ab.stream
-        for ab in mediation.memory.of_app(app)
-        if ab.devices & devices and ab.unit is None
+        ab.stream.name: ab.stream for ab in mediation.memory.of_app(app) if ab.devices & devices
     }
     waited_for = reaction is not None or app.window is None
     if streams and not (waited_for and held_of(mediation, app)):

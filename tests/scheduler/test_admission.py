@@ -248,6 +248,7 @@ def test_x4_what_is_asked_for_in_a_unit_does_not_face_the_user() -> None:
     assert stage.select() == ["fa#1", "fa#2"]
     assert inserted(stage) == [("X4", "face-human")]
     assert [one.get("connect") for one in stage.phases("request")] == [True, None, None]
+    assert [one.get("source") or "" for one in stage.phases("request")] == ["", "", ""]
 
 
 def test_x8_only_a_reaction_may_come_too_late() -> None:

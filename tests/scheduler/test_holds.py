@@ -233,3 +233,31 @@ def test_x3_of_streams_held_in_one_instant_the_latest_has_the_floor() -> None:
     held = [record["tree"] for record in stage.phases("held")]
     assert len(held) == 2 and stage.floor == held[1:]
     assert check(stage.records, "prima+x3") == []
+
+
+@pytest.mark.parametrize(
+    ("in_window", "cause", "tree"),
+    [(False, None, "fa:1"), (False, 9, "fa:1"), (True, 9, "fa:1"), (True, None, "fa:2")],
+)
+def test_o2_what_is_wanted_now_continues_the_stream_that_is_held(
+    in_window: bool, cause: int | None, tree: str
+) -> None:
+    """But in a window, where nothing that it waits for has come, the one that it cancels (X3)."""
+    stage = Stage("prima+x3")
+    stage.request("fa", say("Connecting."), cause=EVENT, hold=5000)
+    stage.request("fa", command("turn", angle=90), cause=LATER)
+    stage.request("fa", command("gesture", name="nod"), cause=LATER)
+    stage.select()
+    stage.at(10).end("fa#1")
+    stage.select()
+    assert [one["outcome"] for one in stage.phases("held")] == ["begun"]
+
+    def stop() -> None:
+        stage.request("fa", command("stop-moving"), cause=cause)
+
+    if in_window:
+        stage.at(20).end("fa#3", then=stop)
+    else:
+        stop()
+    stage.select()
+    assert stage.phases("request")[-1]["tree"] == tree
