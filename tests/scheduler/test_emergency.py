@@ -82,8 +82,8 @@ def test_a_unit_that_was_left_does_not_come_back_after_an_emergency() -> None:
 
 
 def test_a_unit_that_is_left_during_an_emergency_is_concluded() -> None:
-    # The application leaves the unit because it is told of the emergency. The unit waits then
-    # for its release, starts again and keeps its devices for ever.
+    # The application leaves the unit when it gets emergency.stop. The unit then waited for the
+    # release, started again and kept its devices for ever.
     body = (
         '<form id="f1"><iu><block><speak>Hello.</speak></block></iu>'
         '<on event="emergency.stop"><goto next="#f2"/></on></form><form id="f2"/>'

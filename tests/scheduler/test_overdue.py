@@ -83,6 +83,17 @@ def test_e1_a_unit_of_several_requests_goes_on_after_a_failure_in_it() -> None:
     assert [(one["behavior"], one["rule"]) for one in stage.phases("cancel")] == [("ea#3", "E1")]
 
 
+def takes_too_long(stage: Stage) -> tuple[str, int]:
+    """A unit of one second fails once, however long it goes on: the notice and its number."""
+    for now in (1_000, 2_000):
+        stage.at(now).mediator.expire()
+        stage.select()
+    [failed], [(_, notice)] = stage.phases("fail"), stage.notices
+    assert (failed["rule"], failed["event"]) == ("U5", "error.unit.timeout")
+    assert (notice.event, notice.message) == ("error.unit.timeout", "The unit took too long.")
+    return notice.what, notice.run
+
+
 def test_u5_a_unit_of_several_requests_is_told_by_its_number_and_fails_once() -> None:
     stage = Stage()
     for number, device, longest in ((3, "speaker", 9_000), (7, "neck", 1_000)):
@@ -90,13 +101,7 @@ def test_u5_a_unit_of_several_requests_is_told_by_its_number_and_fails_once() ->
         stage.mediator.ask("ea", opened)
     stage.request("ea", command("move-head", pan=1), unit=7)
     stage.select()
-    for now in (1_000, 2_000):
-        stage.at(now).mediator.expire()
-        stage.select()
-    [failed], [(_, notice)] = stage.phases("fail"), stage.notices
-    assert (failed["rule"], failed["event"]) == ("U5", "error.unit.timeout")
-    assert (notice.what, notice.run) == ("unit-timeout", 7)
-    assert (notice.event, notice.message) == ("error.unit.timeout", "The unit took too long.")
+    assert takes_too_long(stage) == ("unit-timeout", 7)
 
 
 def test_u5_a_unit_of_one_request_that_takes_too_long_finishes_what_runs_and_fails_once() -> None:
@@ -104,13 +109,7 @@ def test_u5_a_unit_of_one_request_that_takes_too_long_finishes_what_runs_and_fai
     late = Group(chain(say("One."), say("Two."), say("Three.")), longest=1_000)
     number = stage.request("ea", late, say("After."))
     stage.select()
-    for now in (1_000, 2_000):
-        stage.at(now).mediator.expire()
-        stage.select()
-    [failed], [(_, notice)] = stage.phases("fail"), stage.notices
-    assert (failed["rule"], failed["event"]) == ("U5", "error.unit.timeout")
-    assert (notice.what, notice.run) == ("failed", number)
-    assert (notice.event, notice.message) == ("error.unit.timeout", "The unit took too long.")
+    assert takes_too_long(stage) == ("failed", number)
     left = [(record["behavior"], record["rule"]) for record in stage.phases("cancel")]
     assert left == [("ea#5", "U5"), ("ea#4", "U5"), ("ea#2", "U5")], "what follows goes first"
     stage.at(3_000).end("ea#3")

@@ -129,10 +129,14 @@ def test_x9_all_branches_wait_for_the_words() -> None:
     assert check(stage.records, POLICY) == []
 
 
-def test_x9_and_x1_the_robot_goes_back_before_it_says_so() -> None:
-    both = "prima+x1+x9"
-    stage = Stage(both)
-    stage.request("ea", command("move-head", pan=30), say("One."), say("Two."), words=words())
+BACK = "prima+x1+x9"
+
+
+def turned_away(*rest: Step) -> Stage:
+    """The EA has turned the head and spoken, when the FA turns it away and speaks itself."""
+    stage = Stage(BACK)
+    first = [Step(command("move-head", pan=30)), Step(say("One."), (0,))]
+    stage.request("ea", steps=[*first, *rest], words=words())
     stage.select()
     stage.at(500).end("ea#1")
     stage.select()
@@ -142,6 +146,11 @@ def test_x9_and_x1_the_robot_goes_back_before_it_says_so() -> None:
     stage.select()
     stage.at(1100).end("fa#1")
     assert stage.select() == ["fa#2"]
+    return stage
+
+
+def test_x9_and_x1_the_robot_goes_back_before_it_says_so() -> None:
+    stage = turned_away(Step(say("Two."), (1,)))
     stage.at(2000).end("fa#2")
     assert stage.select() == ["ea#4"]
     stage.at(2500).end("ea#4")
@@ -149,7 +158,7 @@ def test_x9_and_x1_the_robot_goes_back_before_it_says_so() -> None:
     assert inserted(stage) == [("X1", "move-head"), ("X9", "speak")]
     stage.at(3500).end("ea#5")
     assert stage.select() == ["ea#3"]
-    assert check(stage.records, both) == []
+    assert check(stage.records, BACK) == []
 
 
 def test_x9_words_that_fail_do_not_keep_the_topic() -> None:
@@ -226,40 +235,20 @@ def test_x9_a_unit_resumes_in_words_which_have_a_place_of_their_own() -> None:
 
 
 def test_x9_whatever_is_in_the_stream_waits_for_the_words_behind_the_way_back() -> None:
-    both = "prima+x1+x9"
-    stage = Stage(both)
-    first = [Step(command("move-head", pan=30)), Step(say("One."), (0,))]
-    then = [Step(say("Two."), (1,)), Step(command("point-by-hand", angle=5), (1,))]
-    stage.request("ea", steps=[*first, *then], words=words())
-    stage.select()
-    stage.at(500).end("ea#1")
-    stage.select()
-    stage.at(600).request("fa", command("move-head", pan=-30), say("Oh!"), cause=TOUCH)
-    stage.select()
-    stage.at(1000).end("ea#2")
-    stage.select()
-    stage.at(1100).end("fa#1")
-    stage.select()
+    both_follow = [Step(say("Two."), (1,)), Step(command("point-by-hand", angle=5), (1,))]
+    stage = turned_away(*both_follow)
     started = []
     for time, behavior in ((2000, "fa#2"), (2500, "ea#5"), (3500, "ea#6")):
         stage.at(time).end(behavior)
         started.append(stage.select())
     assert started == [["ea#5"], ["ea#6"], ["ea#3", "ea#4"]]
-    assert check(stage.records, both) == []
+    assert check(stage.records, BACK) == []
 
 
 def test_x9_what_is_wanted_now_waits_for_no_way_back() -> None:
-    stage = Stage("prima+x1+x9")
-    stage.request("ea", command("move-head", pan=30), say("One."), say("Two."), words=words())
-    stage.select()
-    stage.at(500).end("ea#1")
-    stage.select()
-    stage.at(600).request("fa", command("move-head", pan=-30), cause=TOUCH)
-    stage.select()
-    stage.at(1000).end("ea#2")
-    stage.select()
-    stage.at(1100).end("fa#1")
+    stage = turned_away(Step(say("Two."), (1,)))
+    stage.at(2000).end("fa#2")
     assert stage.select() == ["ea#4"]
-    stage.at(1200).request("ea", Command("speak", text="Wait!", now=True), words=words())
+    stage.at(2100).request("ea", Command("speak", text="Wait!", now=True), words=words())
     assert stage.select() == ["ea#5"]
     assert inserted(stage) == [("X1", "move-head")]
