@@ -140,6 +140,8 @@ class Extensions(FloorRules):
             self.report(2, "X2", f"{ab.shown} is interrupted, which is not marked so")
         if self.is_given_up(ab):
             self.report(2, "X2", f"{ab.shown} is interrupted, but nobody wants it to start again")
+        if self.third_turn(ab):
+            self.report(16, "X7", f"{ab.shown} is interrupted between an answer and its response")
         if not _reacts_to(by, ab):
             self.report(2, "X2", f"{ab.shown} is interrupted for {record['by']}, no reaction to it")
         elif ab.started_at == self.now and not _later(by, ab):
@@ -257,12 +259,13 @@ class Extensions(FloorRules):
     def gives_way(self, ab: AB, reaction: AB) -> bool:
         """X2: whether an AB is certain to be interrupted for a reaction.
 
-        It may not be if the reaction ranks below it (S2a, S2b), or if its state
+        It may not be if the reaction ranks below it (S2a, X7, S2b), or if its state
         was left, so that it must not start again (O3).
         """
         ab = ab.outermost
         may = "x2" in self.extensions and ab.restartable and not ab.silent
-        return may and _later(reaction, ab) and not self.is_given_up(ab)
+        outranked = _later(reaction, ab) and not self.third_turn(ab)
+        return may and outranked and not self.is_given_up(ab)
 
     def channel_connected(self, ab: AB) -> None:
         """X4: the first word waits until the robot has turned to a user whom it does not see."""

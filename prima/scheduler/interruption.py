@@ -6,6 +6,8 @@ from prima.messages import Command, Data, Notice
 from prima.scheduler.admission import commands_of
 from prima.scheduler.behavior import GONE, RUNNING, Behavior
 from prima.scheduler.mediation import HaltedUnit, Mediation
+from prima.scheduler.memory import WorkingMemory
+from prima.scheduler.rules import third_turn
 
 Held = dict[str, Behavior]
 """Devices that waiting ABs hold back from lower-ranked ones, with the AB that does so (S3)."""
@@ -25,17 +27,21 @@ def x2(mediation: Mediation, reaction: Behavior, ways: list[Behavior], held: Hel
     """
     if any(device in held for device in reaction.devices):
         return False
-    if not all(yields(ab, reaction) for ab in ways):
+    if not all(yields(ab, reaction, mediation.memory) for ab in ways):
         return False
     for ab in ways:
         interrupt(mediation, ab, reaction)
     return True
 
 
-def yields(ab: Behavior, reaction: Behavior) -> bool:
-    """X2: whether a running AB yields: to a reaction to a later event that it does not outrank."""
+def yields(ab: Behavior, reaction: Behavior, memory: WorkingMemory) -> bool:
+    """X2: whether a running AB yields: to a reaction to a later event that it does not outrank.
+
+    What comes before the response to an answer outranks all reactions (X7).
+    """
     later = reaction.reaction is not None and ab.reacted < reaction.reaction
-    return ab.restartable and later and ab.priority <= reaction.priority
+    outranked = ab.priority <= reaction.priority and not third_turn(ab, memory)
+    return ab.restartable and later and outranked
 
 
 def interrupt(mediation: Mediation, ab: Behavior, reaction: Behavior) -> None:

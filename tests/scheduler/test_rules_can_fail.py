@@ -340,6 +340,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("x7", "questions, too", reworded(thirdturn, "_soon_over", " or ab.asks", "")),
     ("x7", "loops, too", reworded(thirdturn, "_soon_over", "ab.feedback or ", "")),
     ("x7", "whatever comes before", put(rules, "before", lambda ab, memory: [])),
+    ("x7", "broken off", reworded(interruption, "yields", " and not third_turn(ab, memory)", "")),
     ("x7", "whatever was heard", reworded(endings, "_note_answer", 'outcome == "filled"', "True")),
 ]
 """Those of the rules that decide in a run. V4 is the simulated camera's (tests/sim/test_robot.py)."""

@@ -12,6 +12,7 @@ import pytest
 from prima.invariants import check
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.messages import Command, Step
+from prima.scheduler import interruption
 from tests.helpers.stage import TRACK, Stage, ask, command, move, restartable, say
 
 TOUCH = 7
@@ -158,6 +159,46 @@ def test_x7_what_waits_does_not_break_it_off_but_a_later_event_does() -> None:
     stage.at(2100).request("fa", say("Ouch."), cause=TOUCH + 1)
     assert stage.select() == ["fa#2"]
     assert [(r["behavior"], r["by"]) for r in stage.phases("interrupt")] == [("ea#2", "fa#2")]
+    assert check(stage.records, "prima+x2+x7") == []
+
+
+def turning_its_head_before_it_answers() -> Stage:
+    """The user answers while the robot turns its head, after which the asker has a word to say."""
+    stage = Stage("prima+x2+x7")
+    steps = [Step(ask()), Step(restartable(HEAD)), Step(say("Thank you."), (1,))]
+    stage.request("ea", steps=steps)
+    assert stage.select() == ["ea#1", "ea#2"]
+    return stage
+
+
+def test_x7_what_comes_before_the_response_goes_before_a_later_reaction() -> None:
+    stage = turning_its_head_before_it_answers()
+    answer(stage.at(2000), "ea#1")
+    assert stage.select() == []
+    stage.at(2100).request("fa", command("move-head", pan=0), cause=TOUCH)
+    assert (stage.select(), stage.phases("interrupt")) == ([], [])
+    stage.at(2200).end("ea#2")
+    assert stage.select() == ["ea#3", "fa#1"]
+    assert check(stage.records, "prima+x2+x7") == []
+
+
+def test_x7_the_check_of_a_run_sees_what_is_interrupted_before_the_response() -> None:
+    stage = turning_its_head_before_it_answers()
+    answer(stage.at(2000), "ea#1")
+    stage.select()
+    stage.at(2100).request("fa", command("move-head", pan=0), cause=TOUCH)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(interruption, "third_turn", lambda ab, memory: False)
+        assert stage.select() == ["fa#1"]
+    (found,) = check(stage.records, "prima+x2+x7")
+    assert "invariant 16 (X7) at 2.100 s: ea#2 is interrupted" in found
+
+
+def test_x7_a_command_yields_when_nobody_has_answered() -> None:
+    stage = turning_its_head_before_it_answers()
+    stage.at(2100).request("fa", command("move-head", pan=0), cause=TOUCH)
+    assert stage.select() == ["fa#1"]
+    assert [(r["behavior"], r["by"]) for r in stage.phases("interrupt")] == [("ea#2", "fa#1")]
     assert check(stage.records, "prima+x2+x7") == []
 
 
