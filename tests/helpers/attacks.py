@@ -7,7 +7,6 @@ what became of it. ``make attack`` tries them all, the tests one of each family.
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 import time
@@ -256,6 +255,24 @@ ATTACKS = [*_scripts(), *_bytes(), *_work()]
 """All of them."""
 
 
+WATCH = """
+import json, resource, subprocess, sys
+process = subprocess.Popen(sys.argv[2:], stdout=subprocess.DEVNULL)
+try:
+    process.wait(float(sys.argv[1]))
+except subprocess.TimeoutExpired:
+    process.kill()
+    process.wait()
+used = resource.getrusage(resource.RUSAGE_CHILDREN)
+print(json.dumps([process.returncode, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024]))
+"""
+"""Runs a command for a time and tells its exit code, its seconds of processor time and its MB.
+
+It is a small process: the system counts the memory of the process that starts another as the
+other's own.
+"""
+
+
 def attempt(attack: Attack, folder: Path) -> Outcome:
     """Run an attack beside the honest application, in a process of its own."""
     (folder / "honest.xml").write_text(HONEST)
@@ -265,27 +282,20 @@ def attempt(attack: Attack, folder: Path) -> Outcome:
     applications = ["--fa", "honest.xml", "--ea", next(iter(attack.files))]
     command = [sys.executable, "-m", "prima", "run", *applications, *says, "-o", "t.jsonl"]
     began = time.monotonic()
-    with open(folder / "stderr", "w+") as errors:
-        process = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=errors)
-        watch = subprocess.Popen(
-            [sys.executable, "-c", f"import time, os; time.sleep({HANGS_SECONDS}); os.kill({process.pid}, 9)"]
-        )  # fmt: skip
-        _, status, usage = os.wait4(process.pid, 0)
-        watch.kill()
-        watch.wait()
-        seconds = time.monotonic() - began
-        errors.seek(0)
-        said = errors.read().splitlines()
+    watched = [sys.executable, "-c", WATCH, str(HANGS_SECONDS), *command]
+    ran = subprocess.run(watched, cwd=folder, capture_output=True, text=True, check=True)
+    seconds = time.monotonic() - began
+    code, processor, peak = json.loads(ran.stdout)
     records = _records(folder / "t.jsonl")
     logs = [one.get("message", "") for one in records if one.get("app") == "honest"]
     whole = bool(records) and records[-1].get("phase") == "over"
     return Outcome(
-        os.waitstatus_to_exitcode(status),
+        code,
         seconds,
-        usage.ru_utime + usage.ru_stime,
-        usage.ru_maxrss / 1024,
+        processor,
+        peak,
         whole and "3 alive" in logs,
-        said,
+        ran.stderr.splitlines(),
     )
 
 
