@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from prima.errors import Place, Problem, Span, guessable, meant
+from prima.errors import Diagnosis, Place, Problem, Span, guessable, meant
 from prima.errors.diagnoses.names import UNHEARD_EVENT, UNKNOWN_EVENT
 from prima.interpreter.acts import (
     CommandRun,
@@ -27,6 +27,13 @@ from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
 NEVER_RAISED = UNKNOWN_EVENT.says("{wrong}", "Remove the handler.")
+NOT_ITS_OWN = UNKNOWN_EVENT.says(
+    'A handler in a Command takes only its own events, not "{name}".',
+    "Remove it, or write it in the form.",
+)
+NOT_ITS_ERROR = UNKNOWN_EVENT.says(
+    'A handler in a Command of a unit takes only its errors, not "{name}".', NOT_ITS_OWN.remedy
+)
 NOT_HANDLED = UNHEARD_EVENT.says(
     'No handler takes the event "{name}".', 'Write <on event="{name}">.'
 )
@@ -125,6 +132,20 @@ def _groups(acts: Acts) -> Iterator[GroupTemplate]:
         yield from (step.what for step in run.steps if isinstance(step.what, GroupTemplate))
 
 
+def _never_taken(acts: Acts) -> Iterator[tuple[Handler, str, Diagnosis]]:
+    """What handlers in Commands name, though it is no event of that Command."""
+    inside = {id(one) for group in _groups(acts) for one in run_commands(group.steps)}
+    for command in _commands(acts):
+        own = [] if id(command) in inside else [f"{kind}.{command.type}" for kind in OWN]
+        diagnosis = NOT_ITS_OWN if own else NOT_ITS_ERROR
+        yield from (
+            (handler, name, diagnosis)
+            for handler in command.handlers
+            for name in handler.events
+            if not takes("error", name) and not any(takes(name, one) for one in own)
+        )
+
+
 def items_of(document: Document) -> Iterator[Item]:
     """The items of all forms of a document."""
     return (item for form in document.forms.values() for item in all_items(form.items))
@@ -170,6 +191,7 @@ class KnownEvents:
             self.commands.add("q-and-a")
         self.units = {"iu"} if any(_groups(acts)) else set()
         """The name of units around Commands, which have no event at their end."""
+        self._never_taken = [*_never_taken(acts)]
         self.asked = [*_asked(acts)]
         """The services that are asked by their names, and where."""
         self.dynamic = _is_dynamic(acts)
@@ -195,6 +217,9 @@ class KnownEvents:
                     place = event_place(handler.node, name)
                     hint = meant(nearest, Span.of(place, name))
                     found.append(NEVER_RAISED.at(place, hint, wrong=message))
+        for handler, name, diagnosis in self._never_taken:
+            if self._unraised(name) is None:
+                found.append(diagnosis.at(event_place(handler.node, name), name=name))
         found += [problem for one in self.raised if (problem := self._unheard(one, wanted))]
         return found
 

@@ -130,6 +130,35 @@ def test_a_unit_around_commands_has_events_but_for_its_end(what: str, tmp_path: 
     assert problems(tmp_path, text.replace("iu>", "seq>"), "unknown-event")
 
 
+@pytest.mark.parametrize(
+    ("named", "alone", "in_unit"),
+    [
+        ("end", 0, 1),
+        ("end.speak", 0, 1),
+        ("cancel.speak", 0, 1),
+        ("expired", 0, 1),
+        ("error", 0, 0),
+        ("error.device.speaker", 0, 0),
+        ("end.turn", 1, 1),
+        ("touch", 1, 1),
+        ("touch error end.speak", 1, 2),
+        ("suspended", 1, 1),
+    ],
+)
+def test_a_handler_in_a_command_takes_its_events_alone(
+    named: str, alone: int, in_unit: int, tmp_path: Path
+) -> None:
+    text = f"""<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><form id="m">
+    <block><seq><speak>Hello.<on event="{named}"><exit/></on></speak><turn angle="9"/></seq>
+    <exit/></block></form></prima>"""
+    found = problems(tmp_path, text, "unknown-event")
+    assert len(found) == alone
+    assert all("takes only its own events" in one["message"] for one in found)
+    inside = problems(tmp_path, text.replace("seq>", "iu>"), "unknown-event")
+    assert len(inside) == in_unit
+    assert all("takes only its errors" in one["message"] for one in inside)
+
+
 def test_a_name_of_many_parts_takes_no_more_room_than_a_few_of_them() -> None:
     name = ".".join("a" * 20_000)
     text = app(

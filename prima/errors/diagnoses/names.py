@@ -93,7 +93,8 @@ UNKNOWN_EVENT = Diagnosis(
     "unknown-event",
     "Unknown event",
     (
-        "A handler names an event that nothing raises, most likely a typo; given a scenario, "
+        "A handler names an event that nothing raises, most likely a typo, or one that never "
+        "reaches it in a Command; given a scenario, "
         "also an event of a corner that its world does not have. An application's own events "
         "come from throw, send, link, watch, a return, or a scenario."
     ),
