@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 
 import click
+from click.exceptions import Exit
 
 from prima.cli.common import formats_option, print_json, put, write_for_programs
 
@@ -17,7 +18,8 @@ def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> N
     """Run situations under every policy and measure the effects on units, streams and channel.
 
     Without SCENARIOS the ten situations of the thesis are run. docs/measures.md
-    defines the columns. A "!" marks a run in which an application failed.
+    defines the columns. A "!" marks a run in which an application failed; the exit
+    code is then 3.
 
     \b
     prima study
@@ -40,3 +42,5 @@ def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> N
         put(format_csv(results))
     else:
         put(format_table(results))
+    if any(result.failures for result in results):
+        raise Exit(3)

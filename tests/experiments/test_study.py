@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 from copy import deepcopy
 from functools import cache
-from pathlib import Path
 
 import pytest
 
-from prima import api, cli
-from prima.errors import UsageError
+from prima import api
 from prima.experiments.study import (
     POLICIES,
     StudyResult,
@@ -457,34 +454,9 @@ def test_the_three_forms_of_a_study_tell_the_same() -> None:
     assert table.splitlines()[-1].startswith("all")
 
 
-def test_the_command_prints_json(capsys: pytest.CaptureFixture[str]) -> None:
-    scenario = str(situations()[4])
-    with pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit) as ended:
-        patch.setattr(
-            "sys.argv", ["prima", "study", scenario, "--policy", "prima", "--format", "json"]
-        )
-        cli.main()
-    assert ended.value.code == 0
-    [result] = json.loads(capsys.readouterr().out)
-    assert (result["situation"], result["broken_waiting"], result["distance"]) == ("s05", 1, 0)
-
-
 def test_a_row_of_what_resumes_may_be_missing() -> None:
     """S04 without a mediator breaks off none of the two ways, so none of them resumes."""
     assert {one.situation: one.missing for one in of("none")}["s04"] == 2
-
-
-def test_an_expected_table_that_is_none_is_told(tmp_path: Path) -> None:
-    world = api.documents_folder() / "worlds" / "home.xml"
-    robot = api.documents_folder() / "robots" / "papero.xml"
-    app = api.documents_folder() / "fa" / "emotions.xml"
-    (tmp_path / "s.xml").write_text(
-        f'<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="{world}"'
-        f' robot="{robot}"><robot at="charger"/><application src="{app}"/></scenario>'
-    )
-    (tmp_path / "s.txt").write_text("nothing\n")
-    with pytest.raises(UsageError, match="not a table"):
-        list(study([tmp_path / "s.xml"]))
 
 
 def test_the_emergency_stop_is_an_event_that_may_be_reacted_to() -> None:

@@ -1,0 +1,46 @@
+"""``prima study``: its formats, its exit code, and the tables that scenarios expect."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from prima import api
+from prima.errors import UsageError
+from prima.experiments.study import situations, study
+from tests.helpers.bad_input import app
+from tests.helpers.here import prima
+
+
+def test_the_command_prints_json() -> None:
+    done = prima("study", situations()[4], "--policy", "prima", "--format", "json")
+    assert done.returncode == 0
+    [result] = json.loads(done.stdout)
+    assert (result["situation"], result["broken_waiting"], result["distance"]) == ("s05", 1, 0)
+
+
+def scenario_of(path: Path, folder: Path) -> Path:
+    """A scenario in a home with one application."""
+    world = api.documents_folder() / "worlds" / "home.xml"
+    robot = api.documents_folder() / "robots" / "papero.xml"
+    (folder / "s.xml").write_text(
+        f'<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="{world}"'
+        f' robot="{robot}"><robot at="charger"/><application src="{path}"/></scenario>'
+    )
+    return folder / "s.xml"
+
+
+def test_a_failed_application_is_marked_and_determines_the_exit_code(tmp_path: Path) -> None:
+    path = tmp_path / "app.xml"
+    path.write_text(app('<form id="f"><block><throw event="error.x"/></block></form>'))
+    done = prima("study", scenario_of(path, tmp_path), "--policy", "fifo")
+    assert (done.returncode, done.stdout.splitlines()[-1].split()[:3]) == (3, ["s", "fifo", "!"])
+
+
+def test_an_expected_table_that_is_none_is_told(tmp_path: Path) -> None:
+    scenario = scenario_of(api.documents_folder() / "fa" / "emotions.xml", tmp_path)
+    (tmp_path / "s.txt").write_text("nothing\n")
+    with pytest.raises(UsageError, match="not a table"):
+        list(study([scenario]))
