@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from prima.api.rehearsing import Sink, check_numbers, fetcher
 from prima.api.transcripts import Transcript, check_transcripts
@@ -14,9 +13,6 @@ from prima.loading import Loaded, load_scenario
 from prima.loading.files import paths_of
 from prima.loading.heads import check_files
 from prima.messages import Record
-
-if TYPE_CHECKING:
-    pass
 
 # Modules that only some functions need are imported there, so that short commands start quickly.
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from prima.devices.reading import Reader
-from prima.errors import Place
+from prima.errors import Place, UsageError, one_of
+from prima.language.values import BadValue, read_value
 from prima.markup.tree import Node
 from prima.messages import Json
 
@@ -162,6 +164,44 @@ class DriverSettings:
         said = [one for one in self.does if one.command == command]
         own = (one for one in said if gesture and one.gesture == gesture)
         return next(own, None) or next((one for one in said if not one.gesture), None)
+
+    def check_options(self, *known: str) -> None:
+        """Refuse options that the driver does not have.
+
+        Raises:
+            UsageError: there is one.
+        """
+        if unknown := sorted(self.options.keys() - {*known}):
+            message = f'there is no option "{unknown[0]}". Write {one_of(known)}.'
+            raise UsageError(f"{self.place}: {message}")
+
+    def choice(self, name: str, *allowed: str) -> str:
+        """An option that is one of several words; the first is the default.
+
+        Raises:
+            UsageError: it is another word.
+        """
+        text = self.options.get(name, allowed[0])
+        if text not in allowed:
+            words = one_of(one for one in allowed if one)
+            raise UsageError(f'{self.place}: {name} is "{text}". Write {words}.')
+        return text
+
+    def number(self, name: str, low: float, high: float, usual: float) -> float:
+        """An option that is a number between two others.
+
+        Raises:
+            UsageError: it is not.
+        """
+        text = self.options.get(name, str(usual))
+        try:
+            number = float(read_value("number", text))
+        except BadValue:
+            number = math.nan
+        if not low <= number <= high:
+            message = f'{name} is "{text}". Write a number from {low:g} to {high:g}.'
+            raise UsageError(f"{self.place}: {message}")
+        return number
 
 
 def read_driver(reader: Reader, node: Node) -> DriverSettings:

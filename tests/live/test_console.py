@@ -297,10 +297,11 @@ def test_more_input_than_anybody_hears_is_not_kept() -> None:
 @pytest.mark.parametrize(
     ("option", "message"),
     [
-        (("speed", "0"), 'speed is "0". Write a number above 0, up to 1000.'),
-        (("speed", "nan"), 'speed is "nan". Write a number above 0, up to 1000.'),
-        (("user", "yes"), 'user is "yes". Write true or false.'),
-        (("usr", "true"), 'there is no option "usr". The options are speed, stdin and user.'),
+        (("speed", "0"), 'speed is "0". Write a number from 0.01 to 1000.'),
+        (("speed", "nan"), 'speed is "nan". Write a number from 0.01 to 1000.'),
+        (("user", "yes"), 'user is "yes". Write false or true.'),
+        (("speed", "1_0"), 'speed is "1_0". Write a number from 0.01 to 1000.'),
+        (("usr", "true"), 'there is no option "usr". Write speed, stdin or user.'),
     ],
 )
 def test_a_wrong_option_is_refused(option: tuple[str, str], message: str) -> None:

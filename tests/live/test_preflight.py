@@ -216,8 +216,8 @@ def test_the_drivers_that_need_nothing_pass(name: str) -> None:
 @pytest.mark.parametrize(
     ("option", "told"),
     [
-        ('name="usr" value="true"', 'no option "usr". The options are at, stopping and user.'),
-        ('name="user" value="no"', 'user is "no". Write true or false.'),
+        ('name="usr" value="true"', 'no option "usr". Write at, stopping or user.'),
+        ('name="user" value="no"', 'user is "no". Write false or true.'),
         ('name="stopping" value="20"', "stopping is not a duration. Write it as 20ms."),
     ],
 )

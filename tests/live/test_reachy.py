@@ -332,7 +332,7 @@ def test_a_missing_library_is_named_with_its_remedy(monkeypatch: pytest.MonkeyPa
 @pytest.mark.parametrize(
     ("more", "message"),
     [
-        ('<option name="speed" value="1"/>', 'The driver reachy has no option "speed"'),
+        ('<option name="speed" value="1"/>', 'there is no option "speed". Write at.'),
         ('<option name="at" value="moon"/>', 'There is no place "moon", where the robot stands.'),
         ('<does gesture="nod" by="nod"/>', 'by="nod" is neither "goto" nor a recorded'),
         ('<senses event="touch" by="/x"/>', 'by="/x" is not an address of the daemon'),

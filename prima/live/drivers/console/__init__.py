@@ -23,7 +23,7 @@ from prima.sim.map import Map
 TYPED_MS = 100
 """How long saying typed words takes, so that the robot can stop asking before it hears them."""
 TICK_S = 0.02
-FASTEST = 1000.0
+SLOWEST, FASTEST = 0.01, 1000.0
 
 
 class ConsoleSaying(NamedTuple):
@@ -67,13 +67,12 @@ class ConsoleDriver(Driver):
         Raises:
             UsageError: an option is wrong.
         """
-        unknown = sorted(self.settings.options.keys() - {"speed", "user", "stdin"})
-        if unknown:
-            message = f'{self.settings.place}: there is no option "{unknown[0]}".'
-            raise UsageError(f"{message} The options are speed, stdin and user.")
-        self._speed = self._read_speed()
-        seen, source = self._flag("user"), _standard_input()
-        if self._flag("stdin") and source is not None and self._lines is None:
+        self.settings.check_options("speed", "user", "stdin")
+        self._speed = self.settings.number("speed", SLOWEST, FASTEST, 1.0)
+        seen = self.settings.choice("user", "true", "false") == "true"
+        reads = self.settings.choice("stdin", "true", "false") == "true"
+        source = _standard_input() if reads else None
+        if source is not None and self._lines is None:
             self._lines = LineSource(source)
             self._task = asyncio.ensure_future(self._read(self._lines))
         if self._sees:
@@ -178,25 +177,6 @@ class ConsoleDriver(Driver):
         """Print to standard error: standard output has the rows of the run."""
         sys.stderr.write(f"{visible(text, chr(10))}\n")
         sys.stderr.flush()
-
-    # Options ----------------------------------------------------------------------------
-
-    def _read_speed(self) -> float:
-        text = self.settings.options.get("speed", "1.0")
-        try:
-            number = float(text)
-        except ValueError:
-            number = 0.0
-        if not 0 < number <= FASTEST:
-            message = f'{self.settings.place}: speed is "{text}".'
-            raise UsageError(f"{message} Write a number above 0, up to {FASTEST:g}.")
-        return number
-
-    def _flag(self, name: str) -> bool:
-        text = self.settings.options.get(name, "true")
-        if text not in ("true", "false"):
-            raise UsageError(f'{self.settings.place}: {name} is "{text}". Write true or false.')
-        return text == "true"
 
 
 def _standard_input() -> int | None:

@@ -274,10 +274,7 @@ def stands(settings: DriverSettings, site: Map) -> Place:
     Raises:
         UsageError: there is no such place, or no such option.
     """
-    unknown = sorted(settings.options.keys() - {"at"})
-    if unknown:
-        message = f'The driver reachy has no option "{unknown[0]}"; it has "at".'
-        raise UsageError(f"{settings.place}: {message}")
+    settings.check_options("at")
     name = settings.options.get("at")
     if name is None:
         return Place(0.0, 0.0, 0.0)

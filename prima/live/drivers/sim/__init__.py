@@ -53,7 +53,8 @@ class SimDriver(Driver):
             UsageError: an option is wrong.
         """
         options, site = self.settings.options, self.site
-        self._check_options()
+        self.settings.check_options("at", "stopping", "user")
+        user = self.settings.choice("user", "true", "false")
         at = options.get("at", next(iter(site.places), ""))
         if at not in site.places and at:
             raise UsageError(f'{self.settings.place}: the map has no place "{at}".')
@@ -64,19 +65,10 @@ class SimDriver(Driver):
             raise UsageError(message) from None
         self._stand_at(at)
         heading, (x, y) = self.world.heading, self.world.position
-        if options.get("user", "true") == "true":
+        if user == "true":
             angle = math.radians(heading)
             self.world.put("user", (x + math.cos(angle), y + math.sin(angle)))
         self._later, self._at, self._sees = [], None, Sees(False)
-
-    def _check_options(self) -> None:
-        """Refuse unknown options, and a ``user`` that is neither true nor false."""
-        options, place = self.settings.options, self.settings.place
-        if unknown := sorted(options.keys() - {"at", "stopping", "user"}):
-            problem = f'there is no option "{unknown[0]}". The options are at, stopping and user.'
-            raise UsageError(f"{place}: {problem}")
-        if (user := options.get("user", "true")) not in ("true", "false"):
-            raise UsageError(f'{place}: user is "{user}". Write true or false.')
 
     def _stand_at(self, place: str) -> None:
         """Make an idle body."""

@@ -13,7 +13,6 @@ from prima.devices import voice
 from prima.devices.goals import LISTEN, RECORD, SAY, Begin, RecordingBounds, Speaks
 from prima.devices.profile import Profile
 from prima.devices.settings import DriverSettings
-from prima.errors import UsageError, one_of
 from prima.grammar.answers import Answers
 from prima.live.driver import Refused, TaskDriver, Unusable, call_in
 from prima.live.drivers.speech.segments import Segments
@@ -306,32 +305,10 @@ def read_options(settings: DriverSettings) -> dict[str, Any]:
     Raises:
         UsageError: one is wrong.
     """
-    given, known = settings.options, [*CHOICES, *NUMBERS, *NAMES]
-    for name in given:
-        if name not in known:
-            message = f'{settings.place}: there is no option "{name}".'
-            raise UsageError(f"{message} The options are {one_of(known)}.")
-    read: dict[str, Any] = {name: given.get(name, "") for name in NAMES}
-    for name, allowed in CHOICES.items():
-        read[name] = given.get(name, allowed[0])
-        if read[name] not in allowed:
-            message = f'{settings.place}: {name} is "{read[name]}".'
-            raise UsageError(f"{message} Write {one_of([one for one in allowed if one])}.")
-    for name, (low, high, usual) in NUMBERS.items():
-        read[name] = _number(settings, name, low, high, usual)
-    return read
-
-
-def _number(settings: DriverSettings, name: str, low: float, high: float, usual: float) -> float:
-    text = settings.options.get(name, str(usual))
-    try:
-        number = float(text)
-    except ValueError:
-        number = high + 1
-    if not low <= number <= high:
-        message = f'{settings.place}: {name} is "{text}".'
-        raise UsageError(f"{message} Write a number from {low:g} to {high:g}.")
-    return number
+    settings.check_options(*CHOICES, *NUMBERS, *NAMES)
+    choices = {name: settings.choice(name, *allowed) for name, allowed in CHOICES.items()}
+    numbers = {name: settings.number(name, *bounds) for name, bounds in NUMBERS.items()}
+    return {name: settings.options.get(name, "") for name in NAMES} | choices | numbers
 
 
 DRIVER = SpeechDriver
