@@ -21,6 +21,8 @@ from prima.grammar.model import GrammarDocument, Mode, Reference, Rule
 from prima.grammar.prefixes import index_choices
 from prima.markup.uris import join, parted
 
+RELATIVE = "Its name is read relative to the document that names it."
+REMOTE = "Only a VoiceXML application fetches it, in a run with --allow-host."
 MOST_DOCUMENTS = 64
 MOST_BYTES = 20_000_000
 """The maximum number of documents of one grammar, and their total size."""
@@ -94,7 +96,7 @@ class Library:
             data = self._fetch(uri)
         except FAILURES as error:
             message = f'The grammar "{uri[:200]}" cannot be fetched: {error}.'
-            remedy = "Its name is read relative to the document that names it."
+            remedy = REMOTE if uri.startswith(("http:", "https:")) else RELATIVE
             self.problems.note(where, "no-such-file", message, remedy)
             return None
         self._bytes += len(data)

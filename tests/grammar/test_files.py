@@ -116,6 +116,7 @@ def test_what_is_wrong_is_told_at_its_place(
     first = problems[0]
     assert (first.place.file, first.code) == (str(folder / file), code)
     assert message in first.message
+    assert ("--allow-host" in first.remedy) == ("http:" in grammar)
 
 
 def test_src_and_content_exclude_each_other(folder: Path) -> None:
