@@ -89,7 +89,9 @@ class Late(Selection):
             late = "" if began - when > LATE else app
         named = record.get("app") or ""
         if named and (record.get("rule") != "X10" or named != late):
-            self.report(16, "X10", f"what {named} has not asked for is told it alone")
+            self.report(
+                16, "X10", f"only {named} hears an utterance that answers none of its questions"
+            )
         self.late_app = late
 
     def note_lapse(self, record: Record) -> None:

@@ -66,7 +66,7 @@ class Streams(Extensions):
     def check_ends(self) -> None:
         """C1 at the end of an instant."""
         for name in sorted(self.ended_trees ^ self.told_ends):
-            ended = "not told" if name in self.ended_trees else "told, but it has not ended"
+            ended = "not recorded" if name in self.ended_trees else "recorded, but it has not ended"
             self.report(13, "C1", f"the end of {name} is {ended}")
 
     def window_of(self, app: str) -> Tree | None:

@@ -77,7 +77,7 @@ class ReachyLink:
                 url, proxy=None, open_timeout=ANSWER_S, close_timeout=CLOSE_S
             )
         except (OSError, WebSocketException) as error:
-            raise Unreachable(f"The daemon does not tell of moves: {error}.") from error
+            raise Unreachable(f"The daemon does not report its moves: {error}.") from error
         self._watching = asyncio.create_task(self._watch(self._socket))
 
     async def check(self) -> None:
