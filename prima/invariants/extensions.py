@@ -99,11 +99,15 @@ class Extensions(FloorRules):
             ab.tree.words_due = False
 
     def stands_right(self, ab: AB) -> None:
-        """X1: a suspended stream resumes where the robot was for it."""
+        """X1: a suspended stream resumes where the robot was for it.
+
+        What is wanted now does not wait for a way back that has been inserted already (O2).
+        """
         place, robot = ab.tree.place, self.robot
         if (
             not ab.tree.suspended
             or ab.inserted
+            or (ab.urgent and ab.tree.put_first())
             or ab.command in GOING
             or "x1" not in self.extensions
         ):

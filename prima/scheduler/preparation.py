@@ -107,6 +107,5 @@ def wanted_now(ab: Behavior) -> bool:
 
 
 def first_of(stream: Stream) -> Behavior | None:
-    """X1, X9: the last AB inserted for a stream to resume with, while it is in memory."""
-    members = reversed(stream.members.values())
-    return next((one for one in members if one.inserted in ("X1", "X9")), None)
+    """X1, X9: an AB inserted for a stream to resume with, while it is in memory."""
+    return next((one for one in stream.members.values() if one.inserted in ("X1", "X9")), None)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from prima.invariants import check
 from prima.messages import (
     Command,
@@ -204,6 +206,55 @@ def test_x1_whatever_waits_in_the_stream_waits_for_the_way_back() -> None:
     assert stage.select() == ["ea#7"]
     stage.at(3000).end("ea#7", x=4.0, y=1.0, heading=0.0)
     assert stage.select() == ["ea#2", "ea#3"]
+
+
+def test_x1_what_is_wanted_now_waits_for_no_way_back_that_waits_itself() -> None:
+    stage = Stage("prima+x1", {"fa": "fa", "ea": "ea", "xa": "ea"})
+    nod = command("gesture", name="nod")
+    steps = [Step(move()), Step(say("One."), (0,)), Step(nod, (0,)), Step(say("Two."), (1,))]
+    stage.request("ea", steps=steps)
+    stage.select()
+    stage.at(500).end("ea#1.1", x=4.0, y=1.0, heading=90.0)
+    assert stage.select() == ["ea#2", "ea#3"]
+    stage.at(600).request("fa", command("turn", angle=10), cause=EVENT)
+    assert stage.select() == ["fa#1"]
+    stage.at(700).end("ea#2")
+    stage.select()
+    stage.request("xa", command("turn", angle=20))
+    assert stage.select() == []
+    stage.at(900).end("fa#1", x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == ["xa#1"] and inserted(stage) == [("X1", "set-position")]
+    point = replace(command("point-by-hand", angle=9), now=True)
+    stage.at(1000).end("ea#3", then=lambda: stage.request("ea", point))
+    assert stage.select() == ["ea#6"]
+    stage.at(1100).end("xa#1", x=0.0, y=0.0, heading=20.0)
+    assert stage.select() == ["ea#5.1"]
+    stage.at(1500).end("ea#5.1", x=4.0, y=1.0, heading=20.0)
+    assert stage.select() == ["ea#4"], "the rest of the stream goes on where it stood"
+    assert len(inserted(stage)) == 1
+    assert check(stage.records, "prima+x1") == []
+
+
+def test_x1_the_response_to_an_answer_does_not_wait_for_the_way_back() -> None:
+    """X7, X10: the question is answered before it is asked once more."""
+    stage = Stage("prima+x1+x7+x10", {"fa": "fa", "ea": "ea", "xa": "ea"})
+    stage.request("ea", move(), say("One."), ask())
+    stage.select()
+    stage.at(500).end("ea#1.1", x=4.0, y=1.0, heading=90.0)
+    assert stage.select() == ["ea#2"]
+    stage.at(600).request("fa", command("turn", angle=10), cause=EVENT)
+    stage.select()
+    stage.at(700).end("ea#2")
+    stage.select()
+    stage.request("xa", command("turn", angle=20))
+    assert stage.select() == []
+    stage.at(900).end("fa#1", x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == ["xa#1"] and inserted(stage) == [("X1", "set-position")]
+    question = stage.mediator.coming_question("ea")
+    assert question is not None
+    stage.at(1000).mediator.answered(question, {"outcome": "filled"}, "X10", EVENT + 1)
+    stage.settle(lambda: stage.request("ea", say("Thank you.")))
+    assert stage.select() == ["ea#5"]
 
 
 def test_x1_a_way_back_that_k1_keeps_does_not_keep_the_floor() -> None:

@@ -252,3 +252,26 @@ def test_x9_what_is_wanted_now_waits_for_no_way_back() -> None:
     stage.at(2100).request("ea", Command("speak", text="Wait!", now=True), words=words())
     assert stage.select() == ["ea#5"]
     assert inserted(stage) == [("X1", "move-head")]
+
+
+def test_x9_the_response_to_an_answer_does_not_resume_the_topic() -> None:
+    """X7, X10: the question is answered while another has the floor, before it is asked."""
+    stage = Stage("prima+x7+x9+x10")
+    stage.request("ea", say("Sorry?"), ask(), words=words())
+    stage.select()
+    steps = [Step(command("tracking-human")), Step(say("Oh!"))]
+    stage.at(500).request("fa", steps=steps, cause=TOUCH)
+    assert stage.select() == ["fa#1.1"]
+    stage.at(1000).end("ea#1")
+    assert stage.select() == ["fa#2"]
+    question = stage.mediator.coming_question("ea")
+    assert question is not None
+    stage.at(1100).mediator.answered(question, {"outcome": "filled"}, "X10", TOUCH + 1)
+    response = [say("Thank you."), say("Now.")]
+    stage.settle(lambda: stage.request("ea", *response, words=words()))
+    stage.at(2000).end("fa#2")
+    assert stage.select() == ["ea#3"]
+    stage.at(3000).end("ea#3")
+    assert stage.select() == [] and inserted(stage) == []
+    stage.at(3100).end("fa#1.1")
+    assert stage.select() == ["ea#5"] and inserted(stage) == [("X9", "speak")]
