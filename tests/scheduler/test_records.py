@@ -114,6 +114,22 @@ def test_an_ab_that_waits_for_several_names_them_all() -> None:
     }
 
 
+def test_those_whom_an_ab_waits_for_are_named_in_one_order() -> None:
+    stage = Stage()
+    steps = [Step(say(), ()) for _ in range(20)]
+    stage.request("fa", steps=[*steps, Step(say(), tuple(range(20)))])
+    stage.select()
+    names = recorded(stage, "fa#21", "request")["parents"]
+    assert names == sorted(f"fa#{number}" for number in range(1, 21))
+
+
+def test_a_unit_around_items_is_recorded_without_a_place() -> None:
+    stage = Stage()
+    stage.open("ea", 5, "speaker")
+    stage.select()
+    assert "source" not in recorded(stage, "ea#1", "request")
+
+
 def test_a_command_that_leaves_is_recorded_so_and_additional_arguments_apart() -> None:
     table = dict(TABLE_4_2)
     table["topological-move"] = replace(table["topological-move"], extra=frozenset({"curve"}))

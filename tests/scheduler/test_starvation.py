@@ -43,6 +43,14 @@ def test_e4_a_bound_counts_the_loops_that_were_begun_while_another_waited(bound:
     assert found == ([("ea#1", 20, "fa#1.21")] if bound > 20 else [])
 
 
+def test_e4_the_first_loop_is_not_counted() -> None:
+    stage = Stage(bound=2)
+    stage.request("fa", TRACK)
+    stage.request("ea", TURN)
+    assert stage.select() == ["fa#1.1"]
+    assert loops(stage) == {"ea#1": 3}
+
+
 def test_e4_it_is_told_once_whatever_the_patience() -> None:
     stage = tracked(patience=12_000)
     stage.at(1).request("ea", TURN)
