@@ -132,11 +132,11 @@ def shown_cues(cues: tuple[Cue, ...]) -> list[dict[str, Json]]:
 
 def _asked_by_author(ab: Behavior) -> Record:
     """The request behind an AB: the arguments of its Command, and its line."""
-    of = ab.command or ab.group
-    fields: Record = {}
+    what = ab.command or ab.group
+    assert what is not None
+    fields: Record = {"source": line_of(what.source)}
     if (command := ab.command) is not None:
         fields["args"], fields["extra"] = command.args or None, command.extra or None
         fields["cues"] = shown_cues(command.cues) if command.cues else None
         fields["order"] = "now" if command.now else None
-    fields["source"] = line_of(of.source if of is not None else "")
     return fields
