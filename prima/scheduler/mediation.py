@@ -81,6 +81,8 @@ class Mediation:
     """The ABs that the latest selection started."""
     resumed: list[Stream] = field(default_factory=list)
     """The streams that it resumed (C2)."""
+    coming: set[str] = field(default_factory=set)
+    """The applications that this instant has yet to load (E6)."""
     suspensions: int = 0
     """How often streams were suspended, as a counter (S2d)."""
     starved: int = 0
@@ -104,8 +106,8 @@ class Mediation:
     @property
     def shared(self) -> bool:
         """Whether applications must leave the speaker to others after a time (E6)."""
-        others = sum(not app.gone for app in self.memory.apps.values()) > 1
-        return others and self.patience > 0 and self.policy.floor
+        there = sum(not app.gone for app in self.memory.apps.values()) + len(self.coming)
+        return there > 1 and self.patience > 0 and self.policy.floor
 
     @property
     def longest_turn(self) -> int:

@@ -10,7 +10,7 @@ neighbouring modules, which this module calls.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from prima.language.commands import ABSENCE_MS, PATIENCE_MS, CommandType
 from prima.messages import CloseUnit, Data, LeaveState, OpenUnit, Order, Request
@@ -52,6 +52,10 @@ class Mediator:
 
     # Applications ---------------------------------------------------------------------
 
+    def expect(self, names: Iterable[str]) -> None:
+        """Applications will be loaded at this instant: each starts beside the others (E6)."""
+        self._all.coming = {*names}
+
     def load(self, name: str, kind: str, lang: str = "", order: int | None = None) -> None:
         """An application starts; ``lang`` is its language, if known.
 
@@ -62,6 +66,7 @@ class Mediator:
         if order is None:
             order = before.order if before is not None else len(self.memory.apps)
         self.memory.apps[name] = Application(name, kind, order)
+        self._all.coming.discard(name)
         data = {"kind": kind, **({"lang": lang} if lang else {})}
         self.recorder.add("load", "mediator", app=name, data=data)
 

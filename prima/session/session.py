@@ -108,7 +108,7 @@ class Session:
         self.recorder.now = now
         if self._wiring.turns:
             self._wiring.tell_turns()
-        for value in sorted(inbound, key=self._class) if len(inbound) > 1 else inbound:
+        for value in self._in_order(inbound) if len(inbound) > 1 else inbound:
             if type(value) is Occurred:  # by far the most common
                 self._occurred(value)
             else:
@@ -156,6 +156,12 @@ class Session:
     def idle(self) -> bool:
         """Whether nothing runs or waits in working memory."""
         return not self.mediator.memory.behaviors
+
+    def _in_order(self, inbound: Collection[Inbound]) -> list[Inbound]:
+        """V3: what happens at an instant, in order; applications loaded then start together (E6)."""
+        loads = (one.app for one in inbound if isinstance(one, ApplicationLoaded))
+        self.mediator.expect(name for name in loads if self._apps.there(name) is None)
+        return sorted(inbound, key=self._class)
 
     def _class(self, value: Inbound) -> tuple[int, int, int]:
         """V3: sort by class, and ends by application, the active stream's first, and by number."""
@@ -290,15 +296,13 @@ class Session:
             answer = {key: one for key, one in asdict(value).items() if one and key != "app"}
             self._record("fetched", "environment", app=value.app, data=answer)
         else:
-            data: dict[str, Json] = {"uri": value.uri}
-            serial, outcome = value.serial, value.outcome
             self._record(
                 "transferred",
                 "environment",
                 app=value.app,
-                serial=serial,
-                outcome=outcome,
-                data=data,
+                serial=value.serial,
+                outcome=value.outcome,
+                data={"uri": value.uri},
             )
         app = self._apps.there(value.app)
         if app is not None:
@@ -335,8 +339,6 @@ class Session:
             for name, data in due:
                 self._wiring.own_event(app, name, dict(data), reactive=False)
             self._wiring.act(app)
-
-    # Outbound -----------------------------------------------------------------
 
 
 def place_data(value: ApplicationLoaded | ApplicationUnloaded) -> dict[str, Json] | None:
