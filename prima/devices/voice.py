@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
-from prima.messages import Cue
+from prima.messages import STOPS, Cue
 
 RATES = {"en": 14.0, "ja": 8.0, "zh": 5.0, "ko": 6.0}
 """Letters a second, unless a robot profile says otherwise."""
@@ -16,8 +16,6 @@ PAUSE_MS = 300
 """The time that every utterance takes in addition to its letters."""
 SENTENCE_MS = 250
 """The pause after a sentence inside an utterance."""
-STOPS = ".!?。！？"
-"""Characters that end a sentence."""
 KANJI = 2.0
 """A kanji in Japanese is read as about two kana."""
 

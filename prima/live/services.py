@@ -19,11 +19,10 @@ from prima.errors import UsageError
 from prima.live.answers import check_type, hidden, read_json, said_by_model
 from prima.live.asking import ServiceRequests, in_thread
 from prima.loading.web import form_request
-from prima.messages import Data, Fetched, Inbound, Json, Order
+from prima.messages import SERVICE, Data, Fetched, Inbound, Json, Order
 from prima.sim.happenings import Reply
 from prima.sim.services import (
     NO_ANSWER,
-    SCHEME,
     Directory,
     Web,
     answer,
@@ -112,7 +111,7 @@ class LiveServices:
             return True
         endpoint = self._endpoints.for_order(order)
         if endpoint is None:  # unknown services are not asked; other hosts by a post
-            return not fetches or name.startswith(SCHEME)
+            return not fetches or name.startswith(SERVICE)
         return endpoint.repeats
 
     def order(self, now: int, order: Order) -> None:
@@ -145,7 +144,7 @@ class LiveServices:
     async def _asked(self, order: Order) -> Inbound:
         fetches, name = "method" in order.data, str(order.data["to"])
         endpoint = self._endpoints.for_order(order)
-        if endpoint is None and fetches and not name.startswith(SCHEME):
+        if endpoint is None and fetches and not name.startswith(SERVICE):
             return await self._outside(order)
         if endpoint is None:
             hint = "name it in the document of --services"
@@ -169,7 +168,7 @@ class LiveServices:
     async def _fetch(self, endpoint: Endpoint, order: Order, params: Data) -> Inbound:
         """The bytes of a service's answer, for VoiceXML."""
         uri, method = str(order.data["to"]), str(order.data["method"])
-        where = endpoint.uri if uri.startswith(SCHEME) else uri
+        where = endpoint.uri if uri.startswith(SERVICE) else uri
         repeats = method == "get" or endpoint.repeats
         body = await self._ask(endpoint, lambda: form_request(where, method, params), repeats)
         found = answer(order.app, order.serial, uri, body)

@@ -27,6 +27,10 @@ def line_of(source: str) -> str | None:
 
 BEEP: Final = "[beep]"
 """The signal before a recording, as written in a text."""
+STOPS: Final = ".!?。！？"
+"""Characters that end a sentence of a text."""
+SERVICE: Final = "service:"
+"""The prefix of the URI of a scenario's service."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,14 +10,12 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 from urllib.parse import urlsplit
 
 from prima.language.values import shown
-from prima.messages import Data, Fetched, Inbound, Occurred, Order
+from prima.messages import SERVICE, Data, Fetched, Inbound, Occurred, Order
 from prima.sim.happenings import Reply, Service
 
 if TYPE_CHECKING:
     from prima.devices.endpoints import Endpoint
 
-SCHEME = "service:"
-"""The prefix of the URI of a scenario's service."""
 NO_ANSWER = "the host does not answer"
 SILENCE = 10_000
 """Simulated milliseconds after which an application is notified that a host does not answer."""
@@ -48,8 +46,8 @@ class Directory(Generic[Found]):
 
     def of(self, uri: str, app: str) -> Found | None:
         """The service that a URI denotes: the one named, or the longest matching address."""
-        if uri.startswith(SCHEME):
-            return self.named(uri.removeprefix(SCHEME), app)
+        if uri.startswith(SERVICE):
+            return self.named(uri.removeprefix(SERVICE), app)
         below = [
             one
             for one in self._services.values()
@@ -64,7 +62,7 @@ class Directory(Generic[Found]):
 
     def lacking(self, name: str) -> str:
         """Why an application gets no answer from a name."""
-        name = name.removeprefix(SCHEME)
+        name = name.removeprefix(SERVICE)
         if name in self._names:
             return f'the service "{name}" is another application\'s'
         return f'there is no service "{name}"'
@@ -106,12 +104,12 @@ class Services:
     def _outside(self, now: int, order: Order) -> None:
         """A fetch that no service of the scenario answers: a host does, if it is allowed."""
         uri, data = order.data["to"], order.data
-        if self._web is not None and not uri.startswith(SCHEME):
+        if self._web is not None and not uri.startswith(SERVICE):
             asking = self._web(order.app, uri, data["method"], data["params"])
             self._begun.append((now, order, asking))
             return
         problem = not_allowed(uri)
-        if uri.startswith(SCHEME):
+        if uri.startswith(SERVICE):
             problem = self._services.lacking(uri)
         self._later(now, 1, Fetched(order.app, order.serial, uri, problem=problem))
 

@@ -9,6 +9,7 @@ from typing import Any
 from prima.grammar.text import fold
 from prima.interpreter.selection import takes
 from prima.language.values import read_value, shown
+from prima.messages import SERVICE
 from prima.sim.expectations import Expectation
 from prima.sim.triggers import fires, holds
 from prima.testing.facts import Fact
@@ -52,9 +53,7 @@ MATCHES: dict[str, Callable[[str, Fact], bool]] = {
 
 def _to(word: str, target: str) -> bool:
     """Whether a target is a service with this name, or a URI with this prefix."""
-    return (
-        target == word or target == f"service:{word}" or (":" in word and target.startswith(word))
-    )
+    return target in (word, SERVICE + word) or (":" in word and target.startswith(word))
 
 
 def _reason(word: str, outcome: str) -> bool:

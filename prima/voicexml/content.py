@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from prima.interpreter.places import source
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, no_item, undeclared
 from prima.markup.tree import Node
-from prima.messages import Json, Say
+from prima.messages import SERVICE, Json, Say
 from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
 from prima.voicexml.access import host_of_page, may_read
 from prima.voicexml.dom import DOM, plain_tree
@@ -25,8 +25,6 @@ from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 STEP_TAGS = 10
 """How many tags of a ``data`` document count as one step."""
-SERVICE = "service:"
-"""The prefix of URIs of a scenario's services."""
 
 
 class Content(Speaker):

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 
 from prima.language.values import milliseconds
-from prima.messages import Cue
+from prima.messages import STOPS, Cue
 
 PAUSES = {"none": 0, "x-weak": 100, "weak": 250, "medium": 500, "strong": 750, "x-strong": 1000}
 """The duration of a break of each strength, in ms (SSML 1.0, 3.2.3)."""
@@ -20,7 +20,6 @@ MAX_CUES = 1000
 """How many pauses, rates and marks a prompt may have; further ones have no effect."""
 MAX_NAME = 200
 """Characters of a mark's name that are kept."""
-STOPS = ".!?。！？"
 NUMBER = re.compile(r"([+-]?)([0-9]{1,9}(?:\.[0-9]{0,9})?|\.[0-9]{1,9})(%?)")
 
 
