@@ -108,9 +108,11 @@ class _Hoister:
             if not self.shares:
                 self.script.others += names
                 return
+        # A pattern would be a block at the beginning of a statement, or continue the line before.
+        pattern = first is not None and first.type != "identifier"
+        self._move(node.children[0], names, "0," if pattern else "")
         last = node.children[-1]
-        open_ended = last.type != ";" or last.is_missing
-        if self._move(node.children[0], first, names) and open_ended:
+        if last.type != ";" or last.is_missing:
             end = self.code.end(node)
             self.edits.append((end, end, ";"))  # the next line might continue it now
 
@@ -118,16 +120,13 @@ class _Hoister:
         """``for (var x in y)``."""
         kind, left = node.child_by_field_name("kind"), node.child_by_field_name("left")
         if kind is not None and kind.type == "var" and left is not None:
-            self._move(kind, left, bound_names(self.code, left))
+            self._move(kind, bound_names(self.code, left))
 
-    def _move(self, word: Node, first: Node | None, names: list[str]) -> bool:
-        """Turn declarations into assignments, unless they begin with a pattern."""
-        moves = first is not None and first.type == "identifier"
-        if moves:
-            start, end = self.code.start(word), self.code.end(word)
-            self.edits.append((start, end, " " * (end - start)))
-        (self.script.variables if moves else self.script.others).extend(names)
-        return moves
+    def _move(self, word: Node, names: list[str], instead: str = "") -> None:
+        """Turn declarations into assignments, which begin with something instead of the word."""
+        start, end = self.code.start(word), self.code.end(word)
+        self.edits.append((start, end, instead.ljust(end - start)))
+        self.script.variables += names
 
     def _named(self, node: Node) -> None:
         """Handle the declaration of a function or class."""

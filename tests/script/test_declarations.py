@@ -78,6 +78,11 @@ class Scopes:
         (["var ap_ = 1, do_ = 2, di_ = 3, lo_ = 4; function f() { return di_; }", "di_ = 5; lo_++;"], "[ap_, do_, f(), lo_]", [1, 2, 5, 5]),
         (["class K { m() { var x = 1; return x; } }"], "[new K().m(), typeof x]", [1, "undefined"]),
         (["var a = 1; let b = 2; function f() {} c = 3; var all = [delete a, delete b, delete document.f, delete c];"], "[all, a, b, typeof f, typeof c]", [[False, False, False, True], 1, 2, "function", "undefined"]),
+        (["var {a, b: {c = 2}, ...rest} = {a: 1, b: {}, z: 3}, n = 4"], "[a, c, rest, n]", [1, 2, {"z": 3}, 4]),
+        (["var [p] = [1]; function f() { return p; } p = 2;", "p = 3;"], "[f(), p]", [3, 3]),
+        (["var a = 1\nvar [b] = [2]\nvar {c} = {c: 3}\na++"], "[a, b, c]", [2, 2, 3]),
+        (["const {a, b} = {a: 1, b: 2}; let [c] = [3]; function f() { return a + b + c++; }", "f();"], "c", 4),
+        (["for (var {n} = {n: 0}, i = 5; n < 3; n++); for (var {length} of ['ab']); if (n) var [m] = [6]"], "[n, i, length, m]", [3, 5, 2, 6]),
         ([r"var \u0061b = 1; function f\u0061() { return \u{61}b; } l\u{6f}ose = 2; let \u0063 = 3;"], "[ab, fa(), loose, c]", [1, 1, 2, 3]),
     ],
 )  # fmt: skip
@@ -133,6 +138,15 @@ def test_what_was_declared_before_an_error_is_there() -> None:
         scopes.run("var a = 1; function f() { return 3; }\nfunction g() {}   nope();")
     assert (caught.value.line, caught.value.column) == (2, 19)
     assert scopes.value("[a, f()]") == [1, 3]
+
+
+def test_what_a_pattern_declared_before_an_error_is_there() -> None:  # ECMA-262, 14.3.3
+    scopes = Scopes()
+    scopes.run("var a = 0; function f() { return a; }")
+    with pytest.raises(ScriptError) as caught:
+        scopes.run("var [a] = [1], {b} = {b: f()};\n  nope();")
+    assert (caught.value.line, caught.value.column) == (2, 3)
+    assert scopes.value("[a, b, f()]") == [1, 1, 1]
 
 
 def test_a_script_keeps_its_lines() -> None:

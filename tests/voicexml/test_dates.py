@@ -22,6 +22,7 @@ DATES = [
     ("new Date().getHours()", 10),
     ("new Date().getYear()", 105),
     ("new Date().getTimezoneOffset()", 0),
+    ("[1 / new Date(-1).getTimezoneOffset() > 0, String(new Date(NaN).getTimezoneOffset())]", [True, "NaN"]),
     ("new Date().toLocaleString()", "3/1/2005, 10:00:00 AM"),
     ("new Date().toUTCString()", "Tue, 01 Mar 2005 10:00:00 GMT"),
     ("new Date().toGMTString()", "Tue, 01 Mar 2005 10:00:00 GMT"),

@@ -124,7 +124,7 @@
   } });
   method(own, 0, {
     getYear() { return apply(fullYear, this, []) - 1900; },
-    getTimezoneOffset() { return apply(getTime, this, []) * 0; },
+    getTimezoneOffset() { return apply(getTime, this, []) * 0 + 0; },
     toString() { return said(this, full); },
     toDateString() { return said(this, dayOf); },
     toTimeString() { return said(this, (date) => clockOf(date) + ' GMT+0000 (UTC)'); },
