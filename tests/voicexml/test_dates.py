@@ -45,6 +45,10 @@ DATES = [
     ("Date.parse('2005-13-01')", float("nan")),
     ("(function (d) { d.setHours(26); d.setYear(99); return d.toString(); })(new Date(0))",
      "Sat Jan 02 1999 02:00:00 GMT+0000 (UTC)"),
+    ("['setHours', 'setUTCMonth', 'setYear'].map(function (name) {"
+     " var d = new Date(0); return [d[name](undefined), d.getTime()].map(isNaN); })", [[True] * 2] * 3),
+    ("[-20721, -721, 0, 20721].map(function (year) { return new Date(year, 0).toDateString().slice(11); })",
+     ["-20721", "-0721", "1900", "20721"]),
     ("new Date() instanceof Date && new Date().constructor === Date", True),
     ("Date.length + Date.name + Date.prototype.getHours.name", "7DategetHours"),
     ("Object.keys(Date.prototype).length", 0),

@@ -2,7 +2,7 @@
   'use strict';
   const own = Native.prototype, UTC = Native.UTC;
   const apply = Reflect.apply, make = Reflect.construct, getTime = own.getTime;
-  const setDay = own.setUTCFullYear, setHours = own.setUTCHours;
+  const setTime = own.setTime, setDay = own.setUTCFullYear, setHours = own.setUTCHours;
   const DAYS = ['Sun', 'Mon', 'Tue', 'Wed', 'Thu', 'Fri', 'Sat'];
   const MONTHS = ['Jan', 'Feb', 'Mar', 'Apr', 'May', 'Jun', 'Jul', 'Aug', 'Sep', 'Oct', 'Nov', 'Dec'];
   const ZONES = { EST: -5, EDT: -4, CST: -6, CDT: -5, MST: -7, MDT: -6, PST: -8, PDT: -7 };
@@ -24,6 +24,10 @@
     const made = make(Native, [0]);
     apply(setDay, made, [year, month, day]);
     return apply(setHours, made, [hours, minutes, seconds, ms]);
+  };
+  const written = (write, date, given) => {  // the engine leaves a date as it is if a part is NaN
+    const time = apply(write, date, given);
+    return time === time ? time : apply(setTime, date, [NaN]);
   };
   const minutesOf = (zone) => {
     if (!zone || zone === 'Z') return 0;
@@ -74,9 +78,9 @@
   }
 
   function dayOf(date) {
-    const year = date.getUTCFullYear(), sign = year < 0 ? '-' : '';
+    const year = date.getUTCFullYear(), digits = String(Math.abs(year)).padStart(4, '0');
     return DAYS[date.getUTCDay()] + ' ' + MONTHS[date.getUTCMonth()] + ' '
-      + two(date.getUTCDate()) + ' ' + sign + ('000' + Math.abs(year)).slice(year > 9999 ? 3 : -4);
+      + two(date.getUTCDate()) + ' ' + (year < 0 ? '-' : '') + digits;
   }
   const clockOf = (date) => two(date.getUTCHours()) + ':' + two(date.getUTCMinutes()) + ':'
     + two(date.getUTCSeconds());
@@ -114,13 +118,15 @@
       'Milliseconds']) {
     const read = own['getUTC' + part], write = own['setUTC' + part];
     method(own, 0, { ['get' + part]() { return apply(read, this, []); } });
-    if (write)
-      method(own, write.length, { ['set' + part](...given) { return apply(write, this, given); } });
+    if (write) method(own, write.length, {
+      ['set' + part](...given) { return written(write, this, given); },
+      ['setUTC' + part](...given) { return written(write, this, given); },
+    });
   }
   const fullYear = own.getFullYear;
   method(own, 1, { setYear(year) {
     const given = Math.trunc(Number(year));
-    return apply(setDay, this, [given >= 0 && given <= 99 ? 1900 + given : given]);
+    return written(setDay, this, [given >= 0 && given <= 99 ? 1900 + given : given]);
   } });
   method(own, 0, {
     getYear() { return apply(fullYear, this, []) - 1900; },
