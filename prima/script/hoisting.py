@@ -8,7 +8,6 @@ top-level ``var`` is run as an assignment to an existing variable of the scope, 
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -148,31 +147,26 @@ class _Hoister:
 
 
 def in_turn(codes: list[str]) -> list[str]:
-    """Scripts for one function that keep their functions apart where these have the same name.
+    """Scripts for one function, each of which declares its functions when its turn comes.
 
-    As ECMAScript hoists declarations, the last one would count for all of the scripts.
+    As ECMAScript hoists declarations, earlier ones would see them, and their variables of the same
+    names would count for later ones.
     """
-    if sum("function" in code for code in {*codes}) < 2:
+    if len(codes) < 2:
         return codes
-    declared = {code: _functions(code) for code in codes}
-    counts = Counter(name for places in declared.values() for name in places)
-    return [_assigned(code, declared.get(code, {}), counts) for code in codes]
+    made = {code: _assigned(code) if "function" in code else code for code in codes}
+    return [made[code] for code in codes]
 
 
-def _functions(code: str) -> dict[str, tuple[int, int]]:
-    """Where a script declares functions at its top level, by their names."""
+def _assigned(code: str) -> str:
+    """A script that begins with its top-level functions, assigned to variables."""
     parsed = parse_script(code)
     if parsed is None or not parsed.sound:
-        return {}
-    return {
-        parsed.name(name): (parsed.start(node), parsed.end(node))
+        return code
+    found = {
+        parsed.start(node): (parsed.end(node), parsed.name(name))
         for node in parsed.root.children
         if node.type in DECLARED_FUNCTIONS and (name := node.child_by_field_name("name"))
     }
-
-
-def _assigned(code: str, places: dict[str, tuple[int, int]], counts: Counter[str]) -> str:
-    """A script that first assigns those functions whose names other scripts declare as well."""
-    again = sorted((*places[name], name) for name in places if counts[name] > 1)
-    first = "".join(f"var {name} = {code[start:end]};" for start, end, name in again)
-    return first + spliced(code, ((start, end, "") for start, end, _ in again))
+    first = "".join(f"var {name} = {code[start:end]};" for start, (end, name) in found.items())
+    return first + spliced(code, ((start, end, ";") for start, (end, _) in found.items()))
