@@ -49,6 +49,10 @@ DATES = [
      " var d = new Date(0); return [d[name](undefined), d.getTime()].map(isNaN); })", [[True] * 2] * 3),
     ("[-20721, -721, 0, 20721].map(function (year) { return new Date(year, 0).toDateString().slice(11); })",
      ["-20721", "-0721", "1900", "20721"]),
+    ("[-271820, -1, 0, 49, 99, 275759].filter(function (year) { var d = new Date(0); d.setFullYear(year);"
+     " return ['toString', 'toUTCString', 'toISOString'].some("
+     "function (way) { return Date.parse(d[way]()) != d.getTime(); }); })", []),
+    ("[Date.parse('3/1/05 10:00'), Date.parse('1-Mar-2005 10:00'), Date.parse('Mar 1, 2005 10:00')]", [NOW] * 3),
     ("new Date() instanceof Date && new Date().constructor === Date", True),
     ("Date.length + Date.name + Date.prototype.getHours.name", "7DategetHours"),
     ("Object.keys(Date.prototype).length", 0),

@@ -61,7 +61,7 @@
       else if (name) hours -= ZONES[name[0].toUpperCase()] || 0;
       rest += zone.replace(OFFSET, ' ').replace(ZONE, ' ');
     }
-    const named = NAMED.exec(rest), numbers = rest.match(/\d+/g) || [];
+    const named = NAMED.exec(rest), numbers = rest.match(/\s-\d{4,}|\d+/g) || [];
     if (numbers.length !== (named ? 2 : 3)) return NaN;
     if (named) {
       const month = MONTHS.findIndex((one) => one.toLowerCase() === named[1].toLowerCase()) + 1;
@@ -72,8 +72,9 @@
       if (numbers[0] > 31) numbers.push(numbers.shift());
     }
     const [month, day, given] = [+numbers[0], +numbers[1], +numbers[2]];
+    const short = numbers[2].length < 3;
     if (month < 1 || month > 12 || day < 1 || day > 31) return NaN;
-    const year = given < 50 ? 2000 + given : given < 100 ? 1900 + given : given;
+    const year = short ? (given < 50 ? 2000 : 1900) + given : given;
     return at(year, month - 1, day, hours, minutes, seconds, ms);
   }
 
