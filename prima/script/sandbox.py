@@ -11,7 +11,8 @@ from pathlib import Path
 
 MEMORY_LIMIT = 16 * 1024 * 1024
 """Bytes that one engine may use."""
-STACK_LIMIT = 256 * 1024
+STACK_LIMIT = 1024 * 1024
+"""Bytes of its stack: some 600 calls of a function within one another."""
 MAY_ASK_TIME = re.compile(
     r"""Date|\bthis\b|globalThis|eval|Function|constructor|Reflect|Object|\\"""
     r"""|\[(?!\s*(?:\d*|"[^"]*"|'[^']*')\s*\])"""

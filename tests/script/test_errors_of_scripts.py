@@ -127,3 +127,12 @@ def test_a_bigint_is_told_in_words() -> None:
     scopes = tuple(engine.named(name) for name in SCOPES)
     with pytest.raises(ScriptError, match="of a type that is absent here, such as BigInt"):
         engine.value("10n", scopes)
+
+
+def test_functions_may_call_themselves_hundreds_of_times_and_no_more() -> None:
+    engine = Engine()
+    scopes = tuple(engine.named(name) for name in SCOPES)
+    engine.script("function sum(n) { return n ? n + sum(n - 1) : 0 }", scopes[1], scopes)
+    assert engine.value("sum(500)", scopes) == 125_250
+    with pytest.raises(ScriptError, match="call stack"):
+        engine.value("sum(100000)", scopes)
