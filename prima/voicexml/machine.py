@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 
 from prima.interpreter.selection import Counters
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, thrown_of
@@ -20,6 +20,7 @@ from prima.voicexml.items import Items
 from prima.voicexml.owner import VoiceApplication
 from prima.voicexml.questions import Questions
 from prima.voicexml.scopes import Documents
+from prima.voicexml.settings import answering
 from prima.voicexml.speech import Speech
 from prima.voicexml.state import (
     Context,
@@ -53,8 +54,8 @@ class Machine:
         """Names and URIs that a real host, not a service, has answered, and where it did."""
         self.queue: list[Queued] = []
         """Prompts and Commands that are played when a wait is reached (4.1.8)."""
-        self.asking: Node | None = None
-        """The last prompt queued: its timeout and bargein count."""
+        self.asking: Mapping[str, str] | None = None
+        """How the last prompt queued may be answered: its timeout and bargein count."""
         self.reprompted = False
         self.gone = ""
         """The event by which the user left: nothing is waited for any more (1.5.4)."""
@@ -74,8 +75,8 @@ class Machine:
 
     def say(self, text: str, lang: str, place: str, prompt: Node | None = None) -> None:
         """Queue something to be said."""
-        if prompt is not None or text:
-            self.asking = prompt
+        if self.context is not None and (prompt is not None or text):
+            self.asking = answering(self.context, prompt)
         if text:
             self.app.count_output(len(text), self.document.node)
             self.queue.append(Command("speak", text=text, lang=lang, source=place))

@@ -8,7 +8,7 @@ machine, and the application that owns it by what is here alone.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from typing import Protocol
 
 from prima.interpreter.protocol import App
@@ -188,8 +188,8 @@ class MachineOwner(Protocol):
     """Names and URIs that a real host, not a service, has answered, and where it did."""
     queue: list[Queued]
     """Prompts and Commands that are played when a wait is reached (4.1.8)."""
-    asking: Node | None
-    """The last prompt queued."""
+    asking: Mapping[str, str] | None
+    """How the last prompt queued may be answered."""
     reprompted: bool
     gone: str
     """The event by which the user left."""

@@ -13,7 +13,7 @@ from prima.messages import Heard as Spoken
 from prima.voicexml.arranging import Arranged, Queued, take_last_said
 from prima.voicexml.fetching import gathered
 from prima.voicexml.owner import MachineOwner
-from prima.voicexml.settings import setting
+from prima.voicexml.settings import answering, setting
 from prima.voicexml.state import Context, Flow, Resume, TakenUtterance, thrown_outside
 
 
@@ -41,15 +41,10 @@ class Questions:
 
     def _question(self, context: Context, item: Node, asked: Command | None) -> Command:
         """The question made of an item's last prompt (4.1.5, 4.1.7)."""
-        prompt, self.owner.asking = self.owner.asking, None
-
-        def wanted(name: str) -> str:
-            own = prompt.get(name) if prompt is not None else ""
-            return own or setting(context, name)
-
-        timeout, bargein = milliseconds(wanted("timeout"), 5000), wanted("bargein") != "false"
+        wanted, self.owner.asking = self.owner.asking or answering(context), None
+        timeout, bargein = milliseconds(wanted["timeout"], 5000), wanted["bargein"] != "false"
         cues = self.owner.content.question_cues(asked, self.owner.queue)
-        cues = (*self._cues(context, item, bargein and wanted("bargeintype") == "hotword"), *cues)
+        cues = (*self._cues(context, item, bargein and wanted["bargeintype"] == "hotword"), *cues)
         own = item.get("xml:lang") if item.tag != "menu" else ""
         lang = asked.lang if asked and asked.lang else own or context.page.lang
         args: dict[str, Json] = {"timeout": f"{timeout}ms", "bargein": bargein}

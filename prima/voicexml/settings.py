@@ -19,6 +19,8 @@ DEFAULTS = {
     "confidencelevel": str(USUAL_CONFIDENCE),
 }
 """Defaults of properties."""
+ANSWERING = ("timeout", "bargein", "bargeintype")
+"""Attributes of a prompt that say how it may be answered (4.1)."""
 
 
 def form_items(context: Context) -> list[Node]:
@@ -41,3 +43,9 @@ def setting(context: Context, name: str) -> str:
             if child.get("name") == name and (kind is None or fits(kind, value)):
                 return value
     return DEFAULTS.get(name, "")
+
+
+def answering(context: Context, prompt: Node | None = None) -> dict[str, str]:
+    """How a prompt may be answered: its attributes, or the properties as it is queued (4.1.7)."""
+    own = prompt.attributes if prompt is not None else {}
+    return {name: own.get(name) or setting(context, name) for name in ANSWERING}

@@ -69,6 +69,15 @@ def test_a_long_prompt_and_its_question_are_one_wait(tmp_path: Path) -> None:
     assert took > 59 and took * 1000 <= delay.lasts < took * 1000 + 1100
 
 
+def test_a_question_waits_as_long_as_where_its_prompt_is_queued(tmp_path: Path) -> None:
+    body = """<form><property name="timeout" value="30s"/><block>Well?</block>
+        <field name="a" type="boolean"><property name="timeout" value="1s"/></field></form>"""
+    found, fa, ea = voiced(tmp_path, body)
+    (delay,) = found.delays
+    took = waited(run(tmp_path, fa, ea, TOUCH, "120s"))
+    assert took > 29 and took * 1000 <= delay.lasts
+
+
 def test_a_recording_counts_its_beep_and_its_silence(tmp_path: Path) -> None:
     body = '<form><record name="r" beep="true" maxtime="6s" finalsilence="2s">Go.</record></form>'
     found, fa, ea = voiced(tmp_path, body)

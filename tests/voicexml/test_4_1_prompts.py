@@ -310,6 +310,33 @@ def test_a_prompt_without_timeout_has_that_of_the_property() -> None:  # 4.1.7
     assert question(call)["timeout"] == 3000
 
 
+@pytest.mark.parametrize(
+    ("around", "prompt"),
+    [
+        ('<property name="timeout" value="7s"/><property name="bargein" value="false"/>', "Well?"),
+        ("", '<prompt timeout="7s" bargein="false">Well?</prompt>'),
+    ],
+)
+def test_a_prompts_settings_are_those_of_where_it_is_queued(around: str, prompt: str) -> None:
+    # 4.1.7: "at the time the prompt is queued"
+    call = Call(
+        f"""<form>{around}<block>{prompt}<goto next="#b"/></block></form>
+        <form id="b"><property name="timeout" value="1s"/><field name="f">{YES}</field></form>"""
+    )
+    call.play()
+    assert (question(call)["timeout"], question(call)["bargein"]) == (7000, False)
+
+
+def test_a_question_without_a_prompt_has_the_timeout_of_its_own_property() -> None:  # 4.1.7
+    call = Call(
+        f"""<form><property name="timeout" value="7s"/><field name="f"><prompt>Well?</prompt>{YES}
+        <filled><goto nextitem="g"/></filled></field><field name="g">
+        <property name="timeout" value="1s"/>{YES}</field></form>"""
+    )
+    call.answer("yes")
+    assert question(call)["timeout"] == 1000
+
+
 def test_without_any_timeout_it_is_the_platforms() -> None:  # 4.1.7
     call = Call(ask("<option>yes</option>"))
     call.play()

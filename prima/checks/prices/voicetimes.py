@@ -16,7 +16,7 @@ from prima.interpreter.acts import arrange
 from prima.language.commands import TABLE_4_2
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
-from prima.voicexml.arranging import UNIT, arguments_of, longest_of, type_of
+from prima.voicexml.arranging import UNIT, arguments_of, longest_of, parts_of, type_of
 from prima.voicexml.calls import CONNECT_MS, kind_of
 from prima.voicexml.document import VoiceDocument
 from prima.voicexml.elements import HANDLERS
@@ -131,7 +131,10 @@ class VoiceTimes:
     def _question(self, item: Node, dialog: Node) -> Price:
         """A question: the longest speech that may precede it, and the time for an answer."""
         heard = list(self._before(item, dialog))
-        usual = milliseconds(self._setting(item, dialog, "timeout"), TIMEOUT_MS)
+        places = [item] if self._speaks_first(item) else [dialog, *parts_of(dialog)]
+        usual = max(
+            milliseconds(self._setting(one, dialog, "timeout"), TIMEOUT_MS) for one in places
+        )
         stated = [milliseconds(one.node.get("timeout"), usual) for one in heard]
         lasts = max((one.lasts for one in heard), default=0) + max([usual, *stated, 1]) + 1
         if item.tag == "record":
@@ -144,17 +147,20 @@ class VoiceTimes:
     def _before(self, item: Node, dialog: Node) -> Iterator[Price]:
         """Speech that may come last before an item listens: of its own prompts or handlers."""
         yield from self._spoken(item)
-        first = any(
-            not one.node.get("cond") and one.node.get("count", "1") == "1"
-            for one in self._spoken(item)
-        )
         around = self._handlers(item, dialog)
-        for node in around if first else [dialog, *around]:
+        for node in around if self._speaks_first(item) else [dialog, *around]:
             for holder in holders(node):
                 yield from self._spoken(holder)
         words = WORDS.get(self.page.lang.partition("-")[0].lower(), {})
         longest = max(words.values(), key=len, default="")
         yield Price(item, "speak", SPEAKER, duration(longest, self.page.lang, self.profile.voices))
+
+    def _speaks_first(self, item: Node) -> bool:
+        """Whether a prompt of an item is always said before its question, at its first visit."""
+        return any(
+            not one.node.get("cond") and one.node.get("count", "1") == "1"
+            for one in self._spoken(item)
+        )
 
     def _spoken(self, holder: Node) -> list[Price]:
         return [one for one in self.said[id(holder)] if one.what == "speak"]
