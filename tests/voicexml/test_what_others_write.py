@@ -10,7 +10,7 @@ import pytest
 from prima import api
 from prima.errors import Problem
 from prima.voicexml.reading import read_page
-from tests.helpers.dialogs import block, codes, leaf, run
+from tests.helpers.dialogs import block, codes, leaf, run, said
 from tests.helpers.here import prima
 from tests.helpers.voice import HEAD, vxml
 
@@ -64,6 +64,12 @@ def test_spaces_around_names_and_uris_mean_nothing() -> None:
         root=" root.vxml ",
     )
     assert run(text, root=vxml('<var name="n" expr="1"/>')).logs() == ["noanswer1"]
+
+
+@pytest.mark.parametrize("around", ["{}", "<prompt>{}</prompt>"])
+def test_spaces_around_the_item_of_a_foreach_mean_nothing(around: str) -> None:
+    each = '<foreach item=" i " array="[1]"><value expr="i"/></foreach>'
+    assert said(around.format(each)) == ["1"]
 
 
 def test_spaces_around_a_base_and_music_mean_nothing() -> None:

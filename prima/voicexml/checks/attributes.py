@@ -19,7 +19,7 @@ from prima.voicexml.vocabulary import ALTERNATIVES, VALUES, VOICEXML
 
 WORDS = frozenset(
     [
-        *("application", "dest", "event", "fetchaudio", "id", "name", "next", "nextitem"),
+        *("application", "dest", "event", "fetchaudio", "id", "item", "name", "next", "nextitem"),
         *("slot", "src", "transferaudio", "xml:base"),
     ]
 )
