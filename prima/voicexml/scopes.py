@@ -137,8 +137,8 @@ class Documents:
         target, fragment = parted(legal(uri))
         page = None
         if target or request is not None:
-            whole = urldefrag(context.page.resolve(uri, node))[0]
-            root = context.root
+            here, root = context.page, context.root
+            whole = urldefrag(here.resolve(uri, node))[0] if target else here.uri
             if request is None and root is not None and root.uri == whole:
                 page = root  # it is loaded, even if it is what a submit was answered with
             else:

@@ -174,6 +174,20 @@ def test_uris_are_joined(base: str, uri: str, whole: str) -> None:  # 1.5.1
     assert join(base, uri) == whole
 
 
+@pytest.mark.parametrize(
+    "leading",
+    [
+        '<block><submit next="#b"/></block>',
+        '<block><goto next="#b"/></block>',
+        '<subdialog src="#b" namelist="n"/>',
+    ],
+)
+def test_a_fragment_alone_is_of_the_document_whatever_its_base(leading: str) -> None:  # 5.3.8
+    body = f"""<form><var name="n" expr="1"/>{leading}</form>
+        <form id="b"><block><log>here</log><exit/></block></form>"""
+    assert run(f'{HEAD[:-1]} xml:base="sub/">{body}</vxml>').logs() == ["here"]
+
+
 def test_xml_base_of_the_network_is_refused() -> None:  # 1.5.1
     head = f'{HEAD[:-1]} xml:base="http://example.org/">'
     call = Call(
