@@ -315,7 +315,7 @@ class Machine:
 
     def play(self) -> Flow:
         """Play what is queued and wait until it has been said."""
-        resume = yield from self.wait(self.queue)
+        resume = yield from self.wait(self.unqueue())
         if resume.event is not None:
             raise thrown_outside(resume)
 

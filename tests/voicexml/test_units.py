@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tests.helpers.dialogs import question
 from tests.helpers.units import PHOTO, SPEECH, P, ask, say, unit, units, with_other
 from tests.helpers.voice import Call
 
@@ -39,6 +40,13 @@ def test_what_was_said_before_a_unit_is_no_part_of_it() -> None:
     call.event("touch")
     call.finish("Hello.")
     assert call.saying() == ["Ouch."], "the unit has not begun"
+
+
+def test_a_question_behind_a_unit_has_no_settings_of_a_prompt_in_it() -> None:  # 4.1.7
+    said = '<block><prompt timeout="2s" bargein="false">Hello.</prompt></block>'
+    call = Call(f'<form {P}><p:iu>{said}</p:iu><field name="f" type="boolean"/></form>')
+    call.play()
+    assert (question(call)["timeout"], question(call)["bargein"]) == (5000, True)
 
 
 def test_all_that_a_unit_asks_for_belongs_to_it() -> None:
