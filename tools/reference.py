@@ -244,8 +244,8 @@ def limits() -> str:
             "`error.semantic`",
         ),
         (
-            "stack of an application's ECMAScript",
-            f"{sandbox.STACK_LIMIT // 1024} KiB",
+            "stack of an application's ECMAScript (some 600 calls within one another)",
+            f"{sandbox.STACK_LIMIT // mib} MiB",
             "`error.semantic`",
         ),
         (
