@@ -176,6 +176,18 @@ def test_e3_so_many_commands_wait_beside_one_another_and_no_more() -> None:
     assert stage.told("ea") == ["error.semantic"]
 
 
+def test_e6_who_starts_together_with_another_is_beside_it() -> None:
+    stage = Stage(apps={}, refuses=True)
+    stage.mediator.expect(["fa", "ea"])
+    stage.mediator.load("fa", "fa")
+    stage.request("fa", say(LONG))
+    assert stage.select() == [] and stage.told("fa") == ["error.semantic"]
+    stage.mediator.load("ea", "ea")
+    stage.mediator.unload("ea", "exit")
+    stage.request("fa", say(LONG))
+    assert stage.select() == ["fa#1"]
+
+
 def test_e6_who_is_alone_again_may_speak_for_long() -> None:
     stage = Stage()
     stage.mediator.unload("fa", "exit")
