@@ -136,7 +136,7 @@ class Checker(Starts):
         tree.members[name] = ab
         self.wants_hold(tree, ab, record)
         if ab.unit is not None:
-            ab.unit.content.append(record)
+            self._into_unit(ab.unit, record)
         if ab.inserted:
             self.put_in(ab, before, record)
         if ab.parents:
@@ -150,6 +150,12 @@ class Checker(Starts):
             self.maybe_silence(ab)
         if ab.unit is None and not ab.inserted:
             self.latest[app] = ab
+
+    def _into_unit(self, unit: AB, record: Record) -> None:
+        """U4: the Commands of a group are requested when it starts from its beginning, once."""
+        if unit.name in self.groups and any(one["time"] != self.now for one in unit.content):
+            self.report(3, "U4", f"{record['behavior']} is requested, but {unit.name} has begun")
+        unit.content.append(record)
 
     def _waits_from_now(self, ab: AB) -> None:
         """C3: requests in a window count as following the AB that has just ended (S2c)."""

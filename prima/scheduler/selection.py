@@ -254,7 +254,12 @@ def _driving(mediation: Mediation) -> Behavior | None:
 
 
 def u4(mediation: Mediation, unit: Behavior) -> None:
-    """U4: the Commands of a group become the unit's own ABs when it starts."""
+    """U4: the Commands of a group become the unit's own ABs when it starts.
+
+    A unit that an emergency stop has halted goes on with what is left of it (E5).
+    """
+    if unit.inner:
+        return
     assert unit.group is not None and unit.inside is not None
     steps, now, state = unit.group.steps, mediation.now, unit.document_state
     for ab in mediation.maker.chain(unit.app, unit.stream, steps, now, state, None, unit):

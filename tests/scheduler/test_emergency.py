@@ -8,6 +8,7 @@ from prima.messages import (
     Emergency,
     Ended,
     Group,
+    Step,
 )
 from tests.helpers.generated.plays import perform
 from tests.helpers.generated.scripts import Ask, Leave, Script, drive
@@ -130,6 +131,25 @@ def test_e5_what_runs_is_aborted_and_its_unit_waits_with_it() -> None:
     assert orders == [("start", "ea#2"), ("abort", "ea#2")], "a unit is no device's affair"
     stage.at(20).mediator.emergency(False, True, 9)
     assert stage.select() == ["ea#1", "ea#2"]
+
+
+def test_e5_what_is_left_of_a_group_is_done_once() -> None:
+    stage = Stage()
+    nod = Group(chain(command("move-head", pan=1), command("move-head", pan=2)))
+    stage.request("ea", Group([Step(say("One.")), Step(nod), Step(say("Two."), (0, 1))]))
+    assert stage.select() == ["ea#1", "ea#2", "ea#3", "ea#5"]
+    stage.at(5).end("ea#2")
+    stage.at(10).mediator.emergency(True, True, 8)
+    stage.at(20).mediator.emergency(False, True, 9)
+    assert stage.select() == ["ea#1", "ea#3", "ea#5"]
+    stage.at(30).end("ea#5")
+    assert stage.select() == ["ea#6"]
+    stage.at(40).end("ea#6")
+    assert stage.select() == ["ea#4"]
+    stage.at(50).end("ea#4")
+    assert stage.select() == [] and stage.mediator.memory.behaviors == {}
+    assert stage.told("ea") == ["done"]
+    assert check(stage.records) == []
 
 
 def test_e5_what_is_given_up_goes_from_its_end_and_its_application_hears_of_each_part() -> None:
