@@ -61,6 +61,8 @@ class Endings(Late):
         ab.followed_at = self.now
         if self.has_left(ab):
             self.report(3, "O3", f"{ab.shown} goes on, but its state was left")
+        if ab.last_loop:
+            self.report(3, "E1", f"{ab.shown} goes on, but its tree has failed")
 
     def note_fail(self, record: Record) -> None:
         """A request or an AB fails (E1)."""
@@ -80,7 +82,16 @@ class Endings(Late):
         self._loop_over(ab)
         if not ab.inserted:  # the AB that it was inserted for goes on without it
             self.failed.append(ab)
+            self._ends_loops(ab)
         self.remove(ab)
+
+    def _ends_loops(self, failed: AB) -> None:
+        """E1: the loops of a failed tree end, unless the AB had been given up before (O2, O3)."""
+        surely = not (failed.silent or self.is_given_up(failed) or failed.unit)
+        for ab in failed.tree.members.values():
+            if ab.feedback and ab.phase == RUNNING and not ab.inserted:
+                ab.silent = True
+                ab.last_loop = ab.last_loop or surely
 
     def _loop_over(self, ab: AB) -> None:
         """F5: a loop is over: the robot moves on only if something starts now."""

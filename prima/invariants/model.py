@@ -78,7 +78,9 @@ class AB:
     """The event that caused its request."""
     listening: bool = False
     silent: bool = False
-    """Whether O2 may have suppressed its notices while it runs."""
+    """Whether O2 or E1 may have suppressed its notices while it runs."""
+    last_loop: bool = False
+    """Whether its tree has failed, so that no loop follows the one that runs (E1)."""
     said: tuple[str, str, int] | None = None
     """Why it waits, because of what, and since when, by its latest ``hold``."""
 

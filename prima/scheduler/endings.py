@@ -183,12 +183,21 @@ def delete(mediation: Mediation, ab: Behavior, rule: str) -> None:
 def delete_rest(
     mediation: Mediation, tree: dict[str, Behavior], run: AwaitedRun | None, rule: str
 ) -> None:
-    """E1, U5: delete what has not started of a failed tree; other runs in it are cancelled."""
+    """E1, U5: delete what has not started of a failed tree, its feedback Commands' next loops too.
+
+    Other runs in it are cancelled.
+    """
     for other in list(reversed(list(tree.values()))):
-        if other.state in (LINKED, WAITING) and not other.in_group:
+        if other.in_group:
+            continue
+        if other.state in (LINKED, WAITING):
             delete(mediation, other, rule)
-            if other.run is not run:
-                tell_cancelled(mediation, other)
+        elif other.feedback and not (other.silent or other.inserted):
+            silence(other)
+        else:
+            continue
+        if other.run is not run:
+            tell_cancelled(mediation, other)
 
 
 def remove(mediation: Mediation, ab: Behavior) -> None:

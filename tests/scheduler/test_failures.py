@@ -20,7 +20,7 @@ from prima.messages import (
 )
 from tests.helpers.generated.plays import perform
 from tests.helpers.plays import play
-from tests.helpers.stage import Stage, chain, command, move, say
+from tests.helpers.stage import TRACK, Stage, chain, command, move, say
 
 EVENT = 7
 BRIEF = Command("q-and-a", {"timeout": "500ms"}, "Well?")
@@ -79,6 +79,33 @@ def test_e1_what_was_requested_later_in_the_tree_is_cancelled() -> None:
         ("ea#2", "waiting"),
     ], "what follows is deleted before it could wait itself"
     assert sorted(stage.told("ea")) == ["cancel.speak", "cancel.speak", "error.device.speaker"]
+
+
+def test_e1_a_failed_trees_loops_end() -> None:
+    """Its feedback Commands' next loops have not started, whether one runs or waits."""
+    stage = Stage()
+    stage.request("ea", steps=[Step(say("One.")), Step(TRACK)])
+    assert stage.select() == ["ea#1", "ea#2.1"]
+    stage.at(10).mediator.failed("ea#1", "speaker", "broken")
+    assert stage.select() == []
+    stage.at(500).end("ea#2.1", goal=False)
+    assert stage.select() == []
+    assert [stop["behavior"] for stop in stage.phases("stop")] == ["ea#2.1"]
+    assert stage.told("ea") == ["error.device.speaker"]
+    assert check(stage.records) == []
+
+
+def test_e1_of_another_requests_loops_that_end_the_application_hears() -> None:
+    stage = Stage()
+    stage.request("ea", steps=[Step(say("One.")), Step(command("move-head", pan=1))])
+    stage.select()
+    stage.at(5).end("ea#2", then=lambda: stage.request("ea", replace(TRACK, now=True)))
+    assert stage.select() == ["ea#3.1"]
+    stage.at(10).mediator.failed("ea#1", "speaker", "broken")
+    stage.at(500).end("ea#3.1", goal=False)
+    assert stage.select() == []
+    assert stage.told("ea") == ["ended", "cancel.tracking-human", "error.device.speaker"]
+    assert check(stage.records) == []
 
 
 def test_e1_a_unit_that_has_begun_is_finished_whole() -> None:
