@@ -111,6 +111,7 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
     "set-direction": {"heading": 10.0},
     "turn": {"angle": 10.0},
     "set-speed-and-time": {"time": "1s"},
+    "pause": {"time": "1s"},
     "point-by-hand": {"angle": 10.0},
     "gesture": {"name": "nod"},
     "topological-move": {"to": "room"},

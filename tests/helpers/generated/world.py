@@ -152,7 +152,7 @@ class Devices:
         dice = Random(f"{world.seed} {name}")
         lasts = dice.randint(1, 600 if row.feedback else 3000)
         data = self._pose(name, command) if "locomotion" in order.devices else {}
-        if dice.randrange(100) < world.fails:
+        if dice.randrange(100) < world.fails and order.devices:
             device = dice.choice(sorted(order.devices))
             self.plan(now + lasts, Failed(name, device, "it fails"), task)
         elif command.type == "q-and-a":
