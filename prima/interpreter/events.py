@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 from prima.errors import Diagnosis, Place, Problem, Span, guessable, meant
 from prima.errors.diagnoses.names import UNHEARD_EVENT, UNKNOWN_EVENT
@@ -65,6 +66,11 @@ HABITS = {
     "finished": "end",
 }
 """Names that authors expect, with the language's names."""
+ANSWERS = {
+    **dict.fromkeys(("", "answer", "reply", "response"), "reply"),
+    **dict.fromkeys(("error", "failure"), "error.service"),
+}
+"""Ends of names that authors give to the events of a service, with the right beginnings."""
 DEFAULTS = frozenset(["noinput", "nomatch", "help"])
 """Thrown events that end nothing if unhandled."""
 MOST_GUESSES = 200
@@ -113,12 +119,16 @@ def slip_of(name: str, known: Iterable[str]) -> str:
 
 def handlers_of(document: Document, acts: Acts | None = None) -> Iterator[Handler]:
     """Every handler of a document; ``acts`` are its acts, where they have been gathered."""
-    yield from document.handlers
+    return chain.from_iterable(scopes_of(document, acts or Acts(document)))
+
+
+def scopes_of(document: Document, acts: Acts) -> Iterator[Sequence[Handler]]:
+    """The handlers of a document, scope by scope."""
+    yield document.handlers
     for form in document.forms.values():
-        yield from form.handlers
-        yield from (one for item in all_items(form.items) for one in item.handlers)
-    for command in _commands(acts or Acts(document)):
-        yield from command.handlers
+        yield form.handlers
+        yield from (item.handlers for item in all_items(form.items))
+    yield from (command.handlers for command in _commands(acts))
 
 
 def _commands(acts: Acts) -> Iterator[CommandTemplate]:
@@ -244,7 +254,10 @@ class KnownEvents:
             return None if self.dynamic else self._missing(name, service, self.services, wrong)
         if first == "touch" or name.startswith(("error.unsupported.", "error.badfetch.")):
             return None
-        nearest = HABITS.get(name, "") or slip_of(name, {*STANDARD, *self._own})
+        if first in self.services and rest in ANSWERS:
+            nearest = f"{ANSWERS[rest]}.{first}"
+        else:
+            nearest = HABITS.get(name, "") or slip_of(name, self._known)
         return (f'Nothing raises an event "{name}".', nearest) if nearest else None
 
     @staticmethod

@@ -14,7 +14,7 @@ from prima.interpreter.checks.commands import check_branches, check_texts, check
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.checks.hints import check_hints
 from prima.interpreter.checks.questions import check_leaving, check_silence
-from prima.interpreter.checks.reachable import check_content, check_reachable
+from prima.interpreter.checks.reachable import check_content, check_handlers, check_reachable
 from prima.interpreter.checks.robot import check_commands
 from prima.interpreter.checks.rounds import check_endless, check_rounds
 from prima.interpreter.checks.targets import check_items, check_targets
@@ -39,6 +39,7 @@ CHECKS: tuple[Callable[[Facts], Iterator[Problem]], ...] = (
     check_leaving,
     check_silence,
     check_content,
+    check_handlers,
 )
 
 

@@ -32,7 +32,7 @@ from prima.script.compile import compiled
 from prima.script.data import declared
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.known import Known
-from prima.script.parse import parse_expression
+from prima.script.parse import inner, parse_expression
 
 STRINGS = re.compile(r""""(?:[^"\\\\]|\\\\.)*"|'(?:[^'\\\\]|\\\\.)*'""")
 MISTAKES = (
@@ -54,10 +54,13 @@ ASSIGNING_CONDITION = Diagnosis(
     "assigning-condition",
     "Condition that assigns",
     "A condition has = where a comparison, ==, was most likely meant: it changes the variable, and"
-    " holds whenever the new value does.",
+    " holds whenever the new value does. With =>, meant for >=, it is a function, which always holds.",
     severity="warning",
     message="This condition gives a variable a value; it does not compare.",
     remedy="Write ==.",
+)
+FUNCTION_CONDITION = ASSIGNING_CONDITION.says(
+    "This condition is a function, which is always true; it does not compare.", "Write >=."
 )
 
 
@@ -214,6 +217,11 @@ def _assigns(expr: Expression) -> Iterator[Problem]:
     if "=" not in expr.code or expr.attribute not in ("cond", "when"):
         return
     parsed = parse_expression(expr.code)
+    whole = inner(parsed) if parsed is not None else None
+    if parsed is not None and whole is not None and whole.type == "arrow_function":
+        sign = next(one for one in whole.children if one.type == "=>")
+        yield FUNCTION_CONDITION.at(place_in(expr, parsed.start(sign)))
+        return
     for node in parsed.walk() if parsed is not None else ():
         if parsed is not None and node.type == "assignment_expression":
             yield ASSIGNING_CONDITION.at(place_in(expr, parsed.start(node.children[1])))

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from prima.errors import Diagnosis, Problem
 from prima.errors.diagnoses.behaviour import UNREACHABLE
 from prima.interpreter.acts import Act, Exit, Foreach, Goto, Handler, If, Return, Throw, all_acts
 from prima.interpreter.checks.facts import Facts, name_of
 from prima.interpreter.elements import Field, Form, all_items
-from prima.interpreter.events import DEFAULTS
+from prima.interpreter.events import DEFAULTS, event_place, scopes_of
+from prima.interpreter.selection import beginnings
 
 LEAVING = (Goto, Return, Exit)
 """Acts after which content is unreachable."""
@@ -34,12 +35,18 @@ DEAD_END_INSIDE = DEAD_END.says(
 DEAD_CONTENT = Diagnosis(
     "dead-content",
     "Content that is never reached",
-    "Nothing after a goto, return or exit is ever reached.",
+    "Nothing after a goto, return or exit is ever reached, nor is a handler whose events another"
+    " one of the same element takes first: of several with the same count it is the first.",
     rule="VoiceXML 2.0, 5.3",
     severity="warning",
     message="<{tag}> comes after <{leaving}> and is never reached.",
     remedy="Put it before <{leaving}>, or remove it.",
 )
+SHADOWED = DEAD_CONTENT.says(
+    'The handler in line {line} takes "{name}" first: this one is never reached.',
+    "Remove one of them, or put the content of both into one.",
+)
+SHADOWED_PART = DEAD_CONTENT.says(SHADOWED.message, "Put this one before it.")
 NO_CALLER = Diagnosis(
     "no-caller",
     "Return to nobody",
@@ -167,6 +174,27 @@ def check_content(facts: Facts) -> Iterator[Problem]:
     """Warn of content after a goto, return or exit."""
     for _, content, _ in facts.document.contents():
         yield from _dead(content)
+
+
+def check_handlers(facts: Facts) -> Iterator[Problem]:
+    """Warn of handlers whose events an earlier one of the same scope always takes."""
+    for scope in scopes_of(facts.document, facts.acts):
+        earlier: dict[tuple[str, int], Handler] = {}
+        for handler in scope:
+            takers = [_taker(earlier, name, handler.count) for name in handler.events]
+            first = takers[0] if takers else None
+            if first is not None and all(takers):
+                name = handler.events[0]
+                place = event_place(handler.node, name)
+                diagnosis = SHADOWED if set(handler.events) <= set(first.events) else SHADOWED_PART
+                yield diagnosis.at(place, line=first.node.place.line, name=name)
+            elif handler.cond is None:
+                earlier.update(((name, handler.count), handler) for name in handler.events)
+
+
+def _taker(earlier: Mapping[tuple[str, int], Handler], name: str, count: int) -> Handler | None:
+    """The earlier handler that takes an event, with the same count and without a condition."""
+    return next((earlier[one, count] for one in beginnings(name) if (one, count) in earlier), None)
 
 
 def _dead(content: Sequence[Act]) -> Iterator[Problem]:
