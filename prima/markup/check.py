@@ -27,7 +27,7 @@ from prima.errors.diagnoses.structure import (
 )
 from prima.errors.diagnoses.values import BAD_VALUE
 from prima.language.values import KINDS, XML_SPACE, BadValue, is_beyond, outside, read_value
-from prima.markup.hints import TEXTS, meant_value, misplaced_remedy, text_remedy
+from prima.markup.hints import OTHERS, TEXTS, meant_value, misplaced_remedy, text_remedy
 from prima.markup.spans import (
     added,
     attribute_span,
@@ -74,13 +74,14 @@ def check_root(root: Node, vocabularies: Sequence[Vocabulary]) -> Vocabulary:
     Raises:
         DocumentError: it belongs to none of these vocabularies.
     """
-    for vocabulary in vocabularies:
-        if root.namespace == vocabulary.namespace:
-            if root.tag == vocabulary.root_tag:
-                return vocabulary
-            problem = OTHER_ROOT.at(root.place, tag=root.tag, root=vocabulary.root_tag)
-            raise DocumentError([problem])
-    raise DocumentError([_other_document(root, vocabularies) or _no_document(root, vocabularies)])
+    known = root.tag in [one.root_tag for one in vocabularies]
+    for one in vocabularies:
+        if (root.namespace, root.tag) == (one.namespace, one.root_tag):
+            return one
+        if root.namespace == one.namespace and not known:
+            raise DocumentError([OTHER_ROOT.at(root.place, tag=root.tag, root=one.root_tag)])
+    other = None if known else _other_document(root, vocabularies)
+    raise DocumentError([other or _no_document(root, vocabularies)])
 
 
 def _other_document(root: Node, vocabularies: Sequence[Vocabulary]) -> Problem | None:
@@ -268,8 +269,8 @@ def _check_attributes(node: Node, rules: _Rules, root: bool, problems: list[Prob
     for name in unknown:
         problems.append(_unknown_attribute(node, name, rules, missing))
     for item in missing:
-        value = item.choices[0] if len(item.choices) == 1 else "..."
-        hint = added(f'Write {item.name}="{value}".', node, item)
+        written = one_of(f'{item.name}="{value}"' for value in item.choices or ("...",))
+        hint = added(f"Write {written}.", node, item)
         problems.append(NEEDS.at(node.place, hint, tag=node.tag, name=item.name, doc=item.doc))
 
 
@@ -302,7 +303,7 @@ def _other_attribute(node: Node, name: str, rules: _Rules) -> Hint:
         return replaced("Write xml:lang.", "xml:lang", attribute_span(node, name))
     if name == "next" and "goto" in rules.element.children:
         return Hint(f'Put a goto inside: <goto next="{node.get(name)}"/>.')
-    return Hint()
+    return Hint(OTHERS.get((node.tag, name), ""))
 
 
 def _missing_attribute(node: Node, name: str, known: list[str], missing: list[Attribute]) -> Hint:

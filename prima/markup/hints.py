@@ -38,6 +38,19 @@ INSTEAD = {
     "option": "It is an answer that a <field> takes.",
 }
 """Remedies for elements that make no sense in their place."""
+OTHERS = {
+    ("answer", "delay"): 'Write after="...".',
+    ("failure", "delay"): 'Write after="...".',
+    ("field", "bargein"): 'Write it at the <prompt>: <prompt bargein="...">.',
+    ("field", "timeout"): 'Write it at the <prompt>: <prompt timeout="...">.',
+    ("goto", "form"): 'Write next="#...": a form.',
+    ("goto", "to"): 'Write next="#...": a form.',
+    ("reply", "delay"): 'Write after="...".',
+    ("send", "service"): 'Write to="...": a service.',
+    ("var", "value"): 'Write expr="...": a text in it has quotes of its own.',
+    ("when", "time"): 'Write at="...".',
+}
+"""Attributes that authors give to elements, with what belongs there."""
 TEXTS = ("text", "value", "say", "content", "message", "name")
 """Attributes that authors give to elements whose text belongs inside."""
 

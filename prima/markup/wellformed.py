@@ -221,6 +221,8 @@ def _not_well_formed(
             _wrong_end(source, place, message) or _empty(source, place, message, vocabularies)
         ):
             remedy, fixes = hint
+        elif "XML declaration" in message and "</" in source.text[: _offset(source, place)]:
+            remedy = "A second document begins here: keep one of them."
         elif unclosed := re.search(UNCLOSED, message):
             fixes = _closed(source, place, unclosed[1])
     if TEMPLATE.search(source.text):

@@ -7,7 +7,9 @@ from pathlib import Path
 import pytest
 
 from prima import api
-from prima.markup.hints import meant_value
+from prima.interpreter.vocabulary.dialogue import DIALOGUE
+from prima.markup.hints import OTHERS, meant_value
+from prima.sim.vocabulary.scenario import SCENARIO
 
 
 @pytest.mark.parametrize(
@@ -77,3 +79,26 @@ def test_no_fix_writes_an_attribute_that_is_there(tmp_path: Path, text: str, the
     (problem,) = (one for one in api.validate([path]) if one.code == "unknown-attribute")
     assert problem.remedy.startswith(f'Remove it: there is "{there}" already.')
     assert not problem.fixes
+
+
+@pytest.mark.parametrize(("tag", "name"), OTHERS)
+def test_an_attribute_that_authors_expect_is_none_and_what_is_to_be_written_is_one(
+    tag: str, name: str
+) -> None:
+    known = [one.attributes[tag] for one in (DIALOGUE, SCENARIO) if tag in one.attributes]
+    assert known
+    right = OTHERS[tag, name].partition(" it at the <prompt>: <prompt ")[2] or OTHERS[tag, name][6:]
+    for attributes in known:
+        assert name not in attributes
+        where = DIALOGUE.attributes["prompt"] if "<prompt" in OTHERS[tag, name] else attributes
+        assert right.partition("=")[0] in where
+
+
+def test_the_attribute_to_be_written_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "a.xml"
+    path.write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><var name="n" value="0"/>'
+        '<form id="f"><block><goto form="f"/></block></form></prima>'
+    )
+    found = [one.remedy for one in api.validate([path]) if one.code == "unknown-attribute"]
+    assert found == [OTHERS["var", "value"], OTHERS["goto", "form"]]

@@ -43,6 +43,8 @@ MISTAKES = (
     (r"\bnot\b", "Write ! for not."),
 )
 """Common mistakes, with remedies."""
+QUOTES = re.compile("[“”„‟‘’‚‛]")
+"""Typographic quotes."""
 MISTAKEN = re.compile("|".join(["[^\\x00-\\x7f]", *(words for words, _ in MISTAKES)]))
 """Signs of a common mistake in code."""
 WIDEST = 60
@@ -197,6 +199,8 @@ def _remedy(code: str) -> str:
     if not MISTAKEN.search(code):
         return ""
     bare = STRINGS.sub("", code)
+    if QUOTES.search(bare):
+        return "This is a typographic quote: write '."
     if wide := _of_full_width(bare):
         return f"Write it in characters of half width: {wide}."
     return next((remedy for words, remedy in MISTAKES if re.search(words, bare)), "")

@@ -17,6 +17,12 @@ from prima.script.globals import HANDLED, IDENTIFIER, RESERVED
 from prima.script.known import Known
 from prima.script.names import Names, expression_names, script_names
 
+ELSEWHERE = {
+    **dict.fromkeys(("True", "TRUE"), "true"),
+    **dict.fromkeys(("False", "FALSE"), "false"),
+    **dict.fromkeys(("None", "Null", "NULL", "nil"), "null"),
+}
+"""Values as other languages write them, with those of ECMAScript."""
 PARTS = ("name", "message", "data")
 SCOPED = ("document", "dialog", "application")
 """Scopes that may prefix the name of a variable."""
@@ -169,7 +175,9 @@ class Variables:
 
 def _is_bare(expr: Expression, name: str) -> bool:
     """Whether an expression is a single name that may have been meant as a text."""
-    return expr.code.strip() == name and expr.node.tag != "value" and name not in ABSENT
+    return (
+        expr.code.strip() == name and expr.node.tag != "value" and name not in {*ABSENT, *ELSEWHERE}
+    )
 
 
 def _quoted(hint: Hint, name: str) -> Hint:
@@ -180,4 +188,7 @@ def _meant(place: Place, name: str, every: Iterable[str], spans: Sequence[Span] 
     """The one of some names that was most likely meant by an undeclared one."""
     if name in ABSENT:
         return Hint(ABSENT[name])
-    return suggestion(name, every, *(spans or [Span.of(place, name)]))
+    spans = spans or [Span.of(place, name)]
+    if right := ELSEWHERE.get(name, ""):
+        return replaced(f"Write {right}.", right, *spans)
+    return suggestion(name, every, *spans)
