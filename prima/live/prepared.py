@@ -54,6 +54,8 @@ def prepared(
         UsageError: something cannot be combined, is missing, or has changed since.
     """
     check_usage(chosen, output, resume)
+    if chosen.scenario and settings.drivers:
+        raise UsageError("A scenario's robot is simulated; leave out --driver.")
     if resume is not None:
         if settings.redact:
             message = "--redact is for a new journal: this one has what users have said."

@@ -255,6 +255,8 @@ def other_kind(
     own = document.node.get("kind")
     if not isinstance(document, Document) or own not in {"ea", "fa"} - {document.kind}:
         return []  # any other is reported at the document
+    if document.kind not in ("ea", "fa"):
+        return []  # and this where the scenario says it
     kind = document.kind.upper()
     return [RUNS_AS_OTHER.at(place, Hint(remedy), name=name, own=own.upper(), who=who, kind=kind)]
 

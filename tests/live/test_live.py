@@ -238,6 +238,7 @@ def test_drivers_that_do_not_work_end_in_a_clear_sentence(
         (["--resume", "nowhere.jsonl"], "cannot be read"),
         (["--resume", "visit.jsonl", "--robot", ROBOT], "leave out the rest"),
         (["documents/scenarios/schedule-alone.xml", "--ea", "x.xml"], "leave out --fa"),
+        (["documents/scenarios/schedule-alone.xml", "--driver", "x.py"], "leave out --driver"),
         (["--robot", ROBOT, "--ea", "documents/ea/guide.xml", "--until", "soon"], "--until"),
         (
             ["--robot", "nowhere.xml", "--ea", "documents/ea/guide.xml"],

@@ -84,6 +84,9 @@ def test_a_kind_that_is_none_is_told_once(tmp_path: Path) -> None:
     path = staged(tmp_path, '<application src="loud.xml"/>', loud=loud)
     found = [one for one in problems_of(path) if "kind" in one.message or one.code == "other-kind"]
     assert [(one.code, one.remedy) for one in found] == [("bad-value", 'Did you mean "ea"?')]
+    path = staged(tmp_path, '<application src="loud.xml" kind="robot"/>', loud=LOUD)
+    found = [one for one in problems_of(path) if "kind" in one.message or one.code == "other-kind"]
+    assert [(one.code, one.remedy) for one in found] == [("bad-value", "Write ea or fa.")]
 
 
 def test_a_document_is_an_fa_where_the_scenario_says_so(tmp_path: Path) -> None:
