@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from itertools import repeat
 from typing import TYPE_CHECKING
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from prima.sim.map import Map
+
+UNFIT = "[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
+"""Characters that XML cannot hold."""
 
 
 def stage(
@@ -115,10 +119,19 @@ def _applications(given: list[tuple[str, str]], maps: Iterable[str]) -> str:
 
 
 def _answers(says: str | Iterable[str]) -> str:
-    """The user's answers to the questions, one after the other."""
+    """The user's answers to the questions, one after the other.
+
+    Raises:
+        UsageError: one of them holds a character that no document can hold.
+    """
     from html import escape
 
-    said = [says] if isinstance(says, str) else says
+    said = [says] if isinstance(says, str) else list(says)
+    for text in said:
+        if re.search(UNFIT, text):
+            raise UsageError(
+                f'The answer "{text}" holds a control character, or is not UTF-8. Write it anew.'
+            )
     return "".join(
         f'<when asked="" count="{number}" after="1s"><say>{escape(text)}</say></when>'
         for number, text in enumerate(said, 1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from prima import api
-from prima.errors import DocumentError
+from prima.errors import DocumentError, UsageError
 
 WORLD, EA = "documents/worlds/room.xml", "documents/ea/library.xml"
 
@@ -27,3 +27,9 @@ def test_a_document_of_the_wrong_kind_is_named_itself(
 def test_an_answer_without_words_is_silence() -> None:
     silent, answered = (api.rehearse(api.stage([], [EA], says)) for says in ([], ["", " "]))
     assert answered.table() == silent.table()
+
+
+@pytest.mark.parametrize("text", ["te\x01a", "te\udcff", "te\uffff"])
+def test_an_answer_that_no_document_can_hold_is_told_as_such(text: str) -> None:
+    with pytest.raises(UsageError, match="holds a control character, or is not UTF-8"):
+        api.stage([], [EA], ["\n Yes.\t", text])
