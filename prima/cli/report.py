@@ -177,7 +177,7 @@ def _write_figures(figures: list[Figure], output: str | None, name: str | None) 
     Raises:
         UsageError: there is no such figure, or nothing can be written.
     """
-    from prima.loading.writing import write_whole
+    from prima.loading.writing import make_folder, write_whole
 
     if name is not None:
         _write_figure(figures, output, name)
@@ -185,11 +185,7 @@ def _write_figures(figures: list[Figure], output: str | None, name: str | None) 
     if output is None:
         raise UsageError("Name the folder for the figures: -o figures, or one: --figure NAME.")
     folder = Path(output)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise UsageError(f"{output}: cannot be written: {reason}.") from None
+    make_folder(folder)
     for one in figures:
         write_whole(folder / f"{one.file}.svg", one.whole())
     tell(f"{output}: {counted(len(figures), 'figure')}")

@@ -18,7 +18,7 @@ from prima.experiments.explore import Exploration, FoundOrder, FoundProblem
 from prima.experiments.lines import Point
 from prima.experiments.pools import Pool
 from prima.experiments.variants import discard
-from prima.loading.writing import write_whole
+from prima.loading.writing import make_folder, write_whole
 from prima.messages import Json
 from prima.transcript.row import Row
 from prima.version import __version__
@@ -172,7 +172,7 @@ class ExplorationFolder:
         """
         one = self.exploration
         try:
-            self.path.mkdir(parents=True, exist_ok=True)
+            make_folder(self.path)
             file = self.path / RUNS
             kept = self._earlier(file) if resume and file.is_file() else []
             head = json.dumps(one.key()) + "\n"

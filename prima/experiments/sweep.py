@@ -20,7 +20,7 @@ from prima.experiments.pools import Pool
 from prima.experiments.scenariotext import Variant
 from prima.experiments.table import Column, columns, dictionary, line, read_rows, write_parquet
 from prima.experiments.variants import ExperimentSettings, Made, Stage, discard
-from prima.loading.writing import write_whole
+from prima.loading.writing import make_folder, write_whole
 from prima.messages import Json
 from prima.pool import Died
 from prima.version import __version__
@@ -229,7 +229,7 @@ class Output:
         """
         first: list[list[Json]] | None = None
         try:
-            self.folder.mkdir(parents=True, exist_ok=True)
+            make_folder(self.folder)
             there = self._earlier() if resume else 0
             rows = self.sweep.results(self.pool, there, self.folder.name)
             first = list(islice(rows, 1))  # before it replaces a table: a cluster may not answer

@@ -46,6 +46,21 @@ def whole(path: str | Path) -> Iterator[IO[bytes]]:
         raise UsageError(f"{path}: cannot be written: {error.strerror}.") from None
 
 
+def make_folder(path: str | Path) -> None:
+    """Make a folder, and those that it is in, unless it is there.
+
+    Raises:
+        UsageError: it cannot be made.
+    """
+    try:
+        Path(path).mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise UsageError(f"{path}: this is a file. Name a folder.") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise UsageError(f"{path}: cannot be written: {reason}.") from None
+
+
 def write_whole(path: str | Path, content: str | bytes) -> None:
     """Write bytes, or a text as UTF-8, to a file, as a whole or not at all.
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from prima.errors import UsageError
-from prima.loading.writing import clean_up, parts_folder, whole, write_whole
+from prima.loading.writing import clean_up, make_folder, parts_folder, whole, write_whole
 from tests import ROOT
 
 HOLDS = """
@@ -174,3 +174,16 @@ def test_a_long_name_of_other_letters_can_be_written(tmp_path: Path) -> None:
     name = "\u3042" * 80 + ".jsonl"  # 246 bytes, of the 255 that a name may have
     write_whole(tmp_path / name, "new")
     assert os.listdir(tmp_path) == [name]
+
+
+def test_a_folder_is_made_unless_it_is_there_and_never_where_a_file_is(tmp_path: Path) -> None:
+    make_folder(tmp_path / "a" / "b")
+    make_folder(tmp_path / "a" / "b")
+    assert (tmp_path / "a" / "b").is_dir()
+    (tmp_path / "file").touch()
+    with pytest.raises(UsageError, match=r"file: this is a file\. Name a folder\.$"):
+        make_folder(tmp_path / "file")
+    with pytest.raises(UsageError, match="cannot be written: Not a directory"):
+        make_folder(tmp_path / "file" / "c")
+    with pytest.raises(UsageError, match="cannot be written: embedded null byte"):
+        make_folder("a\0b")

@@ -221,12 +221,13 @@ def _assigns(expr: Expression) -> Iterator[Problem]:
     if "=" not in expr.code or expr.attribute not in ("cond", "when"):
         return
     parsed = parse_expression(expr.code)
-    whole = inner(parsed) if parsed is not None else None
-    if parsed is not None and whole is not None and whole.type == "arrow_function":
+    if parsed is None:
+        return
+    whole = inner(parsed)
+    if whole is not None and whole.type == "arrow_function":
         sign = next(one for one in whole.children if one.type == "=>")
         yield FUNCTION_CONDITION.at(place_in(expr, parsed.start(sign)))
         return
-    for node in parsed.walk() if parsed is not None else ():
-        if parsed is not None and node.type == "assignment_expression":
-            yield ASSIGNING_CONDITION.at(place_in(expr, parsed.start(node.children[1])))
-            return
+    found = (node for node in parsed.walk() if node.type == "assignment_expression")
+    if (first := next(found, None)) is not None:
+        yield ASSIGNING_CONDITION.at(place_in(expr, parsed.start(first.children[1])))
