@@ -55,7 +55,7 @@ def make_folder(path: str | Path) -> None:
     try:
         Path(path).mkdir(parents=True, exist_ok=True)
     except FileExistsError:
-        raise UsageError(f"{path}: this is a file. Name a folder.") from None
+        raise UsageError(f"{path}: a file is where a folder is needed. Name another.") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise UsageError(f"{path}: cannot be written: {reason}.") from None

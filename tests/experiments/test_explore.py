@@ -239,7 +239,7 @@ def test_ctrl_c_prints_what_was_found_without_a_folder() -> None:
         (["--step", "0s"], "write a time above 0"),
         (["--depth", "9"], "--depth"),
         (["--resume"], "--resume needs the folder"),
-        (["-o", "visit.xml"], "visit.xml: this is a file. Name a folder."),
+        (["-o", "visit.xml"], "visit.xml: a file is where a folder is needed. Name another."),
     ],
 )
 def test_mistakes(words: list[str], why: str) -> None:

@@ -191,7 +191,7 @@ def test_a_full_disk() -> None:
 def test_a_folder_that_cannot_be_written() -> None:
     Path("t").write_text("a file")
     done = prima(*ARGUMENTS, "-o", "t.csv")
-    assert done.returncode == 2 and "cannot be written" in done.stderr
+    assert done.returncode == 2 and "t: a file is where a folder is needed" in done.stderr
     done = prima(*ARGUMENTS, "-o", "t.xlsx")
     assert done.returncode == 2 and "ends with .csv or .parquet" in done.stderr
     done = prima(*ARGUMENTS, "-o", "visit.xml")

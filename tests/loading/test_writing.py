@@ -181,7 +181,9 @@ def test_a_folder_is_made_unless_it_is_there_and_never_where_a_file_is(tmp_path:
     make_folder(tmp_path / "a" / "b")
     assert (tmp_path / "a" / "b").is_dir()
     (tmp_path / "file").touch()
-    with pytest.raises(UsageError, match=r"file: this is a file\. Name a folder\.$"):
+    with pytest.raises(
+        UsageError, match=r"file: a file is where a folder is needed\. Name another\.$"
+    ):
         make_folder(tmp_path / "file")
     with pytest.raises(UsageError, match="cannot be written: Not a directory"):
         make_folder(tmp_path / "file" / "c")

@@ -182,7 +182,7 @@ def test_a_library_that_is_not_there_is_named(
         ("sweep.csv --to svg", "Name the folder for the figures"),
         ("sweep.csv --to svg --figure second -o p.svg", 'Did you mean "seconds"?'),
         ("sweep.csv --to svg -o sweep.csv", "write elsewhere"),
-        ("sweep.csv --to svg -o other.txt", "other.txt: this is a file. Name a folder."),
+        ("sweep.csv --to svg -o other.txt", "other.txt: a file is where a folder is needed."),
         ("sweep.csv -o sweep.csv", "write elsewhere"),
         ("sweep -o sweep.csv", "write elsewhere"),
         ("sweep.csv -o sweep/dictionary.json", "write elsewhere"),
