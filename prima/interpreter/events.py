@@ -143,7 +143,7 @@ def _groups(acts: Acts) -> Iterator[GroupTemplate]:
 
 
 def _never_taken(acts: Acts) -> Iterator[tuple[Handler, str, Diagnosis]]:
-    """What handlers in Commands name, though it is no event of that Command."""
+    """The handlers in Commands of events that do not reach them, with the name and the problem."""
     inside = {id(one) for group in _groups(acts) for one in run_commands(group.steps)}
     for command in _commands(acts):
         own = [] if id(command) in inside else [f"{kind}.{command.type}" for kind in OWN]
