@@ -6,8 +6,8 @@ import json
 import os
 import pty
 import re
-import subprocess
-import sys
+from concurrent.futures import ThreadPoolExecutor
+from io import FileIO
 from pathlib import Path
 
 import pytest
@@ -19,6 +19,7 @@ from prima.cli import COMMANDS
 from prima.errors.visible import HARMFUL, escaped, visible
 from prima.transcript.lines import finished, line
 from tests import ROOT
+from tests.helpers.here import prima
 from tests.helpers.swept import runs, write
 from tests.helpers.voice import vxml
 
@@ -151,26 +152,32 @@ def test_every_verb_is_tried() -> None:
     assert {one.split()[0] for one in VERBS} - {"{raw}"} == set(COMMANDS)
 
 
+END = "\0that is all\0"
+
+
 def shown(folder: Path, words: list[str]) -> str:
     """What a command writes to a terminal."""
     ours, theirs = pty.openpty()
-    made = subprocess.Popen(
-        [sys.executable, "-m", "prima", *words], cwd=folder, stdin=subprocess.PIPE, stdout=theirs,
-        stderr=theirs, env={**os.environ, "COLUMNS": "120"},
-    )  # fmt: skip
-    os.close(theirs)
-    assert made.stdin is not None
-    made.stdin.write(f"Hello {RAW}\n/wait 2s\n/nix {RAW}\n/why 3\n/quit\n".encode())
-    made.stdin.close()
+    typed = f"Hello {RAW}\n/wait 2s\n/nix {RAW}\n/why 3\n/quit\n"
+    env = {**os.environ, "COLUMNS": "120"}
+    with (
+        ThreadPoolExecutor(1) as pool,
+        open(ours, "rb", 0) as read,
+        open(theirs, "w", encoding="utf-8") as terminal,
+    ):
+        text = pool.submit(until_the_end, read)
+        try:
+            prima(*words, cwd=folder, input=typed, env=env, terminal=terminal)
+        finally:  # an engine's process may keep the terminal open for longer
+            print(end=END, file=terminal, flush=True)
+        return text.result()
+
+
+def until_the_end(terminal: FileIO) -> str:
     data = b""
-    try:
-        while more := os.read(ours, 65_536):
-            data += more
-    except OSError:
-        pass  # the terminal's other end is closed
-    made.wait(60)
-    os.close(ours)
-    return data.decode()
+    while not data.endswith(END.encode()):
+        data += terminal.read(65_536) or b""
+    return data.decode().removesuffix(END)
 
 
 @pytest.mark.parametrize("words", VERBS)

@@ -24,6 +24,7 @@ def prima(
     env: Mapping[str, str] | None = None,
     encoding: str = "utf-8",
     together: bool = False,
+    terminal: io.TextIOWrapper | None = None,
 ) -> CompletedProcess[str]:
     """Run ``prima`` with arguments; a traceback, or a defect that it reports, fails the test.
 
@@ -34,11 +35,12 @@ def prima(
         env: Its whole environment, as far as Python has not read that when it started.
         encoding: That of its stdout at the beginning, as PYTHONIOENCODING sets it.
         together: Whether its stderr goes to its stdout.
+        terminal: Where both go, instead of into what is returned.
     """
     words = [str(one) for one in args]
     code: object = 0
-    out = _stream(encoding)
-    err = out if together else _stream("utf-8")
+    out = terminal or _stream(encoding)
+    err = terminal or (out if together else _stream("utf-8"))
     argv = patch.object(sys, "argv", ["prima", *words])
     environment = patch.dict(os.environ, dict(os.environ if env is None else env), clear=True)
     with chdir(cwd), environment, _own_process(input), redirect_stdout(out), redirect_stderr(err):
@@ -47,6 +49,9 @@ def prima(
                 cli.main()
         except SystemExit as ended:
             code = ended.code
+    if terminal:
+        terminal.flush()
+        return CompletedProcess(words, int(str(code or 0)))
     errors = _text(err)
     assert "Traceback" not in errors and "defect of prima" not in errors, errors
     return CompletedProcess(words, int(str(code or 0)), _text(out), "" if together else errors)
