@@ -22,11 +22,8 @@ HELLO = """<prima xmlns="urn:prima:dialogue:1" version="1.0" id="hello" kind="ea
 WAITS = HELLO.replace("<exit/>", "").replace('id="hello"', 'id="waits"')
 
 
-def prima(*words: str, timeout: float = 60, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "prima", *words]
-    return subprocess.run(
-        command, cwd=cwd, capture_output=True, text=True, timeout=timeout, check=False
-    )
+def prima(*words: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
+    return here.prima(*words, cwd=cwd)
 
 
 @pytest.fixture

@@ -16,7 +16,8 @@ import pytest
 from prima.live.driver import Unreachable
 from prima.live.drivers.speech.sound import SoundCard
 from prima.live.signals import BLOCKED_S
-from tests.live.test_live import HELLO, ROOT, prima
+from tests.helpers.command import prima
+from tests.live.test_live import HELLO, ROOT
 
 DRIVERS = """
 import asyncio, sys, time

@@ -6,7 +6,6 @@ import asyncio
 import json
 import os
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Coroutine, Iterator, Mapping
@@ -21,6 +20,7 @@ from prima.errors import DocumentError, UsageError
 from prima.live.services import LiveServices
 from prima.loading import load_services, validate
 from prima.messages import Fetched, Inbound, Occurred, Order
+from tests.helpers import here
 from tests.live.test_live import ROBOT, ROOT, prima
 
 SECRET = "s3cret-key"
@@ -391,11 +391,7 @@ def test_a_mediated_run_replays_without_services(
     journal = tmp_path / "visit.jsonl"
 
     def prima(*words: str, **more: str) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, "-m", "prima", *words]
-        environment = {**os.environ, **more}
-        return subprocess.run(
-            command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=60
-        )
+        return here.prima(*words, cwd=ROOT, env={**os.environ, **more})
 
     words = ["live", "--robot", ROBOT, "--fa", "documents/fa/follow.xml"]
     words += ["--ea", str(tmp_path / "asks.xml"), "--services", str(path), "-o", str(journal)]
@@ -449,7 +445,7 @@ def test_a_topic_is_held_while_a_real_service_answers(
     words = ["--ea", str(tmp_path / "asks.xml"), "--fa", str(tmp_path / "tells.xml")]
     journal = tmp_path / "visit.jsonl"
     words += ["--services", str(services), "--policy", policy, "--speed", "10", "-o", str(journal)]
-    ran = prima("live", "--robot", ROBOT, *words, timeout=60)
+    ran = prima("live", "--robot", ROBOT, *words)
     assert ran.returncode == 0, ran.stderr
     records = [json.loads(line) for line in journal.read_text().splitlines()]
     texts = [one["text"] for one in records if one["phase"] == "start" and one.get("text")]
