@@ -197,7 +197,7 @@ def test_the_scenarios_keep_the_invariants(path: Path, policy: str) -> None:
     assert numbers(found) <= expected, found
 
 
-STEPS = int(os.environ.get("PRIMA_STEPS", "2"))
+STEPS = int(os.environ.get("PRIMA_STEPS", "1"))
 """At how many steps of a scenario each device fails; 0 for all of them."""
 
 
