@@ -339,7 +339,7 @@ def test_a_run_is_spoken_to_through_a_pipe(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     rows = [line for line in done.stdout.splitlines() if "the emergency stop" in line]
     pressed, released = (float(row.split()[1]) for row in rows)
-    assert released - pressed == pytest.approx(1.0, abs=0.5)
+    assert released - pressed > 0.9
     assert '"Yes."' in done.stdout and "robot: Shall I come?" in done.stderr
     assert "late" not in done.stderr
     assert "robot:" not in done.stdout
