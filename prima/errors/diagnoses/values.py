@@ -54,6 +54,15 @@ LONG_TURN = Diagnosis(
 NOTHING_TO_SAY = Diagnosis(
     "nothing-to-say",
     "Nothing to say",
-    "A Command that speaks has no text. Of a question's prompt that is a warning.",
+    (
+        "A Command that speaks has no text. Of a question's prompt that is a warning, and so is a "
+        "question whose first prompt has a count above 1: prompts are counted from 1, so that the "
+        "robot listens without a word the first time."
+    ),
     rule="E3",
+)
+ASKED_LATER = NOTHING_TO_SAY.says(
+    "The first time, nothing is asked: this is the first prompt, and it begins at count {count}.",
+    'Remove count="{count}", or write a <prompt> before it.',
+    "warning",
 )

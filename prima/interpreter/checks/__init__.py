@@ -13,7 +13,7 @@ from prima.interpreter.checks.code import check_code
 from prima.interpreter.checks.commands import check_branches, check_texts, check_units
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.checks.hints import check_hints
-from prima.interpreter.checks.questions import check_leaving, check_silence
+from prima.interpreter.checks.questions import check_first_prompts, check_leaving, check_silence
 from prima.interpreter.checks.reachable import check_content, check_handlers, check_reachable
 from prima.interpreter.checks.robot import check_commands
 from prima.interpreter.checks.rounds import check_endless, check_rounds
@@ -38,6 +38,7 @@ CHECKS: tuple[Callable[[Facts], Iterator[Problem]], ...] = (
     check_rounds,
     check_leaving,
     check_silence,
+    check_first_prompts,
     check_content,
     check_handlers,
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from prima.errors import Diagnosis, Problem
+from prima.errors.diagnoses.values import ASKED_LATER
 from prima.interpreter.acts import (
     CommandRun,
     Exit,
@@ -13,6 +14,7 @@ from prima.interpreter.acts import (
     Return,
     Throw,
     all_acts,
+    commands_of,
     run_commands,
 )
 from prima.interpreter.checks.facts import Facts
@@ -43,6 +45,9 @@ NO_NOINPUT = Diagnosis(
     " anywhere.",
     remedy='Write <noinput count="3"><exit/></noinput>, or where else to go.',
 )
+
+ANY = "#"
+"""Stands for the forms to which a goto with an expression may lead."""
 
 
 def check_leaving(facts: Facts) -> Iterator[Problem]:
@@ -77,3 +82,26 @@ def check_silence(facts: Facts) -> Iterator[Problem]:
     """Warn of questions that are repeated for ever while nobody answers (K1)."""
     for field in silent_fields(facts.document):
         yield NO_NOINPUT.at(field.node.place, field=field.name)
+
+
+def check_first_prompts(facts: Facts) -> Iterator[Problem]:
+    """Warn of questions that listen without a word the first time, when nothing is said before."""
+    begun = [*facts.document.forms.values()][:1]
+    spoken = _spoken_before(facts)
+    for form, _ in facts.forms:
+        first = form.items[0] if form.items else None
+        silent = form in begun or not {form.id, ANY} & spoken
+        if silent and isinstance(first, Field) and first.cond is None and first.expr is None:
+            prompt = min(first.prompts, key=lambda one: one.count, default=None)
+            if prompt is not None and prompt.count > 1:
+                yield ASKED_LATER.at(prompt.node.place_of("count"), count=prompt.count)
+
+
+def _spoken_before(facts: Facts) -> set[str]:
+    """The forms that are called, or to which content goes after it has said something."""
+    found = {name for calls in facts.leads.calls.values() for name in calls}
+    for _, content, _ in facts.document.contents():
+        ways = [act for act in all_acts(content) if isinstance(act, Goto) and act.form is not None]
+        if ways and any(command.text for command in commands_of(content)):
+            found |= {way.form if isinstance(way.form, str) else ANY for way in ways}
+    return found

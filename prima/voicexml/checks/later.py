@@ -9,7 +9,7 @@ from typing import Literal
 from prima.errors import Hint, Problem, one_of, suggestion
 from prima.errors.diagnoses.names import BAD_EXPRESSION, NO_SUCH_FORM, NO_SUCH_ITEM, NO_SUCH_NAME
 from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE
-from prima.errors.diagnoses.values import BAD_VALUE, EXCLUSIVE
+from prima.errors.diagnoses.values import ASKED_LATER, BAD_VALUE, EXCLUSIVE
 from prima.language.commands import TABLE_4_2
 from prima.markup.spans import instead, value_span
 from prima.markup.tree import Node
@@ -21,7 +21,7 @@ from prima.voicexml.arranging import UNIT, is_unit, parts_of
 from prima.voicexml.checks.attributes import bad_value, fits, instead_of
 from prima.voicexml.checks.guests import command_problems
 from prima.voicexml.checks.names import check_name, check_script_names
-from prima.voicexml.elements import ITEMS
+from prima.voicexml.elements import ITEMS, handler_number
 from prima.voicexml.vocabulary import (
     EXPRESSIONS,
     FETCHED_VALUES,
@@ -31,6 +31,8 @@ from prima.voicexml.vocabulary import (
 )
 
 LATER = "When it is to listen, this will be error.badfetch or error.unsupported."
+ASKING = ("field", "initial", "record", "menu")
+"""Elements that ask by their prompts."""
 LONGEST_CODE, LONGEST_VALUE = 60, 40
 """Characters of code and of a property's value that a message quotes."""
 LATER_VALUES = {
@@ -85,7 +87,7 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
         problems += _targets(node, dialogs)
     for dialog in root.all("form", "menu"):
         problems += _items(dialog, dialogs)
-    return problems
+    return [*problems, *_first_prompt(root)]
 
 
 def _check_node(node: Node, lang: str) -> Iterator[Problem]:
@@ -126,6 +128,25 @@ def _items(dialog: Node, dialogs: set[str]) -> Iterator[Problem]:
             remedy = f'It is a dialog: write next="#{name}".'
             hint = instead(remedy, node, "nextitem", "next", f"#{name}")
         yield NO_ITEM.at(node.attribute_place("nextitem"), hint, tag=dialog.tag, name=name)
+
+
+def _first_prompt(root: Node) -> Iterator[Problem]:
+    """A question with which a document begins, and whose prompts all come later (4.1.6)."""
+    first = _first_item(root)
+    if first is None or first.tag not in ASKING or {"cond", "expr"} & first.attributes.keys():
+        return
+    speech = first.all("prompt", "audio", "value", "enumerate")
+    prompt = min(speech, key=handler_number, default=None)
+    if prompt is not None and not first.text and handler_number(prompt) > 1:
+        yield ASKED_LATER.at(prompt.attribute_place("count"), count=handler_number(prompt))
+
+
+def _first_item(root: Node) -> Node | None:
+    """The item with which a document begins; a menu is one."""
+    dialog = next(iter(root.all("form", "menu")), None)
+    if dialog is None or dialog.tag == "menu":
+        return dialog
+    return next((one for one in parts_of(dialog) if one.tag in ITEMS), None)
 
 
 def is_code(node: Node, attribute: str) -> bool:
