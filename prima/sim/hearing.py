@@ -12,6 +12,7 @@ from prima.interpreter.elements import Document
 from prima.interpreter.events import STANDARD, KnownEvents, event_place, near
 from prima.interpreter.selection import beginnings
 from prima.interpreter.surroundings import (
+    NO_SENSOR,
     PLACED,
     Sayings,
     Surroundings,
@@ -40,6 +41,8 @@ OPEN = (
     *("error.unsupported.", "error.badfetch."),
 )
 """Beginnings of events that continue with a name from outside the language."""
+OF_COMMANDS = ("end", "cancel", "interrupted", "expired", "error.unsupported")
+"""Those that continue with the name of a Command."""
 MOST = 500
 """Only so many triggers of a kind are checked: each is compared with all possible utterances."""
 WORDS = (
@@ -47,6 +50,7 @@ WORDS = (
     ("when", "asked", True),
     ("when", "said", False),
     ("never", "says", False),
+    *((tag, name, name == "asked") for tag in ("expect", "never") for name in ("asked", "said")),
 )
 """An attribute that names words: the tag, the attribute, and whether they are asked, not said."""
 
@@ -54,7 +58,8 @@ CANNOT = UNSUPPORTED_COMMAND.says(
     "This robot cannot do {command}: it lacks {lacks}. This never happens.",
     "Name another Command, or a robot that can do it.",
 )
-A_TIME = UNKNOWN_EVENT.says('Nothing raises an event "{name}".')
+NEVER_RAISED = UNKNOWN_EVENT.says('Nothing raises an event "{name}".')
+NO_END = UNKNOWN_EVENT.says('No application ends with "{name}".')
 
 
 def check_hearing(cast: Cast) -> list[Problem]:
@@ -195,7 +200,7 @@ def _never_said(
     remedy: str | Hint = suggestion(words, said.lines, *value_span(node, name))
     if not remedy and node.tag == "when" and asked and sayings.may_hold(words):
         remedy = 'It is said, not asked: write said="...".'
-    if remedy or (node.tag != "never" and said.certain):
+    if remedy or (name != "says" and said.certain):
         message = f'No application {"asks" if asked else "says"} anything with "{words}".'
         yield Problem(node.attribute_place(name), "warning", "never-said", message, remedy)
 
@@ -220,22 +225,39 @@ def _triggers(nodes: list[Node], events: list[KnownEvents], cast: Cast) -> Itera
     begins = {name for one in known for name in beginnings(one)}
     for node, attribute, name in _awaited(nodes):
         ending = ENDINGS if attribute == "reason" else frozenset()
-        if not (name in begins or name in ending or name.startswith(OPEN)):
+        if name in begins or name in ending:
+            continue
+        if name.startswith(OPEN):
+            yield from _unknown(node, attribute, name, _other_end(name, events, cast))
+        elif name.startswith("touch."):
+            place, sensor = node.attribute_place(attribute), name.removeprefix("touch.")
+            hint = nearest(sensor, cast.robot.touch, *value_span(node, attribute, sensor))
+            yield NO_SENSOR.at(place, hint, name=sensor)
+        else:
             yield from _unknown(node, attribute, name, near(name, chain(ending, known)))
+
+
+def _other_end(name: str, events: list[KnownEvents], cast: Cast) -> str:
+    """The event of the Command or service of which another's is likely a typo, or nothing."""
+    first, _, end = name.rpartition(".")
+    known = {*cast.robot.commands, *TABLE_4_2, "iu"} if first in OF_COMMANDS else set()
+    if first in ("reply", "error.service") and not any(one.dynamic for one in events):
+        known = {one.name for one in cast.scenario.services}.union(
+            *(one.services for one in events)
+        )
+    other = near(end, known) if end not in known else ""
+    return f"{first}.{other}" if other else ""
 
 
 def _unknown(node: Node, attribute: str, name: str, other: str | None) -> Iterator[Problem]:
     """An event that nothing raises: a time, or a typo of ``other``."""
     if attribute == "on" and _is_time(name):
         remedy = instead(f'Write at="{name}".', node, "on", "at", name)
-        yield A_TIME.at(node.attribute_place("on", value=False), remedy, name=name)
+        yield NEVER_RAISED.at(node.attribute_place("on", value=False), remedy, name=name)
     elif other:
-        message = f'Nothing raises an event "{name}".'
-        if attribute == "reason" and other in ENDINGS:
-            message = f'No application ends with "{name}".'
+        diagnosis = NO_END if attribute == "reason" and other in ENDINGS else NEVER_RAISED
         remedy = meant(other, *value_span(node, attribute))
-        place = node.attribute_place(attribute)
-        yield Problem(place, "warning", "unknown-event", message, remedy)
+        yield diagnosis.at(node.attribute_place(attribute), remedy, name=name)
 
 
 def _is_time(text: str) -> bool:

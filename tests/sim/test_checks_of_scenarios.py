@@ -237,3 +237,41 @@ def test_a_command_that_the_robot_lacks_is_waited_for_in_vain(
     assert all(says in one.message for one in found)
     if severity != "error":
         assert not api.rehearse(api.load_scenario(path)).failures
+
+
+SHOP = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="shop"><form id="a">
+<block><send {}/><speak>Hello.</speak><gesture name="bow"/></block>
+<on event="reply"><exit/></on></form></prima>"""
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("reply.ticket-ofice", 'Did you mean "reply.ticket-office"?'),
+        ("error.service.ticket-ofice", 'Did you mean "error.service.ticket-office"?'),
+        ("cancel.gestur", 'Did you mean "cancel.gesture"?'),
+        ("error.unsupported.gestur", 'Did you mean "error.unsupported.gesture"?'),
+        ("touch.hed", 'Did you mean "head"?'),
+        ("touch.tail", "There is back and head."),
+        *((f"reply.{name}", "") for name in ("ticket-office", "another")),
+        *(("end.gesture", ""), ("expired.iu", ""), ("touch.own", ""), ("error.badfetch.http", "")),
+    ],
+)
+@pytest.mark.parametrize("where", ['<expect event="{}"/>', '<when on="{}"><say>Yes.</say></when>'])
+def test_a_scenario_awaits_an_event_of_what_is_there(
+    name: str, says: str, where: str, tmp_path: Path
+) -> None:
+    (tmp_path / "shop.xml").write_text(SHOP.format('to="ticket-office"'), encoding="utf-8")
+    own = '<when at="1s"><event name="touch.own"/></when>'
+    text = SCENARIO.split("  <robot")[0] + "</scenario>"
+    (tmp_path / "s.xml").write_text(text.format("shop.xml", own + where.format(name)))
+    found = [one for one in api.validate([tmp_path / "s.xml"]) if one.place.line == 4]
+    assert [one.remedy for one in found if one.code != "unheard-event"] == [says] * bool(says)
+
+
+def test_a_service_named_by_an_expression_may_be_any(tmp_path: Path) -> None:
+    (tmp_path / "shop.xml").write_text(SHOP.format("to-expr=\"'ticket-' + 'ofice'\""))
+    text = SCENARIO.split("  <robot")[0] + "</scenario>"
+    more = '<service name="ticket-office"/><expect event="reply.ticket-ofice"/>'
+    (tmp_path / "s.xml").write_text(text.format("shop.xml", more))
+    assert api.validate([tmp_path / "s.xml"]) == []
