@@ -99,7 +99,8 @@ class DialogueGrammarReader:
         for one in node.walk():
             if one.tag == "ruleref":
                 name = _named(one)
-                names[name] = self._rule_named(one, name, "uri", "#" not in one.get("uri"))
+                reported = not one.get("uri").strip().startswith("#")
+                names[name] = self._rule_named(one, name, "uri", reported)
         for reference in self.document.references:
             reference.resolve(names[reference.uri])
 

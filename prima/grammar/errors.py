@@ -26,6 +26,14 @@ class UnsupportedBuiltIn(GrammarError):
     """There is no such built-in type, or it does not have such parameters."""
 
 
+class NotThere(LookupError):
+    """A grammar's file cannot be read; ``meant`` is the name of another, probably meant."""
+
+    def __init__(self, why: str, meant: str = "") -> None:
+        super().__init__(why)
+        self.meant = meant
+
+
 Where = Callable[[], Place]
 """Computes a place on demand."""
 
@@ -77,7 +85,7 @@ class Problems:
 
 
 def refuse(
-    kind: type[GrammarError], place: Place, code: str, message: str, remedy: str = ""
+    kind: type[GrammarError], place: Place, code: str, message: str, remedy: str | Hint = ""
 ) -> GrammarError:
     """An error of one problem."""
     return kind([Problem(place, "error", code, message, remedy)])

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from urllib.parse import urlsplit
 
-from prima.errors import PrimaError, Span, suggestion
+from prima.errors import Hint, PrimaError, Span, meant, suggestion
 from prima.grammar.builtin import built_in, uri_mode
 from prima.grammar.errors import (
     GrammarError,
+    NotThere,
     Problems,
     UnsupportedBuiltIn,
     UnsupportedFormat,
@@ -30,6 +32,8 @@ MOST_BYTES = 20_000_000
 Fetch = Callable[[str], bytes]
 Refusal = Callable[[str, str], str]
 """Returns why one grammar may not refer to another, by their URIs; empty if it may."""
+Written = Callable[[str], tuple[Span, ...]]
+"""Finds a part of a URI as the document writes it."""
 Read = Callable[["Library", str, bytes, str], GrammarDocument]
 """Reads the bytes of a URI, with its media type if known, into a document."""
 FAILURES = (OSError, LookupError, ValueError, PrimaError)
@@ -70,19 +74,24 @@ class Library:
         if not self.problems.found:
             index_choices(self._linked)
 
-    def fetch(self, uri: str, media: str, where: Where) -> GrammarDocument | None:
+    def fetch(self, uri: str, media: str, where: Where, written: Written) -> GrammarDocument | None:
         """The document of a URI, fetched on first use; problems are noted."""
         try:
             check_known(media_type(media), where(), "")
         except GrammarError as error:
             self._refused(error)
             return None
-        found = self.documents[uri] if uri in self.documents else self._first(uri, media, where)
+        if uri in self.documents:
+            found = self.documents[uri]
+        else:
+            found = self._first(uri, media, where, written)
         if found is not None:
             check_form(self.problems, media_type(media), found.form, uri, where)
         return found
 
-    def _first(self, uri: str, media: str, where: Where) -> GrammarDocument | None:
+    def _first(
+        self, uri: str, media: str, where: Where, written: Written
+    ) -> GrammarDocument | None:
         self.documents[uri] = None
         if self._fetch is None:
             message = f'Nothing fetches the grammar "{uri[:200]}" here.'
@@ -96,8 +105,10 @@ class Library:
             data = self._fetch(uri)
         except FAILURES as error:
             message = f'The grammar "{uri[:200]}" cannot be fetched: {error}.'
-            remedy = REMOTE if uri.startswith(("http:", "https:")) else RELATIVE
-            self.problems.note(where, "no-such-file", message, remedy)
+            remedy = Hint(REMOTE if uri.startswith(("http:", "https:")) else RELATIVE)
+            other = error.meant if isinstance(error, NotThere) else ""
+            hint = meant(other, *written(uri.rpartition("/")[2])) if other else remedy
+            self.problems.note(where, "no-such-file", message, hint)
             return None
         self._bytes += len(data)
         if self._bytes > MOST_BYTES:
@@ -157,7 +168,8 @@ class Library:
         if where == document.uri:
             found: GrammarDocument | None = document
         else:
-            found = self.fetch(where, reference.media, reference.where)
+            written = partial(_word_in, reference)
+            found = self.fetch(where, reference.media, reference.where, written)
         if found is None:
             return None
         return self._external(document, found, reference, name)
@@ -227,6 +239,13 @@ def joined(base: str, uri: str, where: Where) -> str:
         message = f'"{uri[:80]}" is not a URI: {error}.'
         raise refuse(GrammarError, where(), "bad-value", message) from None
     return join(base, uri)
+
+
+def _word_in(reference: Reference, word: str) -> tuple[Span, ...]:
+    """A part of a reference as written, if it is there."""
+    at, place = reference.uri.find(word), reference.where()
+    before = place._replace(column=place.column + reference.lead + at)
+    return () if at < 0 else (Span.of(before, word),)
 
 
 def _name_in(reference: Reference, name: str) -> Span:

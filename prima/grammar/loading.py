@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from urllib.parse import urldefrag
 
-from prima.errors import DocumentError, Place, did_you_mean
+from prima.errors import DocumentError, Place, suggestion
 from prima.grammar.builtin import TYPES, Conflict, built_in, uri_mode
 from prima.grammar.errors import GrammarError, UnsupportedBuiltIn, UnsupportedLanguage, refuse
 from prima.grammar.grammar import Grammar
@@ -17,6 +17,7 @@ from prima.grammar.model import GrammarDocument, Mode, Rule
 from prima.grammar.xmlform import read_xml
 from prima.markup.limits import LIMITS, too_large
 from prima.markup.reader import parse
+from prima.markup.spans import value_span
 from prima.markup.tree import Inner, Node, Source
 from prima.markup.uris import parted
 
@@ -154,7 +155,7 @@ def _external(
     where = partial(node.attribute_place, "src")
     uri, fragment = parted(joined(base, node.get("src").strip(), where))
     check_known(media, where(), "")
-    document = library.fetch(uri, media, where)
+    document = library.fetch(uri, media, where, partial(value_span, node, "src"))
     library.problems.check()
     assert document is not None
     name = rule or fragment
@@ -164,7 +165,7 @@ def _external(
             raise refuse(GrammarError, where(), "private-rule", message)
     elif name:
         message = f'The grammar "{uri}" has no rule "{name}".'
-        hint = did_you_mean(name, document.rules)
+        hint = suggestion(name, document.rules, *value_span(node, "src", name))
         raise refuse(GrammarError, where(), "no-such-rule", message, hint)
     elif not document.root:
         message = f'The grammar "{uri}" names no root rule.'

@@ -116,10 +116,18 @@ def _pattern(pattern: str, what: str, remedy: str) -> Callable[[str], str]:
     return read
 
 
+FILE = re.compile(r"/|\.(?:xml|vxml|grxml|html?)$")
+"""The end of a file's name, or a folder's."""
+
+
 def _target(text: str) -> str:
     if not _fits(TARGET, text):
-        right = f"#{text}" if _fits(NAME, text) else ""
+        file, mark, name = text.rpartition("#") if "#" in text else (text, "", text)
+        named = FILE.search(file) is not None
+        right = f"#{name}" if _fits(NAME, name) and (mark or not named) else ""
         remedy = f'Write "{right}".' if right else 'Write "#" and the id of a form.'
+        if named:
+            remedy = f"It leads to no file, only within this document. {remedy}"
         raise BadValue("is not a place to go to.", remedy, right=right)
     return text
 

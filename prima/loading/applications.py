@@ -74,8 +74,10 @@ def read_native(
 ) -> tuple[Document, list[Problem]]:
     """Read an application in PRIMA's own language, with the grammars in its folder."""
 
+    fetched = fetcher(path_of(path).parent)
+
     def fetch(uri: str) -> bytes:
-        found = fetcher(path_of(path).parent)(uri)
+        found = fetched(uri)
         if taken is not None:
             taken(uri, found)
         return found
@@ -98,13 +100,21 @@ def load(path: str | Path) -> Document:
 
 def fetcher(folder: Path, site: Site | None = None) -> Callable[[str], bytes]:
     """Returns the bytes of grammars in a folder, by their URIs if it was copied from a site."""
-    from prima.voicexml.document import FetchError
+    listed: dict[Path, list[Path]] = {}
 
     def fetch(uri: str) -> bytes:
+        from urllib.parse import unquote
+
+        from prima.grammar.errors import NotThere
+        from prima.voicexml.document import FetchError
+
+        name = site.name(uri) if site else uri
         try:
-            return Folder(str(folder)).fetch(site.name(uri) if site else uri)
+            return Folder(str(folder)).fetch(name)
         except FetchError as error:
-            raise LookupError(str(error).rstrip(".")) from None
+            beside = ":" not in name and not name.startswith(("/", "../"))
+            other = alike(folder / unquote(name), listed) if beside else ""
+            raise NotThere(str(error).rstrip("."), other) from None
 
     return fetch
 
@@ -158,6 +168,11 @@ MOST_BESIDE = 300
 
 
 def nearby(path: Path, *spans: Span, listed: dict[Path, list[Path]]) -> Hint:
+    """A hint that suggests the file that a wrong name most likely means."""
+    return meant(alike(path, listed), *spans)
+
+
+def alike(path: Path, listed: dict[Path, list[Path]]) -> str:
     """The file in the same folder that a wrong name most likely means; its suffix counts little.
 
     ``listed`` caches each folder's files: a document may name very many.
@@ -169,6 +184,6 @@ def nearby(path: Path, *spans: Span, listed: dict[Path, list[Path]]) -> Hint:
             listed[folder] = sorted(one for one in beside if not one.is_dir())
         except (OSError, ValueError):
             listed[folder] = []
-    alike = sorted(listed[folder], key=lambda one: one.suffix == path.suffix)  # the last one counts
-    stems = {one.stem: one.name for one in alike if one.name != path.name}
-    return meant(stems.get(near(path.stem, stems), ""), *spans)
+    files = sorted(listed[folder], key=lambda one: one.suffix == path.suffix)  # the last one counts
+    stems = {one.stem: one.name for one in files if one.name != path.name}
+    return stems.get(near(path.stem, stems), "")

@@ -51,7 +51,8 @@ def _item_names(facts: Facts) -> dict[str | None, set[str]]:
 
 def _form(facts: Facts, name: str, node: Node, attribute: str) -> Iterator[Problem]:
     forms = facts.document.forms
-    if name not in forms and "#" in node.get(attribute):  # otherwise the schema reports it
+    named = node.get(attribute).strip()
+    if name not in forms and named.startswith("#"):  # otherwise the schema reports it
         hint = suggestion(name, forms, *value_span(node, attribute, name))
         yield UNKNOWN_FORM.at(node.place_of(attribute), hint, name=name)
 
