@@ -108,7 +108,7 @@ def _check(
 
     problems: list[Problem] = []
     unread: list[str] = []
-    names = list(_expanded(files))
+    names = _expanded(files)
     validation = loading.Validation(loading.mappings(maps, names))
     for index, name in enumerate(names, 1):
         try:
@@ -132,12 +132,20 @@ def _counts(errors: int, warnings: int) -> str:
     return f"errors: {errors}, warnings: {warnings}" if errors + warnings else "no problems"
 
 
-def _expanded(files: tuple[str, ...]) -> Iterator[str]:
-    """The files, and the documents in the folders.
+def _expanded(files: tuple[str, ...]) -> list[str]:
+    """The files, and the documents in the folders, each once however often it is named.
 
     Raises:
         UsageError: a folder contains no document.
     """
+    found: dict[str, str] = {}
+    for name in _each(files):
+        found.setdefault(os.path.abspath(name), name)
+    return list(found.values())
+
+
+def _each(files: tuple[str, ...]) -> Iterator[str]:
+    """The files, and the documents in the folders."""
     for name in files:
         if not os.path.isdir(name):
             yield name

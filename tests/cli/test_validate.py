@@ -194,6 +194,9 @@ def test_a_folder_stands_for_its_documents(tmp_path: Path) -> None:
     first, second = done.stdout.splitlines()
     assert first.startswith("d/e/b.xml:3:12") and second.startswith("d/f.gram:3:8: warning")
     assert "files: 3; errors: 1, warnings: 1" in done.stderr
+    bad = tmp_path / "d" / "e" / "b.xml"
+    again = prima("validate", "d", "d/e/b.xml", "./d", str(bad), "--format", "short", cwd=tmp_path)
+    assert (again.stdout, again.stderr) == (done.stdout, done.stderr)
 
 
 def test_xml_of_another_purpose_is_no_document_of_a_folder(tmp_path: Path) -> None:
