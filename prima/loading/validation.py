@@ -24,6 +24,7 @@ from prima.loading.scenarios import load_whole
 from prima.loading.voicedocuments import mapped_site, mappings, voicexml_problems
 from prima.markup.check import check_root
 from prima.markup.collecting import seldom_collected
+from prima.markup.encodings import misread
 from prima.markup.limits import LIMITS
 from prima.markup.reader import parse
 
@@ -92,18 +93,27 @@ class Validation:
 def _validate_one(path: str, maps: Mapping[str, str]) -> list[Problem]:
     try:
         data = read_file(path)
-        if is_surely_ours(data):
-            return _application_problems(path, data)
-        if is_voicexml(data):
-            return list(voicexml_problems(path, data, mapped_site(path, maps)))
-        if is_grammar(data) or path.lower().endswith(GRAMMAR_FILES):
-            return _grammar_problems(path_of(path), data)
-        return _problems_by_kind(path, data)
+        return [*misread(path, data), *_problems_by_kind(path, data, maps)]
     except DocumentError as error:
         return error.problems
 
 
-def _problems_by_kind(path: str, data: bytes) -> list[Problem]:
+def _problems_by_kind(path: str, data: bytes, maps: Mapping[str, str]) -> list[Problem]:
+    """The problems of a document, by its beginning.
+
+    Raises:
+        DocumentError: with its problems, if any is an error.
+    """
+    if is_surely_ours(data):
+        return _application_problems(path, data)
+    if is_voicexml(data):
+        return list(voicexml_problems(path, data, mapped_site(path, maps)))
+    if is_grammar(data) or path.lower().endswith(GRAMMAR_FILES):
+        return _grammar_problems(path_of(path), data)
+    return _problems_by_namespace(path, data)
+
+
+def _problems_by_namespace(path: str, data: bytes) -> list[Problem]:
     """The problems of one of PRIMA's own documents.
 
     Raises:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import codecs
 import re
 
-from prima.errors import Place
+from prima.errors import Place, Problem, Span, replaced
+from prima.errors.diagnoses.reading import ENCODING as DECLARED_WRONGLY
 from prima.markup.limits import LIMITS, refusal, too_large
 
 ENCODINGS = frozenset(
@@ -26,6 +27,12 @@ MARKS = (
     (b"\0<\0?", "utf-16-be"),
 )
 """Initial bytes of files in some encodings (XML 1.0, appendix F)."""
+ONE_BYTE = ("iso8859", "cp125", "koi8")
+"""Beginnings of the names of encodings with one byte for each letter."""
+IN_UTF_8 = DECLARED_WRONGLY.says(
+    'The file says encoding="{encoding}", but it is in UTF-8: its letters are read wrongly.',
+    severity="warning",
+)
 LATE_DECLARATION = re.compile(rb"(?:\xef\xbb\xbf)?\s+<\?xml\s")
 
 
@@ -73,6 +80,24 @@ def _codec(encoding: str) -> str:
         return codecs.lookup(encoding).name
     except LookupError:
         return ""
+
+
+def misread(file: str, data: bytes) -> list[Problem]:
+    """Warn of UTF-8 that is declared in an encoding of one byte a letter: it is read as noise.
+
+    A text of that encoding would have to hold, and only in such order, letters like "Ã©".
+    """
+    declaration = ENCODING.match(data)
+    declared = declaration[1].decode() if declaration else ""
+    if declaration is None or data.isascii() or not _codec(declared).startswith(ONE_BYTE):
+        return []
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError:
+        return []
+    place = Place(file, 1, declaration.start(1) + 1)
+    hint = replaced('Write encoding="UTF-8".', "UTF-8", Span.of(place, declared))
+    return [IN_UTF_8.at(place, hint, encoding=declared)]
 
 
 def with_line_feeds(text: str) -> str:

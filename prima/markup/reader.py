@@ -6,16 +6,20 @@ which may name an external identifier (never fetched) and nothing else.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
-from prima.errors import DocumentError, Place, Problem
+from prima.errors import DocumentError, Place, Problem, Span, replaced
 from prima.markup.build import MAX_NAME, LimitReached, Unclear, build
 from prima.markup.check import check_root, check_tree
-from prima.markup.encodings import decode
+from prima.markup.encodings import ENCODING, decode
 from prima.markup.limits import LIMITS, refusal, too_deep
 from prima.markup.tree import Node, Source
 from prima.markup.vocabulary import Vocabulary
 from prima.markup.wellformed import explain
+
+UNVERSIONED = re.compile(r"<\?xml(?:\s*\?>|\s++(?!version\b))")
+"""The beginning of an XML declaration without its version (XML 1.0, 2.8)."""
 
 
 def parse(file: str, data: bytes, vocabularies: Sequence[Vocabulary] = ()) -> Node:
@@ -29,6 +33,7 @@ def parse(file: str, data: bytes, vocabularies: Sequence[Vocabulary] = ()) -> No
     text = decode(file, data)
     end = text.find(">") + 1
     if text.startswith("<?xml") and text[:end].endswith("?>"):
+        _check_declaration(file, text[:end])
         text = " " * end + text[end:]  # the text is decoded, whatever it declares
     source = Source(file, text)
     try:
@@ -43,6 +48,21 @@ def parse(file: str, data: bytes, vocabularies: Sequence[Vocabulary] = ()) -> No
         message = "This is not well-formed XML: a name has a character that no name may have."
         place = Place(file, unclear.line, unclear.column)
         raise refusal(place, "not-xml", message, "Take another name.") from None
+
+
+def _check_declaration(file: str, text: str) -> None:
+    """Refuse an XML declaration that lacks its version, or has it behind the encoding.
+
+    Raises:
+        DocumentError: it does so.
+    """
+    if UNVERSIONED.match(text):
+        place = Place(file)
+        encoding = ENCODING.match(text.encode())
+        right = f'<?xml version="1.0" encoding="{encoding[1].decode() if encoding else "UTF-8"}"?>'
+        spans = () if "\n" in text else (Span.of(place, text),)
+        hint = replaced(f"Write {right}.", right, *spans)
+        raise refusal(place, "not-xml", "The XML declaration does not begin with a version.", hint)
 
 
 def _beyond(much: LimitReached) -> DocumentError:

@@ -78,6 +78,9 @@ XML = [
     ("ampersand", app(block("<speak>a & b</speak>")), "2:", "Write &amp; for &"),
     ("unquoted", "<a b=1/>", "1:6", "in quotes"),
     ("later-declaration", "\n<?xml version='1.0'?><a/>", "2:6", "very beginning"),
+    ("no-version", f"<?xml encoding='EUC-JP'?>{GOOD}", "1:1", 'version="1.0" encoding="EUC-JP"'),
+    ("late-version", f"<?xml encoding='UTF-8'\nversion='1.0'?>{GOOD}", "1:1", "not begin with a version"),
+    ("nothing-declared", f"<?xml?>{GOOD}", "1:1", "not begin with a version"),
     ("many-attributes", app("<form " + "".join(f'a{n}="" ' for n in range(99)) + "/>"), "2:1", "<form> has more than 64 attributes"),
     ("near-namespace", '<prima xmlns="urn:prima:dialog:1"/>', "1:1", 'Did you mean "urn:prima:dialogue:1"?'),
     ("near-vxml", '<vxml xmlns="http://www.w3.org/2001/vmxl"/>', "1:1", 'Did you mean "http://www.w3.org/2001/vxml"?'),
@@ -95,23 +98,37 @@ def test_bytes_and_xml(
     prima("validate", path).check(1, f"{path}:{place}", message)
 
 
+CAFES = app(block("<speak>Le café : é, è, à.</speak><exit/>"))
 ACCEPTED = [
     ("utf-8-bom", b"\xef\xbb\xbf" + GOOD.encode()),
     ("utf-16", GOOD.encode("utf-16")),
     ("shift-jis", f'<?xml version="1.0" encoding="Shift_JIS"?>{GOOD}'.encode("shift_jis")),
     ("euc-jp", f'<?xml version="1.0" encoding="EUC-JP"?>{GOOD}'.encode("euc-jp")),
     ("bom-rules", b'\xef\xbb\xbf<?xml version="1.0" encoding="EUC-JP"?>' + GOOD.encode()),
+    ("style-sheet", f"<?xml-stylesheet href='x'?>{GOOD}".encode()),
+    ("version-in-lines", f"<?xml\n  version = '1.0'\n?>{GOOD}".encode()),
+    ("latin-1", f'<?xml version="1.0" encoding="ISO-8859-1"?>{CAFES}'.encode("latin-1")),
+    ("gbk", f'<?xml version="1.0" encoding="GBK"?>{app(block("<speak>联通</speak><exit/>"))}'.encode("gbk")),
     ("crlf", GOOD.replace("\n", "\r\n").encode()),
     ("external-dtd", f'<!DOCTYPE prima SYSTEM "http://127.0.0.1:9/x.dtd">{GOOD}'.encode()),
     ("external-dtd-dir", f'<!DOCTYPE prima PUBLIC "-//x" "/dev/zero">{GOOD}'.encode()),
     ("unicode-name", app(block("<exit/>"), name="日本語").encode()),
     ("spaces-in-number", app(form('<on event="x" count=" 3 "><exit/></on>')).encode()),
-]
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("name", "data"), ACCEPTED)
 def test_what_looks_odd_but_is_well(prima: Prima, tmp_path: Path, name: str, data: bytes) -> None:
     prima("validate", write(tmp_path, f"{name}.xml", data)).check(0, "no problems")
+
+
+@pytest.mark.parametrize("declared", ["ISO-8859-15", "windows-1252", "KOI8-R"])
+def test_utf_8_that_declares_letters_of_one_byte_is_told(
+    prima: Prima, tmp_path: Path, declared: str
+) -> None:
+    text = f'<?xml version="1.0" encoding="{declared}"?>{CAFES}'
+    path = write(tmp_path, "cafe.xml", text.encode())
+    prima("validate", path).check(0, f"{path}:1:31: warning", 'Write encoding="UTF-8".')
 
 
 def test_a_text_keeps_what_looks_like_a_declaration(prima: Prima, tmp_path: Path) -> None:

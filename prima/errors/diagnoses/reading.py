@@ -20,7 +20,8 @@ ENCODING = Diagnosis(
     (
         "Documents are read as UTF-8, UTF-16, ASCII, ISO-8859, Windows-125x, KOI8, Shift_JIS, "
         "EUC-JP, ISO-2022-JP, GB 2312, GBK, GB 18030, Big5 or EUC-KR. Save the file as UTF-8, "
-        "which needs no declaration."
+        "which needs no declaration. A file in UTF-8 that declares an encoding of one byte a "
+        "letter is read as that, with a warning."
     ),
     rule="XML 1.0, 4.3.3",
 )
