@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from prima.errors import Problem, did_you_mean
 from prima.grammar.legacy import translate
@@ -12,8 +14,13 @@ from prima.script.globals import GLOBALS, VARIABLES
 from prima.script.names import script_names
 from prima.script.parse import parse_script
 
+if TYPE_CHECKING:
+    from prima.script.shared import IsolatedTagEngine
+
 SISR = frozenset(["out", "rules", "meta"])
 """Variables of every tag of a rule (SISR 1.0)."""
+LABELLED = re.compile(r"""\s*\{?\s*(?:[\w$]+|"[^"\n]*"|'[^'\n]*')\s*:""")
+"""The beginning of an object's properties."""
 LOST = "answers that need it do not match"
 
 
@@ -29,13 +36,27 @@ def tag_warnings(document: GrammarDocument) -> list[Problem]:
     """Tags that are scripts, by the identity of the tag."""
     for tag in (*document.globals, *document.tags):
         code = _script(document, tag)
-        if engine.fault(code):
-            shown = " ".join(tag.code.split())[:60]
+        shown = " ".join(tag.code.split())[:60]
+        fault = engine.fault(code)
+        remedy = "" if document.dialect == "legacy" else _as_object(engine, tag.code)
+        if fault:
             message = f'"{shown}" is not ECMAScript: {LOST}.'
-            found.append(Problem(tag.where(), "warning", "bad-expression", message))
+        elif remedy:
+            message = f'"{shown}" is a statement with a label, not an object: it gives no value.'
         else:
             sound[id(tag)] = code
+            continue
+        found.append(Problem(tag.where(), "warning", "bad-expression", message, remedy))
     return [*found, *_unknown(document, sound)]
+
+
+def _as_object(engine: IsolatedTagEngine, code: str) -> str:
+    """The remedy for a tag that is only the properties of an object, in braces or without."""
+    if not LABELLED.match(code):
+        return ""
+    code = code.strip().rstrip(";")
+    right = f"out = {code}" if code[0] == "{" else f"out = {{{code}}}"
+    return "" if engine.fault(right) else f"Write {' '.join(right.split())}."
 
 
 def _script(document: GrammarDocument, tag: Tag) -> str:

@@ -72,3 +72,26 @@ def test_a_value_that_cannot_be_given_has_the_place_of_its_tag(value: str) -> No
     assert match.error is not None and match.error.message.startswith("The value cannot be given")
     line = text.splitlines().index("$s = [b] {out = 1} $t {out = rules.t};") + 1
     assert str(match.error.place) == f"g.gram:{line}:23"
+
+
+@pytest.mark.parametrize(
+    ("tag", "remedy"),
+    [
+        ('{title: "x"}', 'Write out = {title: "x"}.'),
+        ('{title: "x", room: 3};', 'Write out = {title: "x", room: 3}.'),
+        ('{"title": "x"}', 'Write out = {"title": "x"}.'),
+        ("title: 'x', room: 3", "Write out = {title: 'x', room: 3}."),
+        ("{ title: 'x' room: 3 }", ""),
+        ('{ out.title = "x"; }', None),
+        ('out = {title: "x"}', None),
+        ("each: for (var i = 0; i < 3; i++) { out.i = i; }", None),
+    ],
+)
+def test_an_object_that_is_not_assigned_is_told(tag: str, remedy: str | None) -> None:
+    found = load(f"{SCRIPT}$r = a {{!{{ {tag} }}!}};").warnings()
+    told = [] if remedy is None else [("bad-expression", remedy)]
+    assert [(one.code, one.remedy) for one in found] == told
+
+
+def test_tags_older_than_sisr_are_read_as_they_were_meant() -> None:
+    assert not load(f"{ABNF}$r = a {{title:'x'}};").warnings()

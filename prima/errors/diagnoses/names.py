@@ -61,7 +61,10 @@ UNDECLARED_VARIABLE = Diagnosis(
 BAD_EXPRESSION = Diagnosis(
     "bad-expression",
     "Not ECMAScript",
-    ("An expression or a script is not ECMAScript. The place is where the compiler stopped."),
+    (
+        "An expression or a script is not ECMAScript. The place is where the compiler stopped. In a "
+        "grammar, {a: 1} as a whole tag is a statement with a label, and the value stays as it was."
+    ),
     rule="ECMAScript",
 )
 
