@@ -6,12 +6,24 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import dist
 
 from prima.errors import Problem
+from prima.errors.diagnoses.structure import DUPLICATE_ELEMENT
 from prima.markup.tree import Node
 
 Point = tuple[float, float]
 Segment = tuple[Point, Point]
 MOST = 300_000
 """The maximum number of pairs of lines to compare; larger maps are not checked."""
+
+SAME_POINT = DUPLICATE_ELEMENT.says(
+    'The place "{name}" is exactly where "{other}" is.',
+    "Give it x and y of its own, or remove it.",
+    "warning",
+)
+SAME_WAY = DUPLICATE_ELEMENT.says(
+    'The way between "{begin}" and "{end}" is there already, in line {line}.',
+    "Remove it: a way is used in both directions.",
+    "warning",
+)
 
 
 def crosses(one: Segment, two: Segment) -> bool:
@@ -65,10 +77,26 @@ class FloorPlan:
 
     def problems(self, whole: bool = True) -> Iterator[Problem]:
         """Warnings about the map; ``whole`` says whether all its ways are known."""
+        yield from self._twice()
         if len(self._ways) * len(self._walls) <= MOST:
             yield from self._blocked()
         if whole and self._ways and len(self._places) ** 2 * max(len(self._walls), 1) <= MOST:
             yield from self._unreachable()
+
+    def _twice(self) -> Iterator[Problem]:
+        """Places that are where another one is, turned alike, and ways that are there already."""
+        at: dict[tuple[Point, float], str] = {}
+        for name, node in self._nodes.items():
+            where = self._places[name], float(node.get("heading", "0"))
+            if where in at:
+                yield SAME_POINT.at(node.attribute_place("x"), name=name, other=at[where])
+            at.setdefault(where, name)
+        lines: dict[frozenset[str], int] = {}
+        for begin, end, node in self._ways:
+            ends, line = frozenset((begin, end)), node.place.line
+            if ends in lines and begin != end:
+                yield SAME_WAY.at(node.place, begin=begin, end=end, line=lines[ends])
+            lines.setdefault(ends, line)
 
     def _blocked(self) -> Iterator[Problem]:
         for begin, end, node in self._ways:

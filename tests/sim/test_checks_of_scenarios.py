@@ -275,3 +275,20 @@ def test_a_service_named_by_an_expression_may_be_any(tmp_path: Path) -> None:
     more = '<service name="ticket-office"/><expect event="reply.ticket-ofice"/>'
     (tmp_path / "s.xml").write_text(text.format("shop.xml", more))
     assert api.validate([tmp_path / "s.xml"]) == []
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ('<place id="b" x="0.0" y="0" heading="0"/>', ['The place "b" is exactly where "a" is.']),
+        ('<place id="b" x="0" y="0" heading="90"/>', []),
+        ('<thing id="b" x="0" y="0"/>', []),
+        ('<place id="b" x="1" y="0"/><way from="a" to="b"/>', []),
+        ('<place id="b" x="1" y="0"/><way from="a" to="b"/><way from="b" to="a"/>',
+         ['The way between "b" and "a" is there already, in line 1.']),
+    ],
+)  # fmt: skip
+def test_what_a_world_has_twice_is_told(more: str, told: list[str], tmp_path: Path) -> None:
+    head = '<world xmlns="urn:prima:world:1" version="1.0" id="w"><place id="a" x="0" y="0"/>'
+    (tmp_path / "w.xml").write_text(f"{head}{more}</world>", encoding="utf-8")
+    assert [one.message for one in api.validate([tmp_path / "w.xml"])] == told

@@ -84,7 +84,12 @@ DUPLICATE_NAME = Diagnosis(
 )
 
 DUPLICATE_ELEMENT = Diagnosis(
-    "duplicate-element", "Element written twice", "The element may be there only once."
+    "duplicate-element",
+    "Element written twice",
+    (
+        "The element may be there only once. Of a world's ways between the same places, and of "
+        "places at the same point with the same heading, that is a warning."
+    ),
 )
 
 DUPLICATE_ANSWER = Diagnosis(
