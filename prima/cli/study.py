@@ -17,7 +17,8 @@ from prima.cli.common import formats_option, print_json, put, write_for_programs
 def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> None:
     """Run situations under every policy and measure the effects on units, streams and channel.
 
-    Without SCENARIOS the ten situations of the thesis are run. docs/measures.md
+    A folder stands for all scenarios in it. Without SCENARIOS the ten situations of the
+    thesis are run. docs/measures.md
     defines the columns. A "!" marks a run in which an application failed; the exit
     code is then 3.
 
@@ -28,8 +29,9 @@ def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> N
     from prima.experiments.study import POLICIES as ALL
     from prima.experiments.study import format_csv, format_table, result_data, situations
     from prima.experiments.study import study as run_study
+    from prima.testing.finding import find
 
-    chosen, results = scenarios or tuple(map(str, situations())), []
+    chosen, results = find(scenarios) or [*map(str, situations())], []
     total = len(chosen) * len(policies or ALL)
     for result in run_study(chosen, policies or ALL):
         results.append(result)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
-from os.path import abspath, exists, getsize, isfile, join, normpath
+from os.path import abspath, exists, getsize, isdir, isfile, join, normpath
 from typing import TYPE_CHECKING, Protocol
 
 from prima.errors import DocumentError, UsageError
@@ -132,6 +132,8 @@ def read_bytes(path: str | Path, most: int = -1) -> bytes:
         UsageError: it cannot be read.
     """
     try:
+        if isdir(path):
+            raise UsageError(f"{path}: cannot be read: it is a folder. Name a file in it.")
         if exists(path) and not isfile(path):
             raise UsageError(f"{path}: cannot be read: it is not a file.")
         with open(path, "rb") as stream:

@@ -39,6 +39,16 @@ def test_a_failed_application_is_marked_and_determines_the_exit_code(tmp_path: P
     assert (done.returncode, done.stdout.splitlines()[-1].split()[:3]) == (3, ["s", "fifo", "!"])
 
 
+def test_a_folder_stands_for_its_scenarios(tmp_path: Path) -> None:
+    path = tmp_path / "app.xml"
+    path.write_text(app('<form id="f"><block><exit/></block></form>'))
+    done = prima("study", tmp_path, scenario_of(path, tmp_path), "--policy", "fifo")
+    told = [line.split()[:2] for line in done.stdout.splitlines() if line]
+    assert (done.returncode, told[1:]) == (0, [["s", "fifo"]])
+    (tmp_path / "s.xml").unlink()
+    assert "contains no scenarios" in prima("study", tmp_path).stderr
+
+
 def test_an_expected_table_that_is_none_is_told(tmp_path: Path) -> None:
     scenario = scenario_of(api.documents_folder() / "fa" / "emotions.xml", tmp_path)
     (tmp_path / "s.txt").write_text("nothing\n")

@@ -27,7 +27,7 @@ def test_the_suffix_tells_the_format(tmp_path: Path) -> None:
 
 WRONG = [
     (["none.xml"], "none.xml: cannot be read: No such file"),
-    (["."], "it is not a file"),
+    (["."], "it is a folder. Name a file in it."),
     (["empty.xml"], "the file is empty"),
     (["text.txt"], "text.txt:1:"),
     (["world.xml", "--what", "states"], "this is a world, which has no states"),
