@@ -170,3 +170,32 @@ def test_a_name_of_many_parts_takes_no_more_room_than_a_few_of_them() -> None:
         assert tracemalloc.get_traced_memory()[1] < 20_000_000
     finally:
         tracemalloc.stop()
+
+
+@pytest.mark.parametrize(
+    ("handler", "told"),
+    [
+        ('<on event="message"><log expr="event.data.txt"/></on>', 1),
+        ('<on event="message" cond="event.data.form == \'Ann\'"><exit/></on>', 1),
+        ('<on event="touch.head touch.back"><script>var a = event.data?.sensr;</script></on>', 1),
+        ('<on event="message"><log expr="event.data.text + event.data[\'txt\']"/></on>', 0),
+        ('<on event="message"><log expr="event.data.colour"/></on>', 0),
+        ('<on event="touch message"><log expr="event.data.txt"/></on>', 0),
+        ('<on event="human"><log expr="event.data.distanc"/></on>', 0),
+        ('<on event="message"><var name="event" expr="1"/><log expr="event.data.txt"/></on>', 0),
+        (
+            '<on event="message"><speak>Hm.<on event="error"><log expr="event.data.txt"/></on>'
+            "</speak></on>",
+            0,
+        ),
+    ],
+)
+def test_a_misspelt_part_of_what_an_event_brings_is_told(
+    handler: str, told: int, tmp_path: Path
+) -> None:
+    text = (
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="a"><form id="m">'
+        f"{handler}</form></prima>"
+    )
+    found = problems(tmp_path, text, "undeclared-variable")
+    assert [one["severity"] for one in found] == ["warning"] * told

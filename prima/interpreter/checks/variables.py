@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from itertools import chain
 
-from prima.errors import Hint, Place, Problem, Span, replaced, suggestion
+from prima.errors import Hint, Place, Problem, Span, one_of, replaced, suggestion
 from prima.errors.diagnoses.names import UNDECLARED_VARIABLE
-from prima.interpreter.acts import Assign, Clear, Expression, Return
+from prima.interpreter.acts import Assign, Clear, Expression, Handler, Return
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Form
+from prima.interpreter.selection import beginnings
 from prima.markup.spans import Declarations, value_span
 from prima.markup.tree import Node
 from prima.script.globals import HANDLED, IDENTIFIER, RESERVED
@@ -24,6 +26,16 @@ ELSEWHERE = {
 }
 """Values as other languages write them, with those of ECMAScript."""
 PARTS = ("name", "message", "data")
+FIELDS = {
+    "touch": ("sensor",),
+    "message": ("from", "text"),
+    "human.found": ("distance", "angle", "sensed"),
+    "corner": ("corner",),
+    **dict.fromkeys(("noinput", "nomatch"), ("command", "utterance", "confidence")),
+    "error.service": ("service", "message"),
+}
+"""What the data of events holds that are raised by the language itself."""
+FIELD = re.compile(r"data\s*\??\.\s*([A-Za-z_$][\w$]*)")
 SCOPED = ("document", "dialog", "application")
 """Scopes that may prefix the name of a variable."""
 ABSENT = {
@@ -48,6 +60,9 @@ NO_PART = UNDECLARED_VARIABLE.says(
     'An event has no "{name}" of its own; it has name, message and data.',
     severity="warning",
 )
+NO_FIELD = UNDECLARED_VARIABLE.says(
+    'The data of {event} has no "{name}"; it has {known}.', severity="warning"
+)
 NO_SENSOR = UNDECLARED_VARIABLE.says(
     "No <watch> is in force here: sensor is there only where one is.",
     "Write a <watch> into this form or the document.",
@@ -63,8 +78,10 @@ def place_in(expr: Expression, characters: int) -> Place:
     return expr.node.source.inside(expr.node.index, expr.attribute, characters)
 
 
-def _parts_of_event(expr: Expression, names: Names, known: Known) -> Iterator[Problem]:
-    """Properties of ``event`` that no event has."""
+def _parts_of_event(
+    expr: Expression, names: Names, known: Known, handler: Handler | None
+) -> Iterator[Problem]:
+    """Properties of ``event`` that no event has, and misspelt ones of its data."""
     if "event" in known:
         return
     for use in names.uses:
@@ -76,6 +93,25 @@ def _parts_of_event(expr: Expression, names: Names, known: Known) -> Iterator[Pr
             span = Span.of(place, name)
             remedy = replaced(f"Write event.data.{name}.", f"data.{name}", span)
             yield NO_PART.at(place, suggestion(name, PARTS, span) or remedy, name=name)
+        elif name == "data" and handler is not None:
+            yield from _field_of_data(expr, start, handler)
+
+
+def _field_of_data(expr: Expression, start: int, handler: Handler) -> Iterator[Problem]:
+    """A property of an event's data that is most likely a misspelling of one that it has."""
+    found = FIELD.match(expr.code, start)
+    kinds = {
+        next((one for one in beginnings(event) if one in FIELDS), "") for event in handler.events
+    }
+    if found is None or len(kinds) != 1 or not (event := kinds.pop()):
+        return
+    name, known = found[1], FIELDS[event]
+    place = place_in(expr, found.start(1))
+    hint = Hint() if name in known else suggestion(name, known, Span.of(place, name))
+    if hint:
+        yield NO_FIELD.at(
+            place, hint, event=event, name=name, known=one_of(known).replace(" or ", " and ")
+        )
 
 
 class Variables:
@@ -101,7 +137,7 @@ class Variables:
             if not (name in known or id(expr.node) in self._handling):
                 yield NO_EVENT_HERE.at(place_in(expr, start), name=name)
         if "event" in names.read and id(expr.node) in self._handling:
-            yield from _parts_of_event(expr, names, known)
+            yield from _parts_of_event(expr, names, known, self._handling[id(expr.node)])
         if "sensor" in names.read and not (self._senses or "sensor" in known):
             yield NO_SENSOR.at(place_in(expr, names.read["sensor"]))
 
@@ -120,9 +156,10 @@ class Variables:
             yield from HANDLED
 
     @cached_property
-    def _handling(self) -> set[int]:
+    def _handling(self) -> dict[int, Handler]:
         """The elements of all handlers, in which the event's variables are visible."""
-        return {id(node) for handler in self.facts.handlers for node in handler.node.walk()}
+        inner_last = sorted(self.facts.handlers, key=lambda one: one.node.index)
+        return {id(node): handler for handler in inner_last for node in handler.node.walk()}
 
     def of_script(self, expr: Expression, known: Known) -> Iterator[Problem]:
         """The undeclared names in a script."""
@@ -132,7 +169,7 @@ class Variables:
                 place = place_in(expr, start)
                 every = chain(self._given_at(expr.node), known.written())
                 yield IN_SCRIPT.at(place, _meant(place, name, every), name=name)
-        yield from _parts_of_event(expr, names, known)
+        yield from _parts_of_event(expr, names, known, self._handling.get(id(expr.node)))
 
     def given(self) -> Iterator[Problem]:
         """Check variables that acts assign, clear or return; wrong names are reported before."""
