@@ -27,7 +27,7 @@ from prima.errors.diagnoses.structure import (
 )
 from prima.errors.diagnoses.values import BAD_VALUE
 from prima.language.values import KINDS, XML_SPACE, BadValue, is_beyond, outside, read_value
-from prima.markup.hints import OTHERS, TEXTS, meant_value, misplaced_remedy, text_remedy
+from prima.markup import hints
 from prima.markup.spans import (
     added,
     attribute_span,
@@ -213,7 +213,7 @@ def _misplaced(child: Node, parent: Node, vocabulary: Vocabulary) -> Problem:
         return FOREIGN.at(child.place, tag=tag, namespace=child.namespace)
     if tag not in vocabulary.tags:
         return UNKNOWN.at(child.place, _known_instead(child, parent, vocabulary), tag=tag)
-    hint = Hint(misplaced_remedy(tag, parent, vocabulary))
+    hint = Hint(hints.misplaced_remedy(tag, parent, vocabulary))
     return NOT_HERE.at(child.place, hint, tag=tag, parent=parent.tag)
 
 
@@ -231,7 +231,7 @@ def _known_instead(child: Node, parent: Node, vocabulary: Vocabulary) -> Hint:
 
 def _stray_text(node: Node, vocabulary: Vocabulary) -> Problem:
     shown = node.text if len(node.text) <= 30 else node.text[:27] + "..."
-    hint = Hint(text_remedy(node, "speak" in vocabulary.tags))
+    hint = Hint(hints.text_remedy(node, "speak" in vocabulary.tags))
     return HOLDS_TEXT.at(_text_place(node), hint, tag=node.tag, text=shown)
 
 
@@ -286,7 +286,7 @@ def _unknown_attribute(node: Node, name: str, rules: _Rules, missing: list[Attri
     """The problem of an unknown attribute; a missing one that it means is not reported as well."""
     known = list(rules.known)
     hint = _other_attribute(node, name, rules) or _missing_attribute(node, name, known, missing)
-    if not hint and rules.element.text and name in TEXTS:
+    if not hint and rules.element.text and name in hints.TEXTS:
         hint = Hint(f"Write the text inside: <{node.tag}>...</{node.tag}>.")
     hint = hint or similar_attribute(node, name, known)
     if not hint:
@@ -303,7 +303,7 @@ def _other_attribute(node: Node, name: str, rules: _Rules) -> Hint:
         return replaced("Write xml:lang.", "xml:lang", attribute_span(node, name))
     if name == "next" and "goto" in rules.element.children:
         return Hint(f'Put a goto inside: <goto next="{node.get(name)}"/>.')
-    return Hint(OTHERS.get((node.tag, name), ""))
+    return Hint(hints.other_attribute(node.tag, name))
 
 
 def _missing_attribute(node: Node, name: str, known: list[str], missing: list[Attribute]) -> Hint:
@@ -328,12 +328,12 @@ def _value_problem(item: Attribute, is_expression: bool, text: str) -> BadValue 
     if item.choices:
         if text in item.choices:
             return None
-        near = nearest_word(text, item.choices)
+        near = hints.meant_choice(text, item.choices)
         remedy = f'Did you mean "{near}"?' if near else f"Write {one_of(item.choices)}."
         only = item.choices[0] if len(item.choices) == 1 else ""
         return BadValue("is not allowed here.", remedy, right=near or only)
     bad = _not_of_kind(item.kind, text)
-    right = meant_value(item.kind, text, item.default) if bad else ""
+    right = hints.meant_value(item.kind, text, item.default) if bad else ""
     if not bad or not right:
         return bad
     value = read_value(item.kind, right)

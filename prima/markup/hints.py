@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 
-from prima.errors import one_of, with_article
+from prima.errors import nearest_word, one_of, with_article
 from prima.language.values import DRAWABLE, read_value
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Vocabulary
@@ -31,6 +32,11 @@ INSIDE = {
     "prima": "Say it with <speak> in a <block> of a <form>.",
     "value": 'Write an expression: <value expr="..."/>.',
     "goto": "Remove it; the tag ends with />.",
+    "link": "Write it into a <grammar>.",
+    **dict.fromkeys(
+        ("var", "assign"), 'Write it as expr="..."; a text in it has quotes of its own.'
+    ),
+    **dict.fromkeys(("param", "property"), 'Write it as value="...".'),
 }
 """Where text directly in an element belongs."""
 INSTEAD = {
@@ -39,20 +45,57 @@ INSTEAD = {
 }
 """Remedies for elements that make no sense in their place."""
 OTHERS = {
+    ("active-sensing-human", "timeout"): 'Write patience="...".',
     ("answer", "delay"): 'Write after="...".',
     ("failure", "delay"): 'Write after="...".',
     ("field", "bargein"): 'Write it at the <prompt>: <prompt bargein="...">.',
     ("field", "timeout"): 'Write it at the <prompt>: <prompt timeout="...">.',
     ("goto", "form"): 'Write next="#...": a form.',
     ("goto", "to"): 'Write next="#...": a form.',
+    ("point-by-hand", "to"): 'Write toward="...".',
     ("reply", "delay"): 'Write after="...".',
     ("send", "service"): 'Write to="...": a service.',
+    ("set-direction", "to"): 'Write toward="...".',
+    ("turn-and-speak", "to"): 'Write toward="...".',
     ("var", "value"): 'Write expr="...": a text in it has quotes of its own.',
+    ("when", "event"): 'Write on="...".',
     ("when", "time"): 'Write at="...".',
 }
 """Attributes that authors give to elements, with what belongs there."""
+MOVED = {
+    **{
+        (tag, name): 'Put it into an <if cond="...">.'
+        for tag in ("assign", "exit", "goto", "reprompt", "return", "send", "speak", "throw")
+        for name in ("cond", "if", "when")
+    },
+    **{
+        (tag, name): f'Write what is compared inside: <data name="{name}" value="..."/>.'
+        for tag in ("expect", "never")
+        for name in ("to", "name", "angle", "toward")
+    },
+    ("filled", "cond"): 'Put an <if cond="..."> into it.',
+    ("grammar", "type"): 'A type of answers belongs to the field: <field type="...">.',
+}
+"""Attributes that authors give to elements, with the other element that has what they mean."""
+CHOICES = {
+    **dict.fromkeys(("string", "str", "any", "open"), "text"),
+    **dict.fromkeys(("yesno", "yes-no", "bool"), "boolean"),
+    **dict.fromkeys(("integer", "int", "float"), "number"),
+}
+"""Values of other languages, with those that are meant."""
 TEXTS = ("text", "value", "say", "content", "message", "name")
 """Attributes that authors give to elements whose text belongs inside."""
+
+
+def other_attribute(tag: str, name: str) -> str:
+    """The remedy for an attribute that another one, or another element, has."""
+    return OTHERS.get((tag, name)) or MOVED.get((tag, name), "")
+
+
+def meant_choice(text: str, choices: Collection[str]) -> str:
+    """The allowed value that another most likely means, or nothing."""
+    other = CHOICES.get(text.lower(), "")
+    return other if other in choices else nearest_word(text, choices)
 
 
 def half(text: str) -> str:
@@ -99,6 +142,8 @@ def _guess(kind: str, text: str, usual: str) -> str:
         return TRUTHS.get(text.strip().lower(), text.strip().lower())
     if kind in ("event", "events"):
         return re.sub(r"\s*,\s*", " ", text.strip())
+    if kind == "id":
+        return text.strip().removeprefix("#")
     return ""
 
 
@@ -142,6 +187,8 @@ def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
         )
     if parent.tag == tag:
         return inside_itself(tag)
+    if tag in INSTEAD and vocabulary.child(parent.key, "speak"):
+        return INSTEAD[tag]
     if holder := _holder(tag, parent, vocabulary):
         return f"Put it into {with_article(f'<{holder}>')}."
     if set(allowed) & set(vocabulary.parents(parent.tag)):

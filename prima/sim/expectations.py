@@ -163,7 +163,7 @@ def _check_other(reader: Reader, node: Node, name: str, ids: set[str]) -> None:
     if not other or other in ids:
         return
     remedy: str | Hint = suggestion(other, ids, *value_span(node, name))
-    if not remedy and name == "after" and other[:1].isdigit():
+    if not remedy and other[:1].isdigit():
         remedy = f'For a time write within="{other}".'
     message = f'No expectation above has the id "{other}".'
     reader.problem(node, "no-such-name", message, name, remedy)

@@ -8,7 +8,7 @@ import pytest
 
 from prima import api
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
-from prima.markup.hints import OTHERS, meant_value
+from prima.markup.hints import MOVED, OTHERS, meant_value
 from prima.sim.vocabulary.scenario import SCENARIO
 
 
@@ -92,6 +92,47 @@ def test_an_attribute_that_authors_expect_is_none_and_what_is_to_be_written_is_o
         assert name not in attributes
         where = DIALOGUE.attributes["prompt"] if "<prompt" in OTHERS[tag, name] else attributes
         assert right.partition("=")[0] in where
+
+
+@pytest.mark.parametrize(("tag", "name"), MOVED)
+def test_an_attribute_that_belongs_to_another_element_is_none(tag: str, name: str) -> None:
+    known = [one.attributes[tag] for one in (DIALOGUE, SCENARIO) if tag in one.attributes]
+    assert known and all(name not in attributes for attributes in known)
+
+
+@pytest.mark.parametrize(
+    ("content", "remedy"),
+    [
+        ("<block><goto next='#f' if='true'/></block>", 'Put it into an <if cond="...">.'),
+        ("<block><var name='n'>0</var></block>", 'Write it as expr="..."; a text in it has quotes'),
+        (
+            "<block><send to='s'><param name='n' value='1'>0</param></send></block>",
+            'as value="..."',
+        ),
+        ("<link next='#f'>stop</link>", "Write it into a <grammar>."),
+        ("<on event='touch'><prompt>Oh.</prompt></on>", "Write <speak>; a <prompt> is what"),
+        ("<block><topological-move to='#lab'/></block>", 'Write "lab".'),
+        ("<block><end/></block>", "Write <exit/>."),
+        ("<on event='touch'><retry/></on>", "Write <reprompt/>."),
+        ("<field name='a' type='string'><prompt>A?</prompt></field>", 'Did you mean "text"?'),
+        (
+            "<field name='a'><prompt>A?</prompt><grammar type='date'/></field>",
+            "belongs to the field",
+        ),
+        ("<watch name='near' when='human.distance &lt; 1'/>", "Write sensor.human."),
+        ("<var name='goal'/><block cond='goal == lab'/>", "For the text itself write 'lab'."),
+    ],
+)
+def test_what_is_written_in_other_languages_is_known(
+    content: str, remedy: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "a.xml"
+    path.write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a">'
+        f'<form id="f">{content}</form></prima>'
+    )
+    found = [one.remedy for one in api.validate([path]) if one.severity == "error"]
+    assert any(remedy in one for one in found), found
 
 
 def test_the_attribute_to_be_written_is_named(tmp_path: Path) -> None:

@@ -43,6 +43,7 @@ ABSENT = {
     "alert": 'Write <log expr="..."/>.',
     "setTimeout": 'Write <send event="..." delay="..."/> and handle the event.',
     "fetch": 'Write <send to="..."/>, which asks a service.',
+    **{name: f"Write sensor.{name}." for name in ("human", "moving", "position")},
     "require": "Write the functions into a <script>.",
 }
 """Remedies for names that ECMAScript has in other environments."""
@@ -131,7 +132,7 @@ class Variables:
             if start in names.called:
                 yield NO_FUNCTION.at(place, meant, name=name)
             else:
-                bare = _is_bare(expr, name)
+                bare = _is_bare(expr, name) or _is_compared(expr.code, start)
                 yield self._undeclared(expr.node, place, name, meant, bare=bare)
         for name, start in names.handled.items():
             if not (name in known or id(expr.node) in self._handling):
@@ -215,6 +216,11 @@ def _is_bare(expr: Expression, name: str) -> bool:
     return (
         expr.code.strip() == name and expr.node.tag != "value" and name not in {*ABSENT, *ELSEWHERE}
     )
+
+
+def _is_compared(code: str, start: int) -> bool:
+    """Whether a name stands behind a comparison, where a text was probably meant."""
+    return code[:start].rstrip().endswith(("==", "!="))
 
 
 def _quoted(hint: Hint, name: str) -> Hint:

@@ -53,6 +53,8 @@ HINTS: dict[str, str | Instead] = {
     "record": 'Write a <field type="text">.',
     "initial": "Write a <field>, or a <block>.",
     "object": Instead("command", 'type="..."'),
+    **dict.fromkeys(("end", "finish", "quit"), Instead("exit", "/")),
+    **dict.fromkeys(("repeat", "retry"), Instead("reprompt", "/")),
     "stop": Instead("stop-moving"),
     "move": Instead("topological-move"),
 }
