@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from prima.errors import Hint, Problem, Span, meant, one_of, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_NAME
 from prima.grammar.text import fold
-from prima.interpreter.acts import Pause, Text
+from prima.interpreter.acts import Declare, Pause, Text
 from prima.interpreter.elements import Document, Field, all_items, document_commands
 from prima.interpreter.events import event_place, handlers_of
 from prima.language.commands import WRITTEN
-from prima.markup.spans import value_span
+from prima.markup.spans import instead, value_span
 from prima.markup.tree import Node
 
 NO_SENSOR = NO_SUCH_NAME.says('The robot has no touch sensor "{name}".', severity="warning")
@@ -44,10 +44,11 @@ def check_surroundings(document: Document, names: Surroundings) -> list[Problem]
     At run time they cause device errors, which a document may handle; a text is spoken anyway.
     """
     problems = list(_voices(document.node, names.voices)) if names.voices else []
+    variables = _variables(document)
     for command in document_commands(document):
         for name, value in command.args.items():
             if name in PLACED and isinstance(value, str):
-                problems += check_name(command.node, name, value, names)
+                problems += check_name(command.node, name, value, names, variables)
     for handler in handlers_of(document):
         for event in handler.events:
             problems += check_sensor(handler.node, event, names)
@@ -76,7 +77,18 @@ def _voices(root: Node, voices: frozenset[str]) -> Iterator[Problem]:
             yield NO_VOICE.at(node.attribute_place("xml:lang"), nearest("", voices), name=lang)
 
 
-def check_name(node: Node, name: str, value: str, names: Surroundings) -> list[Problem]:
+def _variables(document: Document) -> set[str]:
+    """The names of a document's variables and form items."""
+    found = {act.name for act in document.setup if isinstance(act, Declare)}
+    for form in document.forms.values():
+        found |= {act.name for act in form.setup if isinstance(act, Declare)}
+        found |= {item.name for item in all_items(form.items)}
+    return found
+
+
+def check_name(
+    node: Node, name: str, value: str, names: Surroundings, variables: Collection[str] = ()
+) -> list[Problem]:
     """Warn of an argument of a Command, one of :data:`PLACED`, that names something missing."""
     what = PLACED[name]
     known = {"to": names.places, "toward": names.points, "name": names.gestures}[name]
@@ -86,6 +98,10 @@ def check_name(node: Node, name: str, value: str, names: Surroundings) -> list[P
         return []
     whose = "The robot knows" if what == "gesture" else "The world has"
     hint = nearest(value, known, *value_span(node, name))
+    if value in variables:
+        hint = instead(
+            f'It is a variable: write {name}-expr="{value}".', node, name, f"{name}-expr", value
+        )
     return [NOT_THERE.at(node.attribute_place(name), hint, whose=whose, what=what, name=value)]
 
 

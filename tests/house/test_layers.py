@@ -122,7 +122,7 @@ INSIDE = {
         {"__init__"},
     ],
     "interpreter": [
-        {"acts", "diagnoses", "rings", "selection", "vocabulary"},
+        {"acts", "diagnoses", "rings", "selection", "steps", "vocabulary"},
         {"elements"},
         {"events", "places", "pyengine", "sensors"},
         {"naming", "transfers"},

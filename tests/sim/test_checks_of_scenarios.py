@@ -292,3 +292,20 @@ def test_what_a_world_has_twice_is_told(more: str, told: list[str], tmp_path: Pa
     head = '<world xmlns="urn:prima:world:1" version="1.0" id="w"><place id="a" x="0" y="0"/>'
     (tmp_path / "w.xml").write_text(f"{head}{more}</world>", encoding="utf-8")
     assert [one.message for one in api.validate([tmp_path / "w.xml"])] == told
+
+
+def test_a_place_named_by_a_variable_is_told_to_be_an_expression(tmp_path: Path) -> None:
+    (tmp_path / "app.xml").write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><var name="goal"/>'
+        '<form id="f"><field name="spot" type="text"><prompt>Where?</prompt><noinput><exit/></noinput>'
+        '</field><block><topological-move to="goal"/><point-by-hand toward="spot"/>'
+        '<topological-move to="deks"/><exit/></block></form></prima>'
+    )
+    text = SCENARIO.split("  <robot")[0] + "</scenario>"
+    (tmp_path / "s.xml").write_text(text.format("app.xml", ""))
+    found = [one for one in api.validate([tmp_path / "s.xml"]) if one.code == "no-such-name"]
+    first, second, third = found
+    assert first.remedy == 'It is a variable: write to-expr="goal".'
+    assert second.remedy == 'It is a variable: write toward-expr="spot".'
+    assert [edit.text for edit in first.fixes[0].edits] == ['to-expr="goal']
+    assert "variable" not in third.remedy

@@ -63,7 +63,8 @@ BAD_EXPRESSION = Diagnosis(
     "Not ECMAScript",
     (
         "An expression or a script is not ECMAScript. The place is where the compiler stopped. In a "
-        "grammar, {a: 1} as a whole tag is a statement with a label, and the value stays as it was."
+        "grammar, {a: 1} as a whole tag is a statement with a label, and the value stays as it was, as "
+        "does that of n where n++ is assigned to n."
     ),
     rule="ECMAScript",
 )

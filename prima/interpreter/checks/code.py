@@ -28,6 +28,7 @@ from prima.interpreter.acts import (
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.checks.variables import Variables, place_in
 from prima.interpreter.elements import Document, Field, Form, Item, Prompt, Subdialog
+from prima.interpreter.steps import no_step
 from prima.script.compile import compiled
 from prima.script.data import declared
 from prima.script.evaluation import EngineLost, ScriptError
@@ -107,6 +108,8 @@ def check_code(facts: Facts) -> Iterator[Problem]:
         else:
             yield from _used(variables, expr, known, script)
     yield from variables.given()
+    for _, act in facts.acts.of(Assign):
+        yield from no_step(act.node)
 
 
 def _used(variables: Variables, expr: Expression, known: Known, script: bool) -> Iterator[Problem]:

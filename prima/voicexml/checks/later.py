@@ -10,6 +10,7 @@ from prima.errors import Hint, Problem, one_of, suggestion
 from prima.errors.diagnoses.names import BAD_EXPRESSION, NO_SUCH_FORM, NO_SUCH_ITEM, NO_SUCH_NAME
 from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE
 from prima.errors.diagnoses.values import ASKED_LATER, BAD_VALUE, EXCLUSIVE
+from prima.interpreter.steps import no_step
 from prima.language.commands import TABLE_4_2
 from prima.markup.spans import instead, value_span
 from prima.markup.tree import Node
@@ -102,6 +103,8 @@ def _check_node(node: Node, lang: str) -> Iterator[Problem]:
         yield from command_problems(node, TABLE_4_2[node.tag])
     if node.key == "property":
         yield from _property_problems(node)
+    if node.key == "assign":
+        yield from no_step(node)
     if node.key == "script" and node.own_text.strip():
         yield from check_script_names(node)
 
