@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from prima.errors import Diagnosis, Hint, suggestion
-from prima.errors.diagnoses.grammars import EMPTY_ANSWER, NO_SUCH_RULE
+from prima.errors.diagnoses.grammars import BAD_TOKEN, EMPTY_ANSWER, NO_SUCH_RULE
 from prima.errors.diagnoses.structure import DUPLICATE_ID, STRAY_TEXT
 from prima.errors.diagnoses.values import BAD_VALUE
 from prima.errors.diagnosis import NO_HINT
@@ -39,6 +39,11 @@ TWO_RULES = DUPLICATE_ID.says('There are two rules "{name}".')
 NO_RULE = NO_SUCH_RULE.says('There is no rule "{name}".')
 TEXT_BESIDE_RULES = STRAY_TEXT.says("This grammar has rules; its own text has no effect.")
 EMPTY_GRAMMAR = EMPTY_ANSWER.says("This grammar has no words.", "Write what it takes.")
+BARRED = BAD_TOKEN.says(
+    'There is no "|" here: the words before and behind it are one answer.',
+    "Write <one-of> with an <item> for each answer.",
+    "warning",
+)
 NO_RULES = Hint("Remove root: this grammar holds no <rule>.")
 """The remedy for the name of a rule where there is none."""
 MOST_REPEATED = 999
@@ -109,6 +114,8 @@ class DialogueGrammarReader:
         parts: list[Part] = []
         for item in node.content:
             if isinstance(item, str):
+                if "|" in item:
+                    self.note(BARRED, node)
                 if folded := fold(item):
                     parts.append(Words(folded, tuple(folded.split())))
             elif (part := self._part(item)) is not None:

@@ -12,6 +12,7 @@ from prima.interpreter.acts import Declare, Expression, Handler, Script
 from prima.interpreter.buildcontent import ContentBuilder, Parts
 from prima.interpreter.diagnoses import (
     BAD_PROPERTY,
+    BARRED_OPTION,
     EMPTY_OPTION,
     ID_WITH_DOT,
     NO_FORM_AT_ALL,
@@ -260,6 +261,8 @@ class Builder(ContentBuilder):
         answers = Answers(type=node.get("type"))
         for child in parts.get("option", ()):
             said = child.text
+            if "|" in said:
+                self.problem(BARRED_OPTION, child)
             if not fold(said):
                 self.problem(EMPTY_OPTION, child)
             elif fold(said) in answers.options:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.errors.diagnoses.grammars import EMPTY_ANSWER, NO_ANSWER
+from prima.errors.diagnoses.grammars import BAD_TOKEN, EMPTY_ANSWER, NO_ANSWER
 from prima.errors.diagnoses.names import FA_ONLY
 from prima.errors.diagnoses.structure import (
     AFTER_ELSE,
@@ -46,6 +46,11 @@ NO_GRAMMAR = MISSING_ELEMENT.says(
 )
 EMPTY_OPTION = EMPTY_ANSWER.says(
     "This option has no words.", "Write the words of the answer into it."
+)
+BARRED_OPTION = BAD_TOKEN.says(
+    'There is no "|" here: the words before and behind it are one answer.',
+    "Write an <option> for each answer.",
+    "warning",
 )
 TWO_OPTIONS = DUPLICATE_ANSWER.says(
     '"{answer}" is an option of this field already.', "Remove one of them."

@@ -32,6 +32,7 @@ INSIDE = {
     "prima": "Say it with <speak> in a <block> of a <form>.",
     "value": 'Write an expression: <value expr="..."/>.',
     "goto": "Remove it; the tag ends with />.",
+    "one-of": "Write it into an <item>.",
     "link": "Write it into a <grammar>.",
     **dict.fromkeys(
         ("var", "assign"), 'Write it as expr="..."; a text in it has quotes of its own.'
@@ -138,13 +139,15 @@ def _guess(kind: str, text: str, usual: str) -> str:
         return f"{float(number) * UNITS[unit] / 1000:g}s" if unit in UNITS else ""
     if kind in ("number", "integer") and (match := re.fullmatch(NUMBER, text)):
         return match[1].replace(",", ".")
+    return _guess_word(kind, text.strip())
+
+
+def _guess_word(kind: str, text: str) -> str:
     if kind == "boolean":
-        return TRUTHS.get(text.strip().lower(), text.strip().lower())
+        return TRUTHS.get(text.lower(), text.lower())
     if kind in ("event", "events"):
-        return re.sub(r"\s*,\s*", " ", text.strip())
-    if kind == "id":
-        return text.strip().removeprefix("#")
-    return ""
+        return re.sub(r"\s*,\s*", " ", text)
+    return text.removeprefix("#") if kind == "id" else ""
 
 
 def text_remedy(node: Node, spoken: bool) -> str:

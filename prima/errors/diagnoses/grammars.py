@@ -37,7 +37,8 @@ BAD_TOKEN = Diagnosis(
     "Bad token",
     (
         "A word of a grammar cannot be said or typed: a quote that is not closed, a key that "
-        "no telephone has, or in the ABNF form a question mark, which SRGS reserves (2.5)."
+        "no telephone has, or in the ABNF form a question mark, which SRGS reserves (2.5). In "
+        "PRIMA's own language a | between words is a warning: it has no meaning there."
     ),
     rule="SRGS 1.0, 2.1",
 )

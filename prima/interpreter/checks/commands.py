@@ -17,7 +17,9 @@ from prima.markup.tree import Node
 
 MANY_STEPS = 200
 """Maximum number of steps of a run whose branches are compared."""
-BRACES = re.compile(r"\$?\{\{?\s*(\w+)\s*\}\}?")
+BRACES = re.compile(r"\$?\{\{?\s*((\w+)(?:[.(\[][^{}]*?)?)\s*\}\}?")
+OWN = ("event.", "session.", "sensor.")
+"""Beginnings of values that the language itself gives."""
 
 LITERAL_VALUE = Diagnosis(
     "literal-value",
@@ -57,10 +59,11 @@ def _silent(prompt: Prompt) -> Iterator[Problem]:
 
 
 def _literal(facts: Facts, node: Node, text: Text | None, form: Form | None) -> Iterator[Problem]:
+    known = facts.known_in(form) if form else facts.shared
     for part in text or ():
         found = BRACES.search(part) if isinstance(part, str) and "{" in part else None
-        if found and found[1] in (facts.known_in(form) if form else facts.shared):
-            yield LITERAL_VALUE.at(node.place, text=found[0], name=found[1])
+        if found and (found[2] in known or found[1].startswith(OWN)):
+            yield LITERAL_VALUE.at(node.place, text=found[0], name=found[1].replace('"', "'"))
 
 
 def check_units(facts: Facts) -> Iterator[Problem]:

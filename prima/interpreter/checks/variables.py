@@ -132,7 +132,7 @@ class Variables:
             if start in names.called:
                 yield NO_FUNCTION.at(place, meant, name=name)
             else:
-                bare = _is_bare(expr, name) or _is_compared(expr.code, start)
+                bare = _is_bare(expr, name, start)
                 yield self._undeclared(expr.node, place, name, meant, bare=bare)
         for name, start in names.handled.items():
             if not (name in known or id(expr.node) in self._handling):
@@ -211,16 +211,12 @@ class Variables:
         return NOT_DECLARED.at(place, _quoted(hint, name) if bare else hint, name=name)
 
 
-def _is_bare(expr: Expression, name: str) -> bool:
-    """Whether an expression is a single name that may have been meant as a text."""
-    return (
-        expr.code.strip() == name and expr.node.tag != "value" and name not in {*ABSENT, *ELSEWHERE}
-    )
-
-
-def _is_compared(code: str, start: int) -> bool:
-    """Whether a name stands behind a comparison, where a text was probably meant."""
-    return code[:start].rstrip().endswith(("==", "!="))
+def _is_bare(expr: Expression, name: str, start: int) -> bool:
+    """Whether a name is an expression's only one, or compared, and may have been meant as a text."""
+    if name in {*ABSENT, *ELSEWHERE}:
+        return False
+    whole = expr.code.strip() == name and expr.node.tag != "value"
+    return whole or expr.code[:start].rstrip().endswith(("==", "!="))
 
 
 def _quoted(hint: Hint, name: str) -> Hint:
