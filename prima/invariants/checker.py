@@ -261,8 +261,6 @@ class Checker(Starts):
         for ab in self.waiting.values():
             self.fresh(ab)
             self.waits_rightly(ab)
-            if self.in_view:
-                self.seen.add(ab.name)
 
     def _check_records(self) -> None:
         """Check the mediator's records of a finished instant."""

@@ -274,7 +274,7 @@ class Extensions(FloorRules):
     def channel_connected(self, ab: AB) -> None:
         """X4: the first word waits until the robot has turned to a user whom it does not see."""
         wanted = "x4" in self.extensions and ab.connect and not ab.starts
-        if wanted and ab.name not in self.faced | self.seen and not self.in_view:
+        if wanted and ab.name not in self.faced and not self.in_view:
             self.report(11, "X4", f"{ab.shown} starts, but the robot has not turned to the user")
 
     def close_trees(self) -> None:

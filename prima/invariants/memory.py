@@ -102,8 +102,6 @@ class Memory:
         """The floor according to ``floor`` records."""
         self.extra_reactions = 0
         self.lacking: set[str] = set()
-        self.seen: set[str] = set()
-        """ABs that have waited while the camera saw the user: X4 may be satisfied."""
         self.faced: set[str] = set()
         """ABs for which the robot turns to the user (X4)."""
         self.robot: tuple[float, float] | None = None

@@ -27,11 +27,15 @@ def x1(mediation: Mediation, ab: Behavior) -> bool:
 
 
 def x4(mediation: Mediation, ab: Behavior) -> bool:
-    """X4: face the user before a conversation begins."""
-    if not (ab.connect and "x4" in mediation.policy.extensions):
+    """X4: face the user before a conversation begins.
+
+    While they are in view nothing is decided: they may go before the first word is said.
+    """
+    wanted = ab.connect and "x4" in mediation.policy.extensions
+    if not wanted or mediation.memory.in_view:
         return False
     ab.connect = False
-    return not mediation.memory.in_view and insert(mediation, ab, [Command("face-human")], "X4")
+    return insert(mediation, ab, [Command("face-human")], "X4")
 
 
 def x9(mediation: Mediation, ab: Behavior) -> bool:

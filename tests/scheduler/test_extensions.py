@@ -40,6 +40,19 @@ def test_x4_nothing_is_put_in_where_the_camera_sees_the_user() -> None:
     assert stage.select() == ["fa#1"]
 
 
+def test_x4_the_robot_turns_if_the_user_goes_while_the_first_word_waits() -> None:
+    stage = Stage("prima+x4")
+    stage.mediator.sees_user(True)
+    stage.request("ea", say("A long story."))
+    stage.select()
+    stage.request("fa", ask("What is it?"), connect=True)
+    assert stage.select() == [] and inserted(stage) == [], "the user is there, the speaker is not"
+    stage.mediator.sees_user(False)
+    stage.at(900).end("ea#1")
+    assert stage.select() == ["fa#2"]
+    assert inserted(stage) == [("X4", "face-human")]
+
+
 @pytest.mark.parametrize(("policy", "connect"), [("prima", True), ("prima+x4", False)])
 def test_x4_is_off_unless_run_and_document_ask_for_it(policy: str, connect: bool) -> None:
     stage = Stage(policy)
