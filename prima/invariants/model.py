@@ -63,7 +63,7 @@ class AB:
     """The index of its latest start among the records."""
     started_at: int = -1
     reacted: int | None = None
-    """The event that it reacted to at its latest start."""
+    """The event that it reacted to when it started; what starts again has no flag."""
     followed_at: int = -1
     """When one of its parents or its loop ended, or a window requested it (S2c)."""
     freed_at: int = -1

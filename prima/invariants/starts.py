@@ -63,7 +63,8 @@ class Starts(Telling):
 
     def _run(self, ab: AB) -> None:
         self.waiting.pop(ab.name, None)
-        ab.reacted = ab.cause
+        if not ab.starts:  # what starts again still reacts to the same event
+            ab.reacted = ab.cause
         if self.third_turn(ab):  # it precedes all waiting reactions (X7)
             ab.reacted = max(one.cause or 0 for one in (ab, *self.waiting.values()))
         self.turn = None if ab is self.turn else self.turn

@@ -153,6 +153,20 @@ def test_x2_an_earlier_reaction_does_not_interrupt_a_later_one_at_its_start() ->
     assert check(stage.records, "prima+x2") == []
 
 
+def test_x2_what_starts_again_does_not_give_way_to_a_reaction_to_its_own_event() -> None:
+    stage = Stage("prima+x2")
+    stage.request("fa", restartable(say("A long story.")), cause=EVENT)
+    stage.request("ea", ask("Yes?"), cause=EVENT)
+    assert stage.select() == ["fa#1"]
+    stage.at(100).mediator.emergency(True, True, 8)
+    stage.select()
+    stage.at(200).mediator.emergency(False, True, 9)
+    assert stage.select() == ["fa#1"]
+    stage.at(300).request("fa", command("point-by-hand", angle=0), cause=EVENT + 3)
+    assert stage.select() == ["fa#2"], "from now on the floor reacts to another event (F2)"
+    assert stage.holds("ea#1") == ["F2", "S1"] and stage.phases("interrupt") == []
+
+
 def test_x2_a_reaction_that_leaves_does_not_go_before_what_outranks_it() -> None:
     # Two restartable Commands want the body; a reaction of low priority interrupts the one
     # that runs, and the other, which outranks it by S2a, is passed over.
