@@ -16,17 +16,22 @@ from prima.scheduler.selection import able
 
 def x8(mediation: Mediation) -> None:
     """X8: give up reactions that were not started in time."""
-    waiting = mediation.memory.waiting.values()
-    stale = [ab for ab in waiting if _is_stale(ab, mediation.now)]
-    if not stale or mediation.halted:
+    waiting = mediation.memory.waiting
+    stale = [ab for ab in waiting.values() if _is_stale(ab, mediation.now)]
+    if mediation.halted:
         return
-    ranked = mediation.policy.ranked(waiting, mediation.memory, mediation.now)
-    may_start = [ab for _, ab in able(mediation, ranked, {})]
     for ab in stale:
-        if ab in may_start and ab.stale == mediation.now:
+        if ab.stale == mediation.now and _may_start(mediation, ab):
             ab.stale = mediation.now + 1  # the selection of this very instant may start it
-        elif ab.name in mediation.memory.waiting:
+        elif ab.name in waiting:
             _give_up(mediation, ab)
+
+
+def _may_start(mediation: Mediation, ab: Behavior) -> bool:
+    """Whether an AB may start now; another that held devices back (S3) may have been given up."""
+    waiting = mediation.memory.waiting.values()
+    ranked = mediation.policy.ranked(waiting, mediation.memory, mediation.now)
+    return any(one is ab for _, one in able(mediation, ranked, {}))
 
 
 def _is_stale(ab: Behavior, now: int) -> bool:

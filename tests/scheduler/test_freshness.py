@@ -220,6 +220,15 @@ def test_x8_whoever_cannot_start_in_the_last_instant_is_given_up_in_the_next() -
     assert late(stage, 3001) == [] and stage.told("fa") == ["expired.speak"]
 
 
+def test_x8_a_branch_that_another_kept_waiting_starts_when_that_is_given_up() -> None:
+    turning = command("turn-and-speak", "Oh!", angle=9)
+    stage = busy(steps=[Step(turning), Step(command("turn", angle=3)), Step(NOD, (1,))])
+    assert stage.holds("fa#2") == ["S3"], "its devices are free, but the first branch wants them"
+    assert late(stage) == ["fa#2"]
+    assert stage.told("fa") == ["expired.turn-and-speak"]
+    assert check(stage.records, POLICY) == []
+
+
 def test_x8_what_follows_goes_first_and_its_application_hears_of_all() -> None:
     stage = busy(say("Oh!"), Group(chain(say("Who?"), say("You!"))), say("Well."))
     assert late(stage) == []

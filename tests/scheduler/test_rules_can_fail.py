@@ -316,7 +316,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("x8", "never shrinks", reworded(freshness, "_give_up", "not kept or ", "True or ")),
     ("x8", "whatever keeps it", reworded(freshness, "_give_up", "not kept or ", "")),
     ("x8", "what follows stays", put(freshness, "followers", lambda root: [root])),
-    ("x8", "the last instant", reworded(freshness, "x8", "if ab in may_start", "if False")),
+    ("x8", "the last instant", put(freshness, "_may_start", lambda mediation, ab: False)),
     ("x8", "what has begun is abandoned", reworded(freshness, "_notices", " or run.begun", "")),
     ("x8", "nothing is offered", put(freshness, "offered", nothing)),
     ("x8", "what comes before is lost", reworded(endings, "answered", "in ab.waits_for", "in ()")),
