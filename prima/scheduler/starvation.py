@@ -27,7 +27,8 @@ def e4(mediation: Mediation, ab: Behavior) -> bool:
         return False
     bound, bounded = mediation.bound, []
     for other in mediation.memory.waiting.values():
-        if other.app is ab.app or other.priority != ab.priority or other.reaction is not None:
+        equal = other.priority == ab.priority and other.reaction is None
+        if not (equal and _waits_for_loops(mediation, other, ab)):
             continue
         wait = other.wait
         wait.loops += 1
@@ -40,6 +41,15 @@ def e4(mediation: Mediation, ab: Behavior) -> bool:
         mediation.starved += 1
         other.reaction = -mediation.starved
     return bool(bounded)
+
+
+def _waits_for_loops(mediation: Mediation, ab: Behavior, loop: Behavior) -> bool:
+    """E4: whether an AB waits because of another application's feedback Command.
+
+    It needs one of that one's devices, or its stream holds the floor (F2).
+    """
+    keeps = bool(ab.devices & loop.devices) or mediation.memory.holder is loop.stream
+    return keeps and ab.app is not loop.app
 
 
 def _report(mediation: Mediation, ab: Behavior, rule: str, by: str, **fields: object) -> None:

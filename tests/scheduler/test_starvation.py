@@ -85,6 +85,27 @@ def test_e4_another_priority_is_not_counted() -> None:
     assert stage.phases("starve") == []
 
 
+def test_e4_only_waits_for_the_loops_are_counted() -> None:
+    """What waits for the speaker alone is not starved by somebody who drives."""
+    stage = tracked(2, {"fa": "fa", "ea": "ea", "eb": "ea"})
+    stage.at(1).request("ea", say("A long story."), say("The end."))
+    stage.request("eb", say("Hello."))
+    stage.select()
+    assert loops(stage, 30) == {} and stage.phases("starve") == []
+    stage.end("ea#1")
+    assert stage.select() == ["ea#2"], "its topic goes on (S2c)"
+    assert stage.floor == []
+
+
+def test_e4_what_the_floor_of_the_loops_keeps_waiting_is_counted() -> None:
+    stage = Stage()
+    stage.request("fa", TRACK, cause=EVENT)
+    stage.select()
+    stage.at(1).request("ea", say("Hello."))
+    assert loops(stage, 30) == {}
+    assert [(r["behavior"], r["rule"]) for r in stage.phases("starve")] == [("ea#1", "E4")]
+
+
 def test_e4_what_is_bounded_first_goes_first() -> None:
     stage = tracked(3, {"fa": "fa", "ea": "ea", "eb": "ea"})
     stage.at(1).request("eb", TURN)
