@@ -97,6 +97,7 @@ class Mediation:
 
     def __post_init__(self) -> None:
         self.maker = Maker(self.table)
+        self.memory.composing = "x5" in self.policy.extensions
 
     @property
     def now(self) -> int:

@@ -67,6 +67,20 @@ def test_none_displaces_and_records_the_collision() -> None:
     assert [r["device"] for r in stage.phases("collision")] == ["speaker"]
 
 
+def test_none_what_was_displaced_once_has_nothing_to_lose() -> None:
+    stage = Stage("none")
+    stage.request("ea", move())
+    stage.select()
+    stage.at(1).request("fa", move("hall"), say())
+    stage.select()
+    stage.at(400).end("fa#1.1", goal=False)
+    stage.select()
+    assert [(r["behavior"], r["device"]) for r in stage.phases("collision")] == [
+        ("ea#1.1", "localization"),
+        ("ea#1.1", "locomotion"),
+    ], "the second loop takes the wheels from nobody"
+
+
 def test_none_does_not_let_a_unit_collide_with_itself() -> None:
     stage = Stage("none")
     stage.request("ea", Group([Step(say()), Step(command("gesture", name="nod"), (0,))]))
