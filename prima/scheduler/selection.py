@@ -189,8 +189,6 @@ def _admitted_by(mediation: Mediation, ab: Behavior, composed: bool) -> str:
 def run(mediation: Mediation, ab: Behavior, resumes: bool) -> None:
     """Run an AB; if it ``resumes``, so does its stream (C2)."""
     memory, now = mediation.memory, mediation.now
-    if not mediation.policy.exclusive:
-        _collide(mediation, ab)
     ab.resumed = ab.restarting or (ab.loop > 0 and ab.freed != now)
     ab.restarting = False
     ab.wait = Wait()
@@ -198,6 +196,8 @@ def run(mediation: Mediation, ab: Behavior, resumes: bool) -> None:
         ab.run.begun = True
     if ab.feedback:
         ab.next_loop()
+    if not mediation.policy.exclusive:
+        _collide(mediation, ab)
     mediation.started.append(ab)
     beside = mediation.policy.exclusive and memory.conflict(ab) is not None
     memory.start(ab)

@@ -81,6 +81,14 @@ def test_none_what_was_displaced_once_has_nothing_to_lose() -> None:
     ], "the second loop takes the wheels from nobody"
 
 
+def test_none_names_the_loop_that_displaces() -> None:
+    stage = Stage("none")
+    stage.request("fa", command("turn", angle=3))
+    stage.request("ea", move())
+    assert stage.select() == ["fa#1", "ea#1.1"]
+    assert [r["by"] for r in stage.phases("collision")] == ["ea#1.1"]
+
+
 def test_none_does_not_let_a_unit_collide_with_itself() -> None:
     stage = Stage("none")
     stage.request("ea", Group([Step(say()), Step(command("gesture", name="nod"), (0,))]))
