@@ -81,7 +81,6 @@ class Extensions(FloorRules):
             self.report(11, "X9", f"{ab.name} is put in, but {tree.name} has not to say it")
         if before.urgent:
             self.report(11, "X9", f"{ab.name} is put in before {before.shown}, which is wanted now")
-        tree.words_due = False
 
     def words_said(self, ab: AB) -> None:
         """X9: a stream that resumes has said its words, if others have spoken meanwhile."""
@@ -95,7 +94,7 @@ class Extensions(FloorRules):
             for tree in self.trees.values():
                 if tree.app != ab.app and tree.suspended and tree.spoken:
                     tree.words_due = True
-        if not (ab.inserted or ab.tree.suspended):
+        if ab.inserted in ("", "X9") and not ab.tree.suspended:
             ab.tree.words_due = False
 
     def stands_right(self, ab: AB) -> None:

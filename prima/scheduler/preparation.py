@@ -46,7 +46,6 @@ def x9(mediation: Mediation, ab: Behavior) -> bool:
     stream, words = ab.stream, ab.stream.words
     if not stream.words_due or words is None or ab.reaction is not None or wanted_now(ab):
         return False
-    stream.words_due = False
     return insert(mediation, ab, [replace(words)], "X9")
 
 
@@ -56,8 +55,8 @@ def note_words(mediation: Mediation, ab: Behavior) -> None:
         for stream in mediation.memory.streams.values():
             if stream.app is not ab.app and stream.suspended and stream.spoken:
                 stream.words_due = True
-    if not (ab.inserted or ab.stream.suspended):
-        ab.stream.words_due = False
+    if ab.inserted in ("", "X9") and not ab.stream.suspended:
+        ab.stream.words_due = False  # also for what was said while the words waited
 
 
 def insert(mediation: Mediation, ab: Behavior, commands: list[Command], rule: str) -> bool:

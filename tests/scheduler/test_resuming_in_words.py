@@ -101,6 +101,20 @@ def test_x9_each_break_has_its_words() -> None:
     assert check(stage.records, POLICY) == []
 
 
+def test_x9_words_that_wait_for_their_turn_are_said_once() -> None:
+    stage = broken()
+    stage.at(1500).request("ea", say("What?"), cause=TOUCH + 1)
+    stage.at(2000).end("fa#1")
+    assert stage.select() == ["ea#3"] and inserted(stage) == [("X9", "speak")]
+    stage.at(2500).request("fa", say("Hm."), cause=TOUCH + 2)
+    stage.at(3000).end("ea#3")
+    assert stage.select() == ["fa#2"], "it goes before the words, which wait"
+    stage.at(4000).end("fa#2")
+    assert stage.select() == ["ea#4"]
+    stage.at(5000).end("ea#4")
+    assert stage.select() == ["ea#2"] and inserted(stage) == [("X9", "speak")]
+
+
 def test_x9_another_topic_in_its_place_does_not_resume_it() -> None:
     stage = broken()
     other = Command("speak", text="Something else.", now=True)

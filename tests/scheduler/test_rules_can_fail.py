@@ -331,7 +331,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
         "what is no speech",
         reworded(preparation, "note_words", '"speaker" in ab.devices', "True"),
     ),
-    ("x9", "for ever", reworded(preparation, "x9", "stream.words_due = False", "pass")),
+    ("x9", "for ever", reworded(preparation, "note_words", "ab.stream.words_due = False", "pass")),
     ("x9", "another topic, too", reworded(preparation, "x9", " or wanted_now(ab)", "")),
     ("x9", "nobody waits for it", put(preparation, "join_first", nothing)),
     ("x7", "dropped", put(thirdturn, "owe", nothing)),
