@@ -8,6 +8,7 @@ from prima.messages import Command
 from prima.scheduler.admission import link
 from prima.scheduler.behavior import Behavior, Stream
 from prima.scheduler.mediation import Mediation
+from prima.scheduler.robot_state import sets
 from prima.scheduler.rules import third_turn
 
 
@@ -22,8 +23,8 @@ def x1(mediation: Mediation, ab: Behavior) -> bool:
     """X1: restore the robot's state on which a suspended stream relies."""
     if not ab.stream.suspended or first_of(ab.stream) is not None:
         return False
-    own = ab.type.effects if ab.type is not None else frozenset()
-    return insert(mediation, ab, ab.stream.effects.missing(own, mediation.robot), "X1")
+    made = ab.stream.effects.missing(sets(ab.type, ab.command), mediation.robot)
+    return insert(mediation, ab, made, "X1")
 
 
 def x4(mediation: Mediation, ab: Behavior) -> bool:

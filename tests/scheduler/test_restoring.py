@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
+
+import pytest
 
 from prima.invariants import check
 from prima.messages import (
@@ -53,6 +56,35 @@ def test_x1_who_waits_for_its_own_way_back_is_kept_waiting_by_nobody_else() -> N
     assert stage.select() == ["ea#4.1"]
     stage.at(90_000).end("ea#4.1", x=4.0, y=1.0, heading=10.0)
     assert stage.select() == ["ea#3"] and stage.phases("starve") == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "args", "way"),
+    [
+        ("turn", None, {"angle": 30}, "set-position-and-direction"),
+        ("turn-and-speak", "There.", {"angle": 30}, "set-position-and-direction"),
+        ("set-speed-and-time", None, {"time": "1s"}, "set-position-and-direction"),
+        ("turn-and-speak", "There.", {"toward": "room"}, "set-position"),
+        ("set-direction", None, {"heading": 30}, "set-position"),
+    ],
+)
+def test_x1_what_moves_from_where_the_robot_stands_relies_on_it(
+    kind: str, text: str | None, args: dict[str, Any], way: str
+) -> None:
+    stage, then = Stage("prima+x1"), command(kind, text, **args)
+    stage.request("ea", move(), command("set-direction", heading=90), say("First."), then)
+    stage.select()
+    stage.at(500).end("ea#1.1", x=4.0, y=1.0, heading=0.0)
+    stage.select()
+    stage.at(600).end("ea#2", x=4.0, y=1.0, heading=90.0)
+    stage.select()
+    stage.request("fa", command("turn", angle=3), cause=EVENT)
+    stage.select()
+    stage.at(1000).end("ea#3")
+    stage.select()
+    stage.at(1500).end("fa#1", x=0.0, y=0.0, heading=0.0)
+    stage.select()
+    assert inserted(stage) == [("X1", way)]
 
 
 def test_x1_is_off_unless_it_is_asked_for() -> None:
