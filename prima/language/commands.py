@@ -75,6 +75,8 @@ class CommandType:
     arguments: Mapping[str, Argument] = field(default_factory=dict)
     effects: frozenset[str] = frozenset()
     """The effects on which later Commands of a stream rely once it has ended (X1): :data:`EFFECTS`."""
+    relative: bool = False
+    """Whether its effects depend on where the robot is before it, as an ``angle`` does (X1)."""
     motion: Literal["", "faithful", "free"] = ""
     """Faithful to its own path (a dance), or free in its path (going somewhere) (rule X5)."""
     substitute: str = ""
@@ -113,6 +115,7 @@ def _row(
         engages="engages" in marks,
         now="now" in marks,
         effects=frozenset(effects.split()),
+        relative="relative" in marks,
         motion="free" if "leaves" in marks else "",
         text=text,
         arguments={key.rstrip("_").replace("_", "-"): value for key, value in arguments.items()},
@@ -221,6 +224,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 "Set Speed and Time",
                 "locomotion",
                 "Drives at a speed for a time.",
+                marks="relative",
                 effects="position direction",
                 speed=Argument("number", "metres a second, backward negative", -2, 2, default=0.0),
                 turn_speed=Argument("number", "degrees a second", -180, 180, default=0.0),

@@ -13,9 +13,6 @@ FAR = 0.5
 TURNED = 15.0
 """The robot, or its head, turns back if it is turned away by more degrees than this."""
 
-RELATIVE = ("turn", "set-speed-and-time")
-"""Commands that move the robot from where it stands, as those do that have an ``angle``."""
-
 Pose = tuple[float, float, float]
 """Metres east and north on the map, degrees counter-clockwise from east."""
 Head = tuple[float, float]
@@ -23,11 +20,8 @@ Head = tuple[float, float]
 
 
 def sets(row: CommandType | None, command: Command | None) -> frozenset[str]:
-    """The effects of a Command that do not depend on the robot's state before it.
-
-    One that turns by an angle, or drives for a time, relies on where the robot stands.
-    """
-    if row is None or command is None or row.name in RELATIVE or "angle" in command.args:
+    """The effects of a Command that do not depend on the robot's state before it (X1)."""
+    if row is None or command is None or row.relative or "angle" in command.args:
         return frozenset()
     return row.effects
 
