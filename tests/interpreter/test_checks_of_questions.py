@@ -53,29 +53,3 @@ TO_B = '<goto next="#b"/>'
 )
 def test_a_question_that_nothing_asks_the_first_time_is_told(body: str, told: int) -> None:
     assert warned(body, "nothing-to-say") == told
-
-
-ANSWER = """<form id="a">{}<field name="tea"{}><prompt>Tea?</prompt>{}
-<noinput count="3"><exit/></noinput><filled>{}<exit/></filled></field></form>"""
-OPTIONS = '<option value="Y">yes</option><option>no</option>'
-
-
-@pytest.mark.parametrize(
-    ("more", "answers", "cond", "told"),
-    [
-        ("", OPTIONS, "tea == 'y'", 1),
-        ("", OPTIONS, "true &amp;&amp; tea !== 'No'", 1),
-        ("", OPTIONS, "tea == 'Y' || tea == 'no'", 0),
-        ("", OPTIONS, "tea == 'maybe'", 0),
-        ("", OPTIONS, "tea$.utterance == 'No'", 0),
-        ("", OPTIONS, "document.tea == 'No'", 0),
-        ("", OPTIONS + "<grammar>No</grammar>", "tea == 'No'", 0),
-        ("<on event='touch'><assign name='tea' expr=\"'No'\"/></on>", OPTIONS, "tea == 'No'", 0),
-    ],
-)
-def test_an_answer_that_is_compared_with_a_misspelt_value_is_told(
-    more: str, answers: str, cond: str, told: int
-) -> None:
-    content = f'<if cond="{cond}"><speak>Hm.</speak></if>'
-    found = warned(ANSWER.format(more, "", answers, content), "bad-value")
-    assert found == told

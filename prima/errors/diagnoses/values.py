@@ -9,8 +9,7 @@ BAD_VALUE = Diagnosis(
     "Bad value",
     (
         "An attribute's text is not of the attribute's kind: a time has its unit (2s, 500ms), "
-        "a number is written in digits, and so on. Or an answer is compared with a text that no "
-        "option of its question has."
+        "a number is written in digits, and so on."
     ),
 )
 

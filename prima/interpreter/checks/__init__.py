@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from prima.errors import Problem
-from prima.interpreter.checks.answers import check_comparisons
 from prima.interpreter.checks.arguments import given_to
 from prima.interpreter.checks.code import check_code
 from prima.interpreter.checks.commands import check_branches, check_texts, check_units
@@ -32,7 +31,6 @@ CHECKS: tuple[Callable[[Facts], Iterator[Problem]], ...] = (
     check_reachable,
     check_items,
     check_code,
-    check_comparisons,
     check_texts,
     check_branches,
     check_endless,
