@@ -139,6 +139,9 @@ class Selection(Patience):
     def admitted_by(self, ab: AB) -> str:
         """The rule by which an AB without competitors starts."""
         holder = self.holder
+        running = self.running.values()
+        if any(self.composes(ab, one) and ab.devices & one.devices for one in running):
+            return "X5"
         if self.carries_floor(ab):
             return "X5"
         if self.third_turn(ab) and self.kept_otherwise(ab):

@@ -177,7 +177,7 @@ def _admitted_by(mediation: Mediation, ab: Behavior, composed: bool) -> str:
     policy, holder = mediation.policy, mediation.memory.holder
     if not policy.exclusive:
         return "none"
-    if composed:
+    if composed or mediation.memory.conflict(ab) is not None:
         return "X5"
     if rules.third_turn(ab, mediation.memory) and rules.refusal(ab, mediation.memory) is not None:
         return "X7"
