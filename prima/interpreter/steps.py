@@ -19,8 +19,10 @@ NO_STEP = BAD_EXPRESSION.says(
 
 def no_step(assign: Node) -> Iterator[Problem]:
     """Warn of an ``assign`` such as that of ``n++`` to ``n``."""
-    name, code = assign.get("name").strip(), assign.get("expr")
-    found = STEP.fullmatch(code)
+    code = assign.get("expr")
+    if not code.rstrip().endswith(("++", "--")):
+        return
+    name, found = assign.get("name").strip(), STEP.fullmatch(code)
     if found is not None and found[1] == name:
         right = f"{name} {found[2][0]} 1"
         hint = replaced(f"Write {right}.", right, *value_span(assign, "expr"))

@@ -18,7 +18,7 @@ from prima.interpreter.acts import (
     run_commands,
 )
 from prima.interpreter.checks.facts import Facts
-from prima.interpreter.elements import Field
+from prima.interpreter.elements import Field, Form, Prompt
 from prima.interpreter.events import DEFAULTS, silent_fields
 from prima.language.commands import TABLE_4_2
 
@@ -86,15 +86,21 @@ def check_silence(facts: Facts) -> Iterator[Problem]:
 
 def check_first_prompts(facts: Facts) -> Iterator[Problem]:
     """Warn of questions that listen without a word the first time, when nothing is said before."""
+    late = [(form, prompt) for form, _ in facts.forms if (prompt := _late_prompt(form))]
     begun = [*facts.document.forms.values()][:1]
-    spoken = _spoken_before(facts)
-    for form, _ in facts.forms:
-        first = form.items[0] if form.items else None
-        silent = form in begun or not {form.id, ANY} & spoken
-        if silent and isinstance(first, Field) and first.cond is None and first.expr is None:
-            prompt = min(first.prompts, key=lambda one: one.count, default=None)
-            if prompt is not None and prompt.count > 1:
-                yield ASKED_LATER.at(prompt.node.place_of("count"), count=prompt.count)
+    spoken = _spoken_before(facts) if late else set()
+    for form, prompt in late:
+        if form in begun or not {form.id, ANY} & spoken:
+            yield ASKED_LATER.at(prompt.node.place_of("count"), count=prompt.count)
+
+
+def _late_prompt(form: Form) -> Prompt | None:
+    """The first prompt of a question with which a form begins, if its count is above 1."""
+    first = form.items[0] if form.items else None
+    if not isinstance(first, Field) or first.cond is not None or first.expr is not None:
+        return None
+    prompt = min(first.prompts, key=lambda one: one.count, default=None)
+    return prompt if prompt is not None and prompt.count > 1 else None
 
 
 def _spoken_before(facts: Facts) -> set[str]:
