@@ -149,6 +149,10 @@ def test_a_scenario_that_a_host_has_answered_does_not_go_on(whole: Path) -> None
 
 def test_what_is_no_file_is_no_journal(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.jsonl")
-    for path in (tmp_path / "pipe.jsonl", "/dev/zero", tmp_path):
+    for path, what in (
+        (tmp_path / "pipe.jsonl", "not a file"),
+        ("/dev/zero", "not a file"),
+        (tmp_path, "a folder. Name a file in it"),
+    ):
         done = prima("live", "--resume", str(path))
-        assert done.returncode == 2 and "cannot be read: it is not a file" in done.stderr
+        assert done.returncode == 2 and f"cannot be read: it is {what}." in done.stderr
