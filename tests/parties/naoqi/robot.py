@@ -21,8 +21,8 @@ class Speech:
         self._silent = threading.Event()
 
     def say(self, text: str, language: str) -> None:
-        tell("says", text=text, language=language)
         self._silent.clear()
+        tell("says", text=text, language=language)
         tell("says no more", cut=self._silent.wait(0.05 * len(text)))
 
     def stopAll(self) -> None:
@@ -35,10 +35,10 @@ class Motion:
         self._still = threading.Event()
 
     def moveTo(self, x: float, y: float, theta: float) -> bool:
+        self._still.clear()
         tell("goes", x=x, y=y, theta=theta)
         if x < 0:
             raise RuntimeError("ALMotion::moveTo there is a wall behind me")
-        self._still.clear()
         cut = self._still.wait(3 * abs(x) / 4 + abs(theta) / 2)
         tell("go over", cut=cut)
         return not cut
