@@ -16,10 +16,10 @@ from prima.scheduler.selection import able
 
 def x8(mediation: Mediation) -> None:
     """X8: give up reactions that were not started in time."""
-    waiting = mediation.memory.waiting
-    stale = [ab for ab in waiting.values() if _is_stale(ab, mediation.now)]
     if mediation.halted:
         return
+    waiting = mediation.memory.waiting
+    stale = [ab for ab in waiting.values() if _is_stale(ab, mediation.now)]
     for ab in stale:
         if ab.stale == mediation.now and _may_start(mediation, ab):
             ab.stale = mediation.now + 1  # the selection of this very instant may start it
