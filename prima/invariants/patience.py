@@ -32,9 +32,9 @@ class Patience(Streams):
     def note_keepers(self) -> None:
         """At the end of an instant: note which ABs are kept from the speaker from now on."""
         waiting = {ab.name: ab for ab in self.waiting.values() if ab.unit is None}
-        kept = {name for name in self._kept if self.abs[name].phase in (WAITING, LINKED)}
+        kept = {name for name in self._kept if self._waits(name)}
         self._kept = {name: time for name, time in self._kept.items() if name in kept}
-        self._starving &= kept | waiting.keys()
+        self._starving = {name for name in self._starving if self._waits(name)}
         self._kept_now = {name for name, ab in waiting.items() if self._kept_from_speaker(ab)}
         if self.halted:
             self._kept_now = set()
@@ -42,6 +42,10 @@ class Patience(Streams):
         for name in sorted((kept & waiting.keys()) - self._starving):
             if self.overdue(waiting[name]):
                 self.report(13, "E6", f"{name} starves, and nothing says so")
+
+    def _waits(self, name: str) -> bool:
+        """Whether an AB has yet to start, be it behind a way back of its stream (X1)."""
+        return self.abs[name].phase in (WAITING, LINKED)
 
     def _kept_from_speaker(self, ab: AB) -> bool:
         if not self.prima or "speaker" not in ab.devices or ab.cause is not None:

@@ -21,8 +21,8 @@ from prima.messages import Record
 from prima.session import Session
 from tests import ROOT
 from tests.helpers.generated.plays import Play, perform, plays, without_hints
-from tests.helpers.generated.scripts import Script, drive, scripts
-from tests.helpers.generated.world import APPS, Run, baselines, extended
+from tests.helpers.generated.scripts import Ask, Open, Script, drive, scripts
+from tests.helpers.generated.world import APPS, Run, World, baselines, extended
 
 EXAMPLES = int(os.environ.get("PRIMA_EXAMPLES", "300"))
 SCENARIOS = sorted(ROOT.glob("documents/scenarios/**/*.xml"))
@@ -223,3 +223,17 @@ def test_a_device_may_fail_at_every_step_of_a_scenario(path: Path, how: str) -> 
             found = check(made.records, calling=callers(loaded.cast.documents))
             assert not found and not made.defects, (device, time, found, made.defects)
             assert made.records[-1]["phase"] == "over", (device, time)
+
+
+def test_an_ab_that_starves_is_reported_once_wherever_it_waits() -> None:
+    # E4 reports the direction behind the other's tracking; then a way back comes before it (X1),
+    # and the other's speech keeps it waiting for longer than anybody has patience.
+    direction, tracking = Ask(("set-direction",), ((),)), Ask(("tracking-human",), ((),))
+    away = Ask(("set-position", "active-sensing-human"), ((), ()))
+    speech = Open(frozenset({"speaker"}), None)
+    events = ((0, ((tracking,),)), (1900, ((), (away,))), (1900, ((), (speech,))))
+    script = Script((((direction,), (speech,)), ()), events, (), World(seed=1632))
+    run = drive(script, "prima+x1", 30)
+    assert check(run.records, "prima+x1", APPS, 30) + run.problems == []
+    starved = [record["behavior"] for record in run.records if record["phase"] == "starve"]
+    assert len(starved) == len(set(starved)) > 0
