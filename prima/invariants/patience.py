@@ -31,15 +31,14 @@ class Patience(Streams):
 
     def note_keepers(self) -> None:
         """At the end of an instant: note which ABs are kept from the speaker from now on."""
-        waiting = {ab.name: ab for ab in self.waiting.values() if ab.unit is None}
-        kept = {name for name in self._kept if self._waits(name)}
-        self._kept = {name: time for name, time in self._kept.items() if name in kept}
-        self._starving = {name for name in self._starving if self._waits(name)}
-        self._kept_now = {name for name, ab in waiting.items() if self._kept_from_speaker(ab)}
+        self._kept = {name: time for name, time in self._kept.items() if self._waits(name)}
+        self._starving = set(filter(self._waits, self._starving))
+        self._kept_now = set()
         if self.halted:
-            self._kept_now = set()
             return
-        for name in sorted((kept & waiting.keys()) - self._starving):
+        waiting = {ab.name: ab for ab in self.waiting.values() if ab.unit is None}
+        self._kept_now = {name for name, ab in waiting.items() if self._kept_from_speaker(ab)}
+        for name in sorted((self._kept.keys() & waiting.keys()) - self._starving):
             if self.overdue(waiting[name]):
                 self.report(13, "E6", f"{name} starves, and nothing says so")
 
