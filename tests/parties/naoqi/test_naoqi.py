@@ -161,7 +161,7 @@ def test_a_wrong_address_is_told_in_time(document: Path, port: int) -> None:
     driver = Driven("naoqi", document)
     try:
         closed = driver.expect("closed")
-        assert "refused" in closed["error"].lower()
+        assert "cannot be reached: Connect error: 111: Connection refused." in closed["error"]
         assert closed["after"] < 4
     finally:
         driver.kill()

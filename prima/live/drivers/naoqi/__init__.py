@@ -72,6 +72,9 @@ class NaoqiDriver(MappedDriver):
         except TimeoutError:
             await self.leave()
             raise Unreachable(f"{url} does not answer.") from None
+        except Refused as error:
+            await self.leave()
+            raise Unreachable(f"{url} cannot be reached: {error}.") from None
         except BaseException:
             await self.leave()
             raise
