@@ -120,11 +120,17 @@ def _unfinished(rehearsal: Rehearsal) -> list[str]:
     """The activity of each application still running as a run is stopped, as ``NAME is ...``."""
     memory, owed = rehearsal.session.mediator.memory, rehearsal.devices.services.owed
     there = [name for name, app in rehearsal.session.apps.items() if not app.over]
+    refused = rehearsal.session.hearing.refused
     return [
-        f"{name} is {_doing(memory.apps[name], name in owed)}"
+        f"{name} is {_doing(memory.apps[name], name in owed)}{_refusing(refused.get(name, ''))}"
         for name in there
         if name in memory.apps
     ]
+
+
+def _refusing(words: str) -> str:
+    """The remark that an application's question does not take an answer."""
+    return f', and does not take the answer "{words}"' if words else ""
 
 
 def _doing(app: Application, owed: bool) -> str:

@@ -22,9 +22,16 @@ class Hearing:
         self.wiring = wiring
         self.unheard = ""
         """The user's latest words that nobody took."""
+        self.refused: dict[str, str] = {}
+        """The latest answer that each application's question did not take, until it takes one."""
         self._late_answers = late_answers
         self._lapsed: tuple[str, int] | None = None
         """The application whose question was the latest to time out, and when it did (X10)."""
+
+    def take_unheard(self) -> str:
+        """The user's latest words that nobody took; returned once."""
+        text, self.unheard = self.unheard, ""
+        return text
 
     def listening(self) -> list[Answers]:
         """The utterances possible now: answers to a listening or interruptible question, links (V1)."""
@@ -87,6 +94,7 @@ class Hearing:
         with self.wiring.apps.contained(app):
             answer = app.answer(question.run.number, said)
         if answer is not None:
+            self.refused.pop(app.name, None)
             self._conclude(question.id, value.filled(answer))
             return True
         with self.wiring.apps.contained(app):
@@ -107,6 +115,7 @@ class Hearing:
         if hotword is None or (
             hotword.value and self.wiring.apps.named[question.app.name].heeds(value.text)
         ):
+            self.refused[question.app.name] = value.text
             data = {"outcome": "nomatch", "utterance": value.text, **value.data}
             self._conclude(question.id, data)
 

@@ -70,7 +70,7 @@ class Session:
         self.recorder = Recorder()
         self.mediator = Mediator(policy, commands, self.recorder, bound, absence, patience)
         self._wiring = Wiring(self._apps, self.mediator, self.recorder)
-        self._hearing = Hearing(self._wiring, "x10" in policy.extensions)
+        self.hearing = Hearing(self._wiring, "x10" in policy.extensions)
         self._sensors: dict[str, Json] = {}
 
     @property
@@ -87,11 +87,6 @@ class Session:
     def defects(self) -> list[Exception]:
         """Errors in the interpreters themselves: each has ended its application."""
         return self._apps.defects
-
-    def take_unheard(self) -> str:
-        """The user's latest words that nobody took; returned once."""
-        text, self._hearing.unheard = self._hearing.unheard, ""
-        return text
 
     def drain_visits(self) -> list[ElementVisit]:
         """The elements reached since the last call, one application after the other."""
@@ -178,7 +173,7 @@ class Session:
     def _take(self, value: Inbound) -> None:
         match value:
             case Ended():
-                self._hearing.lapse(value)
+                self.hearing.lapse(value)
                 self.mediator.ended(value.behavior, value.goal, value.data)
                 self._wiring.settle()
             case Listening():
@@ -191,7 +186,7 @@ class Session:
                 self.mediator.failed(value.behavior, value.device, value.reason)
                 self._wiring.settle()
             case Heard():
-                self._hearing.hear(value)
+                self.hearing.hear(value)
             case Fetched() | Transferred():
                 self._answered(value)
             case Sensed():
@@ -288,7 +283,7 @@ class Session:
 
     def listening(self) -> list[Answers]:
         """The utterances possible now: answers to a listening or interruptible question, links (V1)."""
-        return self._hearing.listening()
+        return self.hearing.listening()
 
     def _answered(self, value: Fetched | Transferred) -> None:
         """Pass an answer to the application that asked."""

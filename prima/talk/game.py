@@ -124,7 +124,7 @@ class Game:
 
     def unheard(self) -> str:
         """The user's words that no application took; returned once."""
-        return self.rehearsal.session.take_unheard()
+        return self.rehearsal.session.hearing.take_unheard()
 
     @property
     def asking(self) -> str:

@@ -473,24 +473,3 @@ def test_the_shell_completes_policies_formats_and_codes(line: str, expected: lis
         timeout=60,
     )
     assert [one.partition(",")[2] for one in done.stdout.split()] == expected, done.stderr
-
-
-@pytest.mark.parametrize(
-    ("until", "doing"),
-    [
-        ("1s", 'guide is in the middle of "Come on, let\'s go."'),
-        ("6s", 'follow is asking "What\'s the matter with you?"'),
-    ],
-)
-def test_a_run_that_is_stopped_says_what_was_going_on(
-    tmp_path: Path, until: str, doing: str
-) -> None:
-    source = (DEMO.parent / "touched-on-the-way.xml").read_text(encoding="utf-8")
-    path = tmp_path / "stopped.xml"
-    source = source.replace("../", f"{DEMO.parent.parent}/")
-    path.write_text(
-        source.replace("<scenario ", f'<scenario until="{until}" ', 1), encoding="utf-8"
-    )
-    done = prima("run", path, "-o", tmp_path / "s.jsonl")
-    assert f"The run was stopped at {until[:-1]} s, the scenario's until: " in done.stderr
-    assert doing in done.stderr and done.returncode == 0

@@ -90,13 +90,13 @@ def test_x10_else_it_is_an_event_of_that_application_alone() -> None:
 def test_x10_nobody_else_hears_what_is_not_taken() -> None:
     bench = lapsed(AGAIN.format("<goto next='#rest'/>", "") + '<form id="rest"/>')
     hears(bench, "yes")
-    assert bench.logs() == [] and bench.session.take_unheard() == "yes"
+    assert bench.logs() == [] and bench.session.hearing.take_unheard() == "yes"
 
 
 def test_x10_an_answer_to_who_has_ended_answers_nobody_else() -> None:
     bench = lapsed(AGAIN.format("<exit/>", ""))
     hears(bench, "yes")
-    assert bench.logs() == [] and bench.session.take_unheard() == "yes"
+    assert bench.logs() == [] and bench.session.hearing.take_unheard() == "yes"
 
 
 def test_x10_what_follows_an_answer_that_comes_early_is_no_reaction() -> None:
