@@ -182,12 +182,13 @@ def skim(path: str | Path) -> Transcript:
 
 def records_of(path: str | Path, cut: list[str] | None) -> Iterator[Record]:
     """A transcript's records one by one; see :func:`read`."""
-    from prima.loading.files import at_once, check_name
+    from prima.loading.files import at_once, check_folder, check_name
     from prima.transcript.lines import INCOMPLETE, MAX_LINE, read_lines
 
     check_name(path)
     count = 0
     try:
+        check_folder(path, "Name a transcript in it.")
         with open(path, encoding="utf-8-sig", opener=at_once) as stream:
             lines = iter(lambda: stream.readline(MAX_LINE + 2), "")
             for record in read_lines(str(path), lines, cut):

@@ -19,7 +19,7 @@ from prima.errors.visible import escaped
 from prima.experiments.batch import run_batch
 from prima.experiments.plan import BatchPlan, BatchRow, Options
 from prima.experiments.rows import format_counts, format_head, format_row, row_data
-from prima.loading.files import at_once
+from prima.loading.files import at_once, check_folder
 from prima.pool.processes import warm_up
 
 MOST_LISTED = 50_000_000
@@ -34,6 +34,7 @@ def listed(name: str) -> list[str]:
     Raises:
         UsageError: it cannot be read, or is empty.
     """
+    check_folder(name, "To run the scenarios in it, leave out --from.")
     try:
         given, opener = (0, None) if name == "-" else (name, at_once)
         with open(given, "rb", closefd=name != "-", opener=opener) as stream:

@@ -46,6 +46,7 @@ def explain(what: str | None, row: int | None, form: str) -> None:
     """
     from prima.checks.codes import diagnoses
     from prima.handbook.rulebook import named
+    from prima.loading.files import check_folder
 
     if what is None:
         _list(form)
@@ -62,6 +63,7 @@ def explain(what: str | None, row: int | None, form: str) -> None:
     elif known or not os.path.exists(what):
         _code(what, form)
     else:
+        check_folder(what, "Name a transcript in it, and its row.")
         raise UsageError("Say which row of the transcript: prima explain TRANSCRIPT ROW.")
 
 

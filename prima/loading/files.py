@@ -82,6 +82,16 @@ def check_name(path: object) -> None:
         raise UsageError(f"{path!r} is not a file's name.")
 
 
+def check_folder(path: str | Path, remedy: str) -> None:
+    """Refuse a folder where a file is needed.
+
+    Raises:
+        UsageError: it is a folder; the message ends with the remedy.
+    """
+    if isdir(path):
+        raise UsageError(f"{path}: cannot be read: it is a folder. {remedy}")
+
+
 def paths_of(given: str | Path | Iterable[str | Path]) -> list[str]:
     """Paths as texts; one that is given alone is one, and not its letters."""
     if isinstance(given, str) or not isinstance(given, Iterable):
@@ -132,8 +142,7 @@ def read_bytes(path: str | Path, most: int = -1) -> bytes:
         UsageError: it cannot be read.
     """
     try:
-        if isdir(path):
-            raise UsageError(f"{path}: cannot be read: it is a folder. Name a file in it.")
+        check_folder(path, "Name a file in it.")
         if exists(path) and not isfile(path):
             raise UsageError(f"{path}: cannot be read: it is not a file.")
         with open(path, "rb") as stream:

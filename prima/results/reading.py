@@ -135,7 +135,8 @@ def _table_in(path: Path) -> Path:
     found = [one for one in found if one.is_file() and one.name != ROWS]
     if not found:
         what = f"no table in this folder ({one_of(SUFFIXES)})"
-        raise UsageError(f"{path}: {what}; make one: prima sweep SCENARIO -o sweep.csv.")
+        remedy = "Name a transcript or a scenario in it, or make a table"
+        raise UsageError(f"{path}: {what}. {remedy}: prima sweep SCENARIO -o sweep.csv.")
     if len(found) > 1:
         listed = ", ".join(one.name for one in found[:5])
         raise UsageError(f"{path}: there are {len(found)} tables here; name one: {listed}.")

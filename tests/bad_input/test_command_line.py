@@ -76,7 +76,11 @@ USAGES: list[Any] = [
     (["explain", "good.jsonl"], 2, "Say which row"),
     (["explain", "good.jsonl", "99"], 2, "the rows are 0 to 3"),
     (["explain", "good.jsonl", "9" * 30], 2, "There is no row"),
-    (["explain", ".", "1"], 2, "Is a directory"),
+    *(([*words, "."], 2, ".: cannot be read: it is a folder. Name a transcript in it.")
+      for words in (["show"], ["replay"], ["diff", "."], ["export", "--to", "csv"])),
+    (["explain", ".", "1"], 2, ".: cannot be read: it is a folder. Name a transcript in it."),
+    (["explain", "."], 2, ".: cannot be read: it is a folder. Name a transcript in it, and its row."),
+    (["report", "."], 2, ".: no table in this folder (.csv or .parquet). Name a transcript or a scenario in it, or make a table: prima sweep"),
     (["run", "s.xml", "--policy", "fixed:zz"], 2, '"fixed:zz" names an application that is not in the scenario. Write a.'),
     (["run", "s.xml", "--policy", ""], 2, "policy"),
     (["run", "s.xml", "-o", "s.xml"], 2, "s.xml"),

@@ -165,7 +165,10 @@ USAGES = [
     (["--ea", "a/hello.xml", *POLICIES], "name one run; for several, write scenarios."),
     (["--ea", "a/hello.xml", "--workers", "2"], "name one run; for several, write scenarios."),
     (["empty"], "empty: contains no scenarios"),
-    (["--from", "empty"], "empty: cannot be read: Is a directory."),
+    (
+        ["--from", "empty"],
+        "empty: cannot be read: it is a folder. To run the scenarios in it, leave out --from.",
+    ),
     (["--from", "no"], "no: cannot be read: No such file or directory."),
     (["--from", "a/one.xml"], "a/one.xml: not a list of scenarios: write one path per line"),
     (["--from", "nothing"], "nothing: names no scenarios: write their paths, one per line."),

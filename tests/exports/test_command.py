@@ -59,7 +59,7 @@ def test_it_writes_to_a_pipe_from_a_pipe(to: str, folder: Path, demo: api.Transc
         (["t.jsonl", "--to", "eaf", "--lang", "en", "--lang", "ja"], "two languages of all: en"),
         (["t.jsonl", "--to", "eaf", "--lang", "folow=ja"], 'Did you mean "follow"?'),
         (["."], "Name a format"),
-        ([".", "--to", "vtt"], "cannot be read: Is a directory"),
+        ([".", "--to", "vtt"], "it is a folder. Name a transcript in it."),
     ],
 )
 def test_wrong_usage_is_told(words: list[str], message: str, folder: Path) -> None:

@@ -133,7 +133,7 @@ def test_folders_without_one_table_are_told(tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
     done = prima("report", "empty", "-o", "page.html", cwd=tmp_path)
     assert done.returncode == 2
-    assert "empty: no table in this folder (.csv or .parquet); make one:" in done.stderr
+    assert "empty: no table in this folder (.csv or .parquet). Name a transcript" in done.stderr
     for name in ("a.csv", "b.parquet"):
         (tmp_path / name).write_text("")
     done = prima("report", ".", "-o", "page.html", cwd=tmp_path)
