@@ -78,7 +78,8 @@ DUPLICATE_NAME = Diagnosis(
     (
         "Two items of a form have the same name: they would share their variable. Or two "
         "services of a scenario: a request by that name is ambiguous. Or two devices, touch "
-        "sensors, gestures, voices or arguments of a robot: only one would count."
+        "sensors, gestures, voices or arguments of a robot: only one would count. Or the item of "
+        "a foreach has the name of its array and hides it from then on, which is a warning."
     ),
     rule="VoiceXML 2.0, 2.3",
 )

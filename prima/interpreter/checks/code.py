@@ -108,6 +108,7 @@ def check_code(facts: Facts) -> Iterator[Problem]:
         else:
             yield from _used(variables, expr, known, script)
     yield from variables.given()
+    yield from variables.hidden()
     for _, act in facts.acts.of(Assign):
         yield from no_step(act.node)
 

@@ -9,7 +9,8 @@ from itertools import chain
 
 from prima.errors import Hint, Place, Problem, Span, one_of, replaced, suggestion
 from prima.errors.diagnoses.names import UNDECLARED_VARIABLE
-from prima.interpreter.acts import Assign, Clear, Expression, Handler, Return
+from prima.errors.diagnoses.structure import DUPLICATE_NAME
+from prima.interpreter.acts import Assign, Clear, Expression, Foreach, Handler, Return
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Form
 from prima.interpreter.selection import beginnings
@@ -71,6 +72,12 @@ NO_SENSOR = UNDECLARED_VARIABLE.says(
 )
 IN_SCRIPT = UNDECLARED_VARIABLE.says(
     'The script uses "{name}", which is not declared.', severity="warning"
+)
+
+HIDDEN_ARRAY = DUPLICATE_NAME.says(
+    'The item "{name}" hides the variable "{name}", which the array comes from.',
+    "Give the item a name of its own.",
+    "warning",
 )
 
 
@@ -189,6 +196,12 @@ class Variables:
         ]
         for form, listing in listed:
             yield from self._listed(listing, self.facts.known_in(form))
+
+    def hidden(self) -> Iterator[Problem]:
+        """Items of a foreach that have the name of the variable with their array."""
+        for _, loop in self.facts.acts.of(Foreach):
+            if loop.item in expression_names(loop.array.code).free:
+                yield HIDDEN_ARRAY.at(loop.node.attribute_place("item"), name=loop.item)
 
     def _listed(self, listing: Clear | Return, known: Known) -> Iterator[Problem]:
         for name in listing.names:
