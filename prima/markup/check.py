@@ -226,7 +226,7 @@ def _known_instead(child: Node, parent: Node, vocabulary: Vocabulary) -> Hint:
         return Hint(hint)
     inside = vocabulary.children(parent.key)
     tag = nearest_word(child.tag, inside) or nearest_word(child.tag, vocabulary.tags)
-    return meant(tag, *(name_spans(child) if tag else ()))
+    return meant(tag, *name_spans(child)) if tag else Hint(hints.held(parent, inside))
 
 
 def _stray_text(node: Node, vocabulary: Vocabulary) -> Problem:

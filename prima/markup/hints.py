@@ -28,6 +28,8 @@ LONG = 100
 INSIDE = {
     "field": "Write it into a <prompt>.",
     "when": "Write it into a <say>.",
+    "reply": 'Write <data name="..." value="..."/>.',
+    "data": 'Write it as value="...".',
     "form": "Say it with <speak> in a <block>.",
     "prima": "Say it with <speak> in a <block> of a <form>.",
     "value": 'Write an expression: <value expr="..."/>.',
@@ -40,6 +42,8 @@ INSIDE = {
     **dict.fromkeys(("param", "property"), 'Write it as value="...".'),
 }
 """Where text directly in an element belongs."""
+IN_SCENARIOS = ("when", "reply", "data")
+"""Those of them that scenarios have."""
 INSTEAD = {
     "prompt": "Write <speak>; a <prompt> is what a <field> asks.",
     "option": "It is an answer that a <field> takes.",
@@ -152,7 +156,7 @@ def _guess_word(kind: str, text: str) -> str:
 
 def text_remedy(node: Node, spoken: bool) -> str:
     """Where text that an element may not contain belongs; ``spoken`` in an application."""
-    if node.tag in INSIDE and (spoken or node.tag == "when"):
+    if node.tag in INSIDE and (spoken or node.tag in IN_SCENARIOS):
         return INSIDE[node.tag]
     return "Say it with <speak>, or remove it." if spoken else "Remove it."
 
@@ -162,6 +166,18 @@ PAUSES = {
     "pause": 'Inside a text write <break time="1s"/>; a <pause> goes between Commands.',
 }
 """The two kinds of pauses, each where the other belongs."""
+
+
+FEW = 8
+"""Maximum number of elements that are listed."""
+
+
+def held(parent: Node, inside: Collection[str]) -> str:
+    """What an element may hold instead of an unknown one, if that is little."""
+    if len(inside) > FEW:
+        return ""
+    few = one_of(f"<{tag}>" for tag in inside)
+    return f"<{parent.tag}> may hold {few}." if few else f"<{parent.tag}> holds no elements."
 
 
 def inside_itself(tag: str) -> str:

@@ -278,6 +278,25 @@ def test_a_service_named_by_an_expression_may_be_any(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("reply", "told"),
+    [
+        ("<number>3</number>", "There is no <number>. <reply> may hold <data>."),
+        ('<param name="n" value="3"/>', 'no <param>. Write <data name="..." value="..."/>.'),
+        ('<data name="n" value="3"><a/></data>', "There is no <a>. <data> holds no elements."),
+        ("three", '<reply> holds text: "three". Write <data name="..." value="..."/>.'),
+        ('<data name="n" value="3">3</data>', 'holds text: "3". Write it as value="...".'),
+    ],
+)
+def test_what_a_reply_may_hold_is_told(reply: str, told: str, tmp_path: Path) -> None:
+    (tmp_path / "shop.xml").write_text(SHOP.format('to="office"'), encoding="utf-8")
+    text = SCENARIO.split("  <robot")[0] + "</scenario>"
+    more = f'<service name="office"><reply>{reply}</reply></service>'
+    (tmp_path / "s.xml").write_text(text.format("shop.xml", more))
+    (found,) = api.validate([tmp_path / "s.xml"])
+    assert told in f"{found.message} {found.remedy}" and found.place.line == 4
+
+
+@pytest.mark.parametrize(
     ("more", "told"),
     [
         ('<place id="b" x="0.0" y="0" heading="0"/>', ['The place "b" is exactly where "a" is.']),

@@ -77,6 +77,27 @@ FALSE = {
 }
 
 
+DATA = [
+    ("does", "gesture", "nome", 'gesture has no argument "nome". Did you mean "name"?'),
+    ("finishes", "turn", "volume", 'turn has no argument "volume". It has angle.'),
+    ("does", "stop-moving", "speed", 'stop-moving has no argument "speed". Remove it.'),
+    ("event", "reply.lift", "flor", 'reply.lift has no value "flor". Did you mean "floor"?'),
+    *(("does", "gesture", "name", ""), ("event", "reply.lift", "floor", "")),
+    *(("event", "reply.lift", "other", ""), ("sends", "lift", "flor", "")),
+]
+
+
+@pytest.mark.parametrize("tag", ["expect", "never"])
+@pytest.mark.parametrize(("subject", "what", "name", "told"), DATA)
+def test_a_value_that_is_misspelt_is_reported(
+    tag: str, subject: str, what: str, name: str, told: str, tmp_path: Path
+) -> None:
+    data = f'<data name="{name}" value="3"/>'
+    path = write(tmp_path, f'<{tag} {subject}="{what}">{data}</{tag}>')
+    found = [one for one in api.validate(path) if one.code == "no-such-name"]
+    assert [f"{one.message} {one.remedy}" for one in found] == [told] * bool(told)
+
+
 @pytest.mark.parametrize("expected", TRUE)
 def test_what_happens_is_found(expected: str, tmp_path: Path) -> None:
     if 'before="x"' in expected:

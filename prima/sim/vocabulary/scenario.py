@@ -149,6 +149,7 @@ SCENARIO = Vocabulary(
         **dict.fromkeys(("on", "at", "if", "then", "catch"), "Write <when>, with its trigger."),
         **dict.fromkeys(("choice", "choose", "random", "any"), Instead("one-of")),
         **dict.fromkeys(("assert", "expected", "must"), Instead("expect")),
+        "param": Instead("data", 'name="..." value="..."/'),
         **dict.fromkeys(("forbid", "must-not", "not"), Instead("never")),
         "world": 'Name it in the root element: <scenario world="..." robot="...">.',
         "question": 'Write what the user answers: <answer to="words of the question">Yes.</answer>.',
