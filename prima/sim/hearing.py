@@ -29,6 +29,7 @@ from prima.markup.tree import Node
 from prima.sim.devices import Cast
 from prima.sim.expected import COMMANDS, check_values
 from prima.sim.map import Map
+from prima.sim.sensed import check_sensors
 from prima.sim.world import room_beside
 from prima.voicexml.caught import caught_in, thrown_in
 from prima.voicexml.pages import Pages, spoken_in
@@ -70,7 +71,7 @@ def check_hearing(cast: Cast) -> list[Problem]:
     nodes = list(cast.scenario.node.walk())
     problems = [*_not_there(cast), *_late(nodes, cast.scenario.until)]
     problems += [*_outside(nodes, world), *_nobody(nodes), *_unable(nodes, cast.robot)]
-    problems += check_values(cast.scenario, cast.robot)
+    problems += [*check_values(cast.scenario, cast.robot), *check_sensors(nodes, documents)]
     problems += world.plan.narrow(room_beside(cast.robot)) if world.plan is not None else ()
     corners = [*_corners(nodes, events, pages, world)]
     problems += [*corners, *_words(nodes, cast)]

@@ -251,7 +251,7 @@ INSIDE = {
         {"locomotion", "measuring"},
         {"body"},
         {"robot"},
-        {"expected", "incidents", "services", "telephone", "triggers"},
+        {"expected", "sensed", "incidents", "services", "telephone", "triggers"},
         {"people"},
         {"devices"},
         {"rehearsal"},

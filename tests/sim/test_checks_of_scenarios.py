@@ -277,6 +277,34 @@ def test_a_service_named_by_an_expression_may_be_any(tmp_path: Path) -> None:
     assert api.validate([tmp_path / "s.xml"]) == []
 
 
+WATCHING = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="w">
+<watch name="low" when="sensor.battery?.level &lt; 20"/><form id="a"><on event="low"><exit/></on>
+</form></prima>"""
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("batery.level", 'No application reads the sensor "batery". Did you mean "battery"?'),
+        ("light", 'sensor "light". Read it: <watch name="..." when="sensor.light ..."/>, or'),
+        *(("battery.level", ""), ("battery", "")),
+    ],
+)
+@pytest.mark.parametrize("voicexml", [False, True])
+def test_a_sensor_that_nobody_reads_is_told(
+    name: str, told: str, voicexml: bool, tmp_path: Path
+) -> None:
+    (tmp_path / "w.xml").write_text(WATCHING, encoding="utf-8")
+    (tmp_path / "a.vxml").write_text(VOICE.format("Tea?", "<exit/>"), encoding="utf-8")
+    more = f'<when at="1s"><sensor name="{name}" value="3"/></when>'
+    more += '<application src="a.vxml"/>' * voicexml  # it may read any sensor
+    text = SCENARIO.split("  <robot")[0] + "</scenario>"
+    (tmp_path / "s.xml").write_text(text.format("w.xml", more))
+    found = [one for one in api.validate([tmp_path / "s.xml"]) if one.code == "no-such-name"]
+    assert len(found) == (bool(told) and not voicexml)
+    assert all(told in f"{one.message} {one.remedy}" for one in found)
+
+
 @pytest.mark.parametrize(
     ("reply", "told"),
     [
