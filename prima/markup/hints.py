@@ -29,6 +29,7 @@ INSIDE = {
     "field": "Write it into a <prompt>.",
     "when": "Write it into a <say>.",
     "reply": 'Write <data name="..." value="..."/>.',
+    **dict.fromkeys(("expect", "never"), 'Write it as says="..." or logs="...".'),
     "data": 'Write it as value="...".',
     "form": "Say it with <speak> in a <block>.",
     "prima": "Say it with <speak> in a <block> of a <form>.",
@@ -42,7 +43,7 @@ INSIDE = {
     **dict.fromkeys(("param", "property"), 'Write it as value="...".'),
 }
 """Where text directly in an element belongs."""
-IN_SCENARIOS = ("when", "reply", "data")
+IN_SCENARIOS = ("when", "reply", "data", "expect", "never")
 """Those of them that scenarios have."""
 INSTEAD = {
     "prompt": "Write <speak>; a <prompt> is what a <field> asks.",

@@ -113,7 +113,7 @@ def _check_subject(reader: Reader, node: Node, given: list[str]) -> None:
     """Check that an expectation has one subject, and what belongs to it."""
     if not given:
         known = {item.name for item in reader.vocabulary.elements[node.key].attributes}
-        if set(node.attributes) <= known:  # otherwise a word is misspelt; already reported
+        if set(node.attributes) <= known and not node.text:  # else something else is reported
             message = f"<{node.tag}> does not say what."
             remedy = f"It needs one of {', '.join(SUBJECTS[:-1])} or {SUBJECTS[-1]}."
             reader.problem(node, "missing-attribute", message, "", remedy)

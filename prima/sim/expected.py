@@ -12,6 +12,7 @@ from prima.interpreter.elements import Document
 from prima.interpreter.selection import takes
 from prima.language.commands import TABLE_4_2
 from prima.markup.spans import value_span
+from prima.messages import SERVICE
 from prima.session import AnyDocument
 from prima.sim.expectations import Expectation
 from prima.sim.scenario import Scenario
@@ -29,12 +30,13 @@ def check_expectations(
     problems: list[Problem] = []
     commands = {*robot.commands, *TABLE_4_2}  # those it cannot do are warnings
     applications = {document.id for document in documents}
-    services = {service.name for service in scenario.services}
+    names = {service.name for service in scenario.services}
+    services = names | {SERVICE + name for name in names}
     forms: dict[str, set[str] | None] = {}
     for one in scenario.expectations:
         for name in COMMANDS:
             problems += unknown_name(one.node, name, commands, "There is no Command")
-        if ":" not in one.words.get("sends", ""):
+        if ":" not in one.words.get("sends", "").removeprefix(SERVICE):
             problems += unknown_name(one.node, "sends", services, "There is no service")
         if not one.by or one.by in applications:
             if one.by not in forms:

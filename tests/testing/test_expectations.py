@@ -182,6 +182,8 @@ MISTAKES = {
     '<expect state="rid" by="desk"/>': ("no-such-name", 'Did you mean "ride"?'),
     '<expect ends="desc"/>': ("no-such-name", 'Did you mean "desk"?'),
     '<expect sends="left"/>': ("no-such-name", 'Did you mean "lift"?'),
+    '<expect sends="service:left"/>': ("no-such-name", 'Did you mean "service:lift"?'),
+    "<expect>Going up.</expect>": ("stray-text", 'Write it as says="..."'),
     '<expect says="x" logs="x"/>': ("exclusive", "Write an element for each"),
     '<expect says="x" at="1s" on="touch"/>': ("exclusive", "Keep one of them"),
     '<expect says="x" after="2s"/>': ("no-such-name", 'For a time write within="2s".'),
