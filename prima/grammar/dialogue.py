@@ -44,6 +44,13 @@ BARRED = BAD_TOKEN.says(
     "Write <one-of> with an <item> for each answer.",
     "warning",
 )
+TAG_IS_TEXT = BAD_VALUE.says(
+    'A <tag> is text here, not code: the value is "{text}".',
+    "Write the value alone, or name a .grxml file with src.",
+    severity="warning",
+)
+SCRIPTED = ("out=", "out.", "$=", "$.")
+"""Beginnings of tags that are code in other grammars (SISR), without spaces."""
 NO_RULES = Hint("Remove root: this grammar holds no <rule>.")
 """The remedy for the name of a rule where there is none."""
 MOST_REPEATED = 999
@@ -135,6 +142,8 @@ class DialogueGrammarReader:
                 self.document.references.append(found)
                 return found
             case "tag":
+                if "=" in node.text and node.text.replace(" ", "").startswith(SCRIPTED):
+                    self.note(TAG_IS_TEXT, node, text=node.text)
                 return Tag(node.text, partial(node.place_of, ""))
         return None
 

@@ -74,6 +74,7 @@ def voicexml_problems(
     from prima.voicexml.pages import Pages
     from prima.voicexml.reading import read_page
     from prima.voicexml.sketched import check_sketched
+    from prima.voicexml.upgrade import is_other_version
     from prima.voicexml.variables import check_variables
 
     folder = path_of(site.folder) if site else path_of(path).parent
@@ -88,6 +89,9 @@ def voicexml_problems(
             return None
 
     for page in pages:
+        if is_other_version(page.root):
+            yield from page.problems
+            continue
         missing: set[int] = set()
         yield from (*page.problems, *page.warnings(), *_not_there(page, folder, answered, missing))
         yield from _grammars_of(page, folder, missing, answered)

@@ -56,6 +56,12 @@ def version_problem(root: Node) -> Problem | None:
     return OTHER_VERSION.at(place, version=version)
 
 
+def is_other_version(root: Node) -> bool:
+    """Whether a document is of a version that is not run, so that little is known of it."""
+    problem = version_problem(root)
+    return problem is not None and problem.severity == "error"
+
+
 def upgrade(root: Node) -> None:
     """Turn the elements and attributes of VoiceXML 1.0 into those of 2.0, where they differ."""
     for node in root.walk():

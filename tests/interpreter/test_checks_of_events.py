@@ -74,7 +74,7 @@ def test_the_remedy_for_an_undeclared_variable_can_be_followed(
     ("code", "says"),
     [
         ("event.text", "Write event.data.text."),
-        ("event?.nme", 'Did you mean "name"?'),
+        ("event?.nme", 'Did you mean "name"? Or write event.data.nme.'),
         ("1 + event . from.length", "Write event.data.from."),
         ("event.data.text + event.name + event.message", ""),
         ("event.toString()", ""),

@@ -99,8 +99,10 @@ def _parts_of_event(
         if name not in PARTS:
             place = place_in(expr, start)
             span = Span.of(place, name)
-            remedy = replaced(f"Write event.data.{name}.", f"data.{name}", span)
-            yield NO_PART.at(place, suggestion(name, PARTS, span) or remedy, name=name)
+            data = replaced(f"Write event.data.{name}.", f"data.{name}", span)
+            near = suggestion(name, PARTS, span)
+            hint = near._replace(text=f"{near.text} Or write event.data.{name}.") if near else data
+            yield NO_PART.at(place, hint, name=name)
         elif name == "data" and handler is not None:
             yield from _field_of_data(expr, start, handler)
 

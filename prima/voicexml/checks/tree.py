@@ -17,7 +17,7 @@ from prima.voicexml.arranging import check_items, is_unit
 from prima.voicexml.checks.attributes import ENTRIES, check_attributes
 from prima.voicexml.checks.elements import RULES
 from prima.voicexml.checks.guests import check_guest
-from prima.voicexml.upgrade import version_problem
+from prima.voicexml.upgrade import is_other_version, version_problem
 from prima.voicexml.vocabulary import COMMANDS, NAMESPACE, PRIMA_NAMESPACE, SRGS, VOICEXML
 
 MOST_ALIKE = 5
@@ -57,7 +57,7 @@ def check_tree(root: Node) -> list[Problem]:
     """
     root.key = "vxml"
     problems = [problem] if (problem := version_problem(root)) else []
-    if problem is not None and problem.severity == "error":
+    if is_other_version(root):
         return problems  # of another version, what else seems wrong may be right
     stack = [root]
     while stack:
