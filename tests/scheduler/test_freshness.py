@@ -325,3 +325,20 @@ def test_x8_an_answered_question_is_not_given_up_with_what_comes_before_it() -> 
     stage.select()
     assert late(stage) == []
     assert stage.told("fa") == ["ended", "expired.speak", "expired.speak"]
+
+
+def test_x8_what_is_left_of_it_follows_nothing_and_goes_behind_an_earlier_reaction() -> None:
+    """S2c: the third application's reaction to the same event was asked for before."""
+    stage = Stage(POLICY, {"fa": "fa", "ea": "ea", "third": "ea"})
+    stage.request("ea", steps=[Step(say("A long story.")), Step(command("turn", angle=9))])
+    stage.select()
+    both = Group([Step(NOD), Step(command("turn", angle=3))])
+    stage.at(900).request("third", both, cause=TOUCH)
+    stage.select()
+    stage.at(1000).request("fa", say("Oh!"), NOD, cause=TOUCH, fresh=2000)
+    stage.select()
+    assert late(stage) == [] and stage.holds("fa#2") == ["S3"]
+    assert late(stage, 3001) == [] and stage.told("fa") == ["expired.speak", "expired.gesture"]
+    stage.at(3500).end("ea#2")
+    assert stage.select() == ["third#1", "third#2", "third#3"], "a unit of two"
+    assert check(stage.records, POLICY) == []
