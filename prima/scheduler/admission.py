@@ -169,8 +169,10 @@ def group_devices(group: Group, table: Table) -> frozenset[str]:
 class Maker:
     """Makes ABs and streams, and assigns their names and serial numbers."""
 
-    def __init__(self, table: Table) -> None:
+    def __init__(self, table: Table, composing: bool) -> None:
         self.table = table
+        self.composing = composing
+        """Whether motions may be composed (X5)."""
         self.serial = 0
         # By application's name: one that is loaded again does not reuse names.
         self._behaviors: dict[str, int] = {}
@@ -203,6 +205,7 @@ class Maker:
             row = self.table[what.type]
             devices = row.occupied(what.text)
             made = Behavior(name, serial, app, stream, row, what, devices, now, state)
+            made.motion = row.motion if self.composing and unit is None else ""
         made.run, made.unit = run, unit
         return made
 

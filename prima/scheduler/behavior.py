@@ -199,6 +199,8 @@ class Behavior:
     """Whether the robot has to face the user before the AB starts (X4)."""
     inserted: str = ""
     """The rule by which the mediator itself inserted the AB (X1, X4, X9)."""
+    motion: str = ""
+    """How it moves the robot, ``faithful`` or ``free`` in its path, if it may be composed (X5)."""
     reacted: int = -1
     """The event to which it reacts, if it is a reaction: it yields to later ones (X2)."""
     restarting: bool = False
@@ -235,11 +237,6 @@ class Behavior:
     def asks(self) -> bool:
         """Whether it is or contains a question, which lasts as long as the user thinks."""
         return "speech-recognition" in self.devices
-
-    @property
-    def motion(self) -> str:
-        """How the AB moves the robot: ``faithful`` or ``free`` in its path (X5); not in a unit."""
-        return self.type.motion if self.type is not None and self.unit is None else ""
 
     @property
     def inner(self) -> dict[str, Behavior]:

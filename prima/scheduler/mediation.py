@@ -96,8 +96,7 @@ class Mediation:
     maker: Maker = field(init=False)
 
     def __post_init__(self) -> None:
-        self.maker = Maker(self.table)
-        self.memory.composing = "x5" in self.policy.extensions
+        self.maker = Maker(self.table, "x5" in self.policy.extensions)
 
     @property
     def now(self) -> int:

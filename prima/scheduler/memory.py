@@ -24,8 +24,6 @@ class WorkingMemory:
         self.owed: Behavior | None = None
         """The asker's response to an answer, until it starts (X7)."""
         self._turns = 0
-        self.composing = False
-        """Whether motions may be composed (X5), so that one leaves the wheels to the other."""
         self.in_view = False
         """Whether the camera sees the user, by its latest report (V4)."""
         self.sensed = 0
@@ -82,7 +80,7 @@ class WorkingMemory:
         for device in ab.devices:
             if users.get(device) is ab:
                 del users[device]
-        if ab.motion and self.composing:
+        if ab.motion:
             self._leave_to_other_motion(ab)
 
     def _users(self, ab: Behavior) -> dict[str, Behavior]:

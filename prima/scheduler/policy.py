@@ -68,13 +68,9 @@ class Policy:
             return None
         if (kept := rules.x7(ab, memory)) is not None:
             return kept
-        if self.composes(ab, memory):
+        if rules.x5(ab, memory):
             return rules.k1(ab, memory)
         return rules.refusal(ab, memory)
-
-    def composes(self, ab: Behavior, memory: WorkingMemory) -> bool:
-        """X5: whether an AB may be composed with the motion of the floor's stream."""
-        return "x5" in self.extensions and rules.x5(ab, memory)
 
     def holds_back(self, ab: Behavior, memory: WorkingMemory) -> bool:
         """S3, E6, X7: whether a waiting AB holds its devices back from lower-ranked ones."""

@@ -75,7 +75,7 @@ def s1(mediation: Mediation, ab: Behavior) -> Refusal | None:
     if not mediation.policy.exclusive:
         return None
     other = mediation.memory.conflict(ab)
-    if other is not None and "x5" in mediation.policy.extensions and ab.motion:
+    if ab.motion:
         other = next(iter(in_the_way(mediation, ab)), None)
     return None if other is None else ("S1", other.id)
 
@@ -95,8 +95,6 @@ def _hold_back(mediation: Mediation, ab: Behavior, held: Held) -> None:
 def in_the_way(mediation: Mediation, ab: Behavior) -> list[Behavior]:
     """X5: all running ABs that have to end before this one may start."""
     conflicts = mediation.memory.conflicts(ab)
-    if "x5" not in mediation.policy.extensions:
-        return conflicts
     return [other for other in conflicts if {ab.motion, other.motion} != COMPOSED]
 
 
@@ -138,7 +136,7 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     policy, memory = mediation.policy, mediation.memory
     active = memory.active
     rivals = able(mediation, lower, held)
-    composed = policy.composes(ab, memory)
+    composed = rules.x5(ab, memory)
     why = _admitted_by(mediation, ab, composed)
     reaction, ab.reaction, ab.stale = ab.reaction, None, None
     ab.reacted = max(ab.reacted, goes_before(ab, reaction, memory))  # though it starts again
