@@ -83,19 +83,14 @@ class Effects:
 
     def _missing_place(self, turns: bool, pose: Pose | None) -> list[Command]:
         """The way back if the robot is elsewhere, else the turn if it looks elsewhere."""
-        where = self.position
-        if where is not None and pose is not None and math.dist(where, pose[:2]) > FAR:
-            return [_go(where, self.heading if turns else None)]
-        if turns and self._looks_elsewhere(pose):
-            return [Command("set-direction", {"heading": round(self.heading or 0.0, 1)})]
+        where, heading = self.position, self.heading if turns else None
+        if pose is None:
+            return []
+        if where is not None and math.dist(where, pose[:2]) > FAR:
+            return [_go(where, heading)]
+        if heading is not None and abs(difference(heading, pose[2])) > TURNED:
+            return [Command("set-direction", {"heading": round(heading, 1)})]
         return []
-
-    def _looks_elsewhere(self, pose: Pose | None) -> bool:
-        return (
-            self.heading is not None
-            and pose is not None
-            and abs(difference(self.heading, pose[2])) > TURNED
-        )
 
     def _turned_since(self, body: RobotState) -> bool:
         before, now = self.body.pose, body.pose
