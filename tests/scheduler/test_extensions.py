@@ -201,6 +201,17 @@ def test_x5_a_move_is_composed_with_no_dance_that_waits() -> None:
     assert (stage.holds("fa#2"), stage.holds("ea#1")) == (["S1"], ["F2"])
 
 
+def test_x5_lets_a_move_start_also_beside_a_dance_on_the_spot() -> None:
+    sway = replace(DANCE, name="sway", devices=frozenset({"neck", "arm"}))
+    stage = Stage("prima+x5", table={**TABLE_4_2, "sway": sway})
+    stage.request("fa", Command("sway"), cause=EVENT)
+    stage.select()
+    stage.request("ea", move())
+    assert stage.select() == ["ea#1.1"] and stage.floor == ["fa:1"]
+    assert stage.rule("ea#1.1") == "X5", "F2 would have kept it"
+    assert check(stage.records, "prima+x5") == []
+
+
 def test_x5_what_is_no_move_waits_for_the_dance() -> None:
     stage = dancing("prima+x5")
     stage.select()
