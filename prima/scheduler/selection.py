@@ -25,9 +25,9 @@ def select(mediation: Mediation) -> None:
     memory = mediation.memory
     count_waits(mediation)
     owe(mediation)
-    for unit in [ab for ab in memory.running.values() if ab.inside is not None]:
-        advance(mediation, unit)
-    while memory.waiting and s4(mediation):
+    for ab in [*memory.running.values()]:
+        advance(mediation, ab)
+    while s4(mediation):
         pass
     note_turns(mediation)
     note_waits(mediation)
@@ -267,7 +267,7 @@ def u4(mediation: Mediation, unit: Behavior) -> None:
 
 
 def advance(mediation: Mediation, unit: Behavior) -> None:
-    """U4, U5: start the unit's own ABs in their order as far as their devices are free."""
+    """U4, U5: start a unit's own ABs in their order as far as their devices are free."""
     for ab in list(unit.inner.values()):
         occupied = mediation.policy.exclusive and mediation.memory.conflict(ab) is not None
         if ab.state is WAITING and not occupied:
