@@ -264,6 +264,19 @@ def test_x7_inside_a_unit_the_unit_keeps_the_speaker() -> None:
     assert stage.holds("fa#1") == ["S1"]
 
 
+def test_x7_is_not_needed_inside_a_unit_even_while_the_head_turns_before_the_word() -> None:
+    stage = Stage("prima+x7")
+    stage.open("ea", 5, "speaker", "speech-recognition", "neck")
+    stage.request("ea", ask(), unit=5)
+    stage.select()
+    stage.at(1000).request("fa", say("That feels good."), cause=TOUCH)
+    stage.select()
+    answer(stage.at(2000), "ea#2", lambda: stage.request("ea", HEAD, say("Thank you."), unit=5))
+    assert stage.select() == ["ea#3"]
+    assert stage.holds("fa#1") == ["S1"], "the unit owns the speaker"
+    assert check(stage.records, "prima+x7") == []
+
+
 def test_x7_an_answer_with_which_a_unit_ends_is_answered_behind_it() -> None:
     stage = Stage("prima+x7")
     stage.open("ea", 5, "speaker", "speech-recognition")
