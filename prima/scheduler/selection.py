@@ -139,7 +139,7 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     composed = rules.x5(ab, memory)
     why = _admitted_by(mediation, ab, composed)
     reaction, ab.reaction, ab.stale = ab.reaction, None, None
-    ab.reacted = max(ab.reacted, goes_before(ab, reaction, memory))  # though it starts again
+    ab.reacted = goes_before(ab, reaction, memory)
     aside = rules.aside(ab, memory)
     beside = composed or aside or not rules.f3(ab, memory)
     run(mediation, ab, not aside)

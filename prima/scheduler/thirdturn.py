@@ -31,12 +31,13 @@ def acknowledgement(stream: Stream, memory: WorkingMemory) -> Behavior | None:
 def goes_before(ab: Behavior, reaction: int | None, memory: WorkingMemory) -> int:
     """X2: the event to which a starting AB reacts; only a reaction to a later one interrupts it.
 
-    The response to an answer goes before all waiting reactions (X7).
+    It stays so though the AB starts again. The response to an answer goes before all waiting
+    reactions (X7).
     """
-    reactions = [-1 if reaction is None else reaction]
+    reactions = [reaction]
     if third_turn(ab, memory):
-        reactions += [one.reaction for one in memory.waiting.values() if one.reaction is not None]
-    return max(reactions)
+        reactions += [one.reaction for one in memory.waiting.values()]
+    return max([ab.reacted, *(one for one in reactions if one is not None)])
 
 
 def _soon_over(ab: Behavior) -> bool:

@@ -125,6 +125,19 @@ def test_e4_a_reaction_that_waits_is_not_counted() -> None:
     assert loops(stage, 10) == {}
 
 
+def test_e4_whoever_goes_next_by_the_bound_does_not_interrupt_the_loop() -> None:
+    """X2: it counts as a reaction, but nothing has happened after the loop's start."""
+    stage = Stage("prima+x2", bound=1)
+    stage.request("fa", restartable(TRACK))
+    stage.select()
+    stage.at(1).request("ea", TURN)
+    stage.select()
+    stage.at(500).end("fa#1.1", goal=False)
+    assert (stage.select(), stage.phases("interrupt")) == (["fa#1.2"], [])
+    stage.at(1000).end("fa#1.2", goal=False)
+    assert stage.select() == ["ea#1"]
+
+
 def test_e4_what_is_bounded_together_reacts_to_different_events() -> None:
     stage = tracked(1, {"fa": "fa", "ea": "ea", "eb": "ea"})
     stage.at(1).request("ea", TURN, TURN)
