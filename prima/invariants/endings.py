@@ -76,6 +76,8 @@ class Endings(Late):
             return
         self.hears_of(ab)
         if record["rule"] == "U5":
+            if ab.name in self.groups:  # of another unit, its author handles the error
+                self._ends_loops(ab)
             for inner in self.running.values():
                 inner.silent = inner.silent or inner is ab or inner.inside(ab)
             return  # a unit out of time ends when its running Command has

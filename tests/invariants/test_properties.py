@@ -237,3 +237,24 @@ def test_an_ab_that_starves_is_reported_once_wherever_it_waits() -> None:
     assert check(run.records, "prima+x1", APPS, 30) + run.problems == []
     starved = [record["behavior"] for record in run.records if record["phase"] == "starve"]
     assert len(starved) == len(set(starved)) > 0
+
+
+def test_a_unit_out_of_time_ends_the_loops_of_its_tree() -> None:
+    # U5, E1: the second unit lasts too long while a loop beside it runs, which is the last one then.
+    alone = ((),)
+    question = Ask(("q-and-a",), alone)
+    asked = (question, question, Ask((("speak", "turn"),), alone))
+    sensing = Ask((("speak", "speak"), "active-sensing-human"), ((), ()))
+    first = (Ask(("move-head", "speak"), ((), (0,))), sensing)
+    loops = Ask(("active-sensing-human", "active-sensing-human"), ((), ()))
+    second = (Ask(("face-human",), alone), loops, question)
+    script = Script(((), (), ((), first, second)), ((0, ((), (), asked)),), (), World())
+    run = drive(script)
+    assert violations(run) == []
+    assert [record["rule"] for record in run.records if record["phase"] == "fail"] == ["U5"]
+    cut = [
+        record
+        for record in run.records
+        if record["phase"] == "end" and not record.get("goal", True)
+    ]
+    assert cut[-1]["outcome"] == "done"
