@@ -49,8 +49,8 @@ TAG_IS_TEXT = BAD_VALUE.says(
     "Write the value alone, or name a .grxml file with src.",
     severity="warning",
 )
-SCRIPTED = ("out=", "out.", "$=", "$.")
-"""Beginnings of tags that are code in other grammars (SISR), without spaces."""
+RESULTS = {"out", "$"}
+"""What tags that are code assign their values to, in other grammars (SISR)."""
 NO_RULES = Hint("Remove root: this grammar holds no <rule>.")
 """The remedy for the name of a rule where there is none."""
 MOST_REPEATED = 999
@@ -142,7 +142,7 @@ class DialogueGrammarReader:
                 self.document.references.append(found)
                 return found
             case "tag":
-                if "=" in node.text and node.text.replace(" ", "").startswith(SCRIPTED):
+                if "=" in node.text and _is_code(node.text):
                     self.note(TAG_IS_TEXT, node, text=node.text)
                 return Tag(node.text, partial(node.place_of, ""))
         return None
@@ -164,3 +164,10 @@ class DialogueGrammarReader:
 
 def _named(node: Node) -> str:
     return node.get("uri").strip().removeprefix("#")
+
+
+def _is_code(tag: str) -> bool:
+    """Whether a tag, read as a script, names the result of a rule (SISR)."""
+    from prima.script.names import script_names
+
+    return any(use.name in RESULTS for use in script_names(tag).uses)
