@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from prima.errors import UsageError
+from prima.errors import MissingFile, UsageError
 from prima.messages import Record
 
 if TYPE_CHECKING:
@@ -194,6 +194,8 @@ def records_of(path: str | Path, cut: list[str] | None) -> Iterator[Record]:
             for record in read_lines(str(path), lines, cut):
                 count += 1
                 yield record
+    except FileNotFoundError:
+        raise MissingFile(path) from None
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
     except UnicodeDecodeError as error:

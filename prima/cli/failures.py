@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from prima.cli.common import tell
-from prima.errors import DocumentError, RunError, UsageError, brief, listed
+from prima.errors import DocumentError, MissingFile, RunError, UsageError, brief, listed
 
 FINE, PROBLEMS, USAGE, RUN, INTERRUPTED = 0, 1, 2, 3, 130
 LONGEST = 4_000
@@ -44,6 +44,21 @@ def _message(code: int, text: str = "") -> Callable[[Any], int]:
         return code
 
     return handle
+
+
+def missing(error: MissingFile) -> str:
+    """The message of a file that is not there, with the name of one that is alike."""
+    from prima.loading.files import path_of
+    from prima.loading.similar import alike
+
+    path = path_of(error.args[0])
+    similar = alike(path, {})
+    return f'{error} Did you mean "{path.with_name(similar)}"?' if similar else str(error)
+
+
+def _missing(error: MissingFile) -> int:
+    tell(f"prima: {brief(missing(error), LONGEST)}")
+    return USAGE
 
 
 def _problems(error: DocumentError) -> int:
@@ -109,6 +124,7 @@ NOT_UTF8 = "the name of a file is not UTF-8 and cannot be written here; rename i
 HANDLERS: list[tuple[type[BaseException], Callable[[Any], int]]] = [
     (SystemExit, lambda _error: FINE),  # click raises it when nobody reads any more
     (DocumentError, _problems),
+    (MissingFile, _missing),
     (UsageError, _message(USAGE)),
     (RunError, _message(RUN)),
     (click.exceptions.NoArgsIsHelpError, _no_arguments),

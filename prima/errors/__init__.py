@@ -43,7 +43,7 @@ from prima.errors.words import counted, one_of, with_article
 
 __all__ = [
     "LONGEST_TEXT", "MOST_TOLD", "SEVERITIES", "TOO_MUCH", "Diagnosis", "DocumentError", "Edit",
-    "Fix", "Hint", "Place", "PrimaError", "Problem", "RunError", "Severity", "Span", "UsageError",
+    "Fix", "Hint", "MissingFile", "Place", "PrimaError", "Problem", "RunError", "Severity", "Span", "UsageError",
     "brief", "counted", "did_you_mean", "few", "few_guesses", "guessable", "has_errors",
     "in_order", "listed", "meant", "nearest_word", "one_of", "replaced", "suggestion",
     "with_article",
@@ -73,6 +73,13 @@ class DocumentError(PrimaError):
 
 class UsageError(PrimaError):
     """The caller asked for something that does not exist or is impossible."""
+
+
+class MissingFile(UsageError):
+    """There is no file of this name; ``args`` has its path."""
+
+    def __str__(self) -> str:
+        return f"{self.args[0]}: cannot be read: No such file or directory."
 
 
 class RunError(PrimaError):

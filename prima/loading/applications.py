@@ -5,22 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import replace
-from itertools import islice
 from typing import TYPE_CHECKING
 
 from prima.errors import (
     DocumentError,
-    Hint,
     Problem,
-    Span,
     has_errors,
-    meant,
 )
 from prima.interpreter.elements import Document
-from prima.interpreter.events import near
 from prima.interpreter.reader import read_document
 from prima.loading.files import Folder, absolute, path_of, read_file
 from prima.loading.kinds import is_voicexml
+from prima.loading.similar import alike
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -161,29 +157,3 @@ def services_of(path: str, data: bytes) -> list[Endpoint]:
             raise DocumentError([in_folder(folder, one) for one in error.problems]) from None
 
     return read_services(path, data, grammar)
-
-
-MOST_BESIDE = 300
-"""How many files of a folder are considered in a guess."""
-
-
-def nearby(path: Path, *spans: Span, listed: dict[Path, list[Path]]) -> Hint:
-    """A hint that suggests the file that a wrong name most likely means."""
-    return meant(alike(path, listed), *spans)
-
-
-def alike(path: Path, listed: dict[Path, list[Path]]) -> str:
-    """The file in the same folder that a wrong name most likely means; its suffix counts little.
-
-    ``listed`` caches each folder's files: a document may name very many.
-    """
-    folder = path.parent
-    if folder not in listed:
-        try:
-            beside = islice(folder.iterdir(), MOST_BESIDE)
-            listed[folder] = sorted(one for one in beside if not one.is_dir())
-        except (OSError, ValueError):
-            listed[folder] = []
-    files = sorted(listed[folder], key=lambda one: one.suffix == path.suffix)  # the last one counts
-    stems = {one.stem: one.name for one in files if one.name != path.name}
-    return stems.get(near(path.stem, stems), "")

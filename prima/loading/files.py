@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from os.path import abspath, exists, getsize, isdir, isfile, join, normpath
 from typing import TYPE_CHECKING, Protocol
 
-from prima.errors import DocumentError, UsageError
+from prima.errors import DocumentError, MissingFile, UsageError
 from prima.markup.limits import LIMITS, too_large
 
 if TYPE_CHECKING:
@@ -147,6 +147,8 @@ def read_bytes(path: str | Path, most: int = -1) -> bytes:
             raise UsageError(f"{path}: cannot be read: it is not a file.")
         with open(path, "rb") as stream:
             return stream.read(most)
+    except FileNotFoundError:
+        raise MissingFile(path) from None
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
     except ValueError:

@@ -22,7 +22,7 @@ from prima.errors import (
 )
 from prima.interpreter.checks import check_commands
 from prima.interpreter.elements import Document
-from prima.loading.applications import digest, nearby, read_application
+from prima.loading.applications import digest, read_application
 from prima.loading.diagnoses import (
     BAD_POLICY,
     BAD_SITE,
@@ -36,9 +36,10 @@ from prima.loading.diagnoses import (
 )
 from prima.loading.files import path_of, read_file
 from prima.loading.kinds import is_voicexml
+from prima.loading.similar import nearby
 from prima.loading.voicedocuments import voicexml_problems
-from prima.markup.check import kind_of
 from prima.markup.reader import parse
+from prima.markup.roots import kind_of
 from prima.markup.spans import value_span
 
 if TYPE_CHECKING:

@@ -22,11 +22,11 @@ from prima.loading.kinds import GRAMMAR_FILES, is_grammar, is_surely_ours, is_vo
 from prima.loading.reading import Reading
 from prima.loading.scenarios import load_whole
 from prima.loading.voicedocuments import mapped_site, mappings, voicexml_problems
-from prima.markup.check import check_root
 from prima.markup.collecting import seldom_collected
 from prima.markup.encodings import misread
 from prima.markup.limits import LIMITS
 from prima.markup.reader import parse
+from prima.markup.roots import check_root
 
 if TYPE_CHECKING:
     from pathlib import Path

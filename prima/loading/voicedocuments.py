@@ -13,12 +13,13 @@ from prima.errors import (
     UsageError,
     replaced,
 )
-from prima.loading.applications import fetcher, in_folder, nearby
+from prima.loading.applications import fetcher, in_folder
 from prima.loading.diagnoses import (
     NO_FILE_HERE,
     OUTSIDE,
 )
 from prima.loading.files import Folder, path_of
+from prima.loading.similar import nearby
 from prima.markup.limits import LIMITS
 from prima.markup.spans import value_span
 

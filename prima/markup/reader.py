@@ -11,9 +11,10 @@ from collections.abc import Sequence
 
 from prima.errors import DocumentError, Place, Problem, Span, replaced
 from prima.markup.build import MAX_NAME, LimitReached, Unclear, build
-from prima.markup.check import check_root, check_tree
+from prima.markup.check import check_tree
 from prima.markup.encodings import ENCODING, decode
 from prima.markup.limits import LIMITS, refusal, too_deep
+from prima.markup.roots import check_root
 from prima.markup.tree import Node, Source
 from prima.markup.vocabulary import Vocabulary
 from prima.markup.wellformed import explain

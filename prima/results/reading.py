@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
-from prima.errors import UsageError, did_you_mean, one_of
+from prima.errors import MissingFile, UsageError, did_you_mean, one_of
 from prima.errors.visible import unharmed
 from prima.experiments.sweep import PLAN, ROWS
 from prima.experiments.table import HEAD, MEANINGS, MEASURES, OUTCOMES, Column, parquet_columns
@@ -83,6 +83,8 @@ def _cells(table: Path) -> tuple[dict[str, list[Any]], str]:
         if table.suffix == ".parquet":
             return parquet_columns(table, MOST_ROWS, MOST_COLUMNS, MOST_BYTES), ""
         return _read_csv(table)
+    except FileNotFoundError:
+        raise MissingFile(table) from None
     except OSError as error:
         raise UsageError(f"{table}: cannot be read: {error.strerror or error}.") from None
     except UnicodeDecodeError:

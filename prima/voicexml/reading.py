@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from prima.errors import Problem
 from prima.errors.diagnoses.structure import DUPLICATE_ID, NO_NAMESPACE
-from prima.markup.check import check_root
 from prima.markup.reader import parse
+from prima.markup.roots import check_root
 from prima.markup.spans import with_namespace
 from prima.markup.tree import Node
 from prima.voicexml.arranging import is_unit

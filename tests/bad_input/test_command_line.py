@@ -55,6 +55,9 @@ USAGES: list[Any] = [
     (["run", "s.xml", "--bound", "9" * 50, "-o", "t"], 0, "records"),
     (["run", "s.xml", "--format", "jsn"], 2, "jsn"),
     (["run", "no.xml"], 2, "no.xml: cannot be read: No such file"),
+    (["run", "s.xm"], 2, 's.xm: cannot be read: No such file or directory. Did you mean "s.xml"?'),
+    (["validate", "ap.xml"], 2, 'Did you mean "app.xml"?'),
+    (["show", "god.jsonl"], 2, 'Did you mean "good.jsonl"?'),
     (["run", "."], 0, "runs: 1; fine: 1"),
     (["run", "app.xml"], 1, "a scenario is needed here. prima run and prima talk take it by --fa app.xml."),
     (["run", "good.jsonl"], 1, "prima show prints it"),
@@ -96,6 +99,13 @@ def test_usage(
     prima: Prima, transcript: str, arguments: list[str], code: int, message: str
 ) -> None:
     prima(*arguments).check(code, message)
+
+
+def test_a_grammar_in_place_of_an_application(prima: Prima, tmp_path: Path) -> None:
+    srgs = 'xmlns="http://www.w3.org/2001/06/grammar" version="1.0" root="r"'
+    write(tmp_path, "yes.grxml", f'<grammar {srgs}><rule id="r">yes</rule></grammar>')
+    hint = 'an application is needed here. An application names it by <grammar src="..."/>.'
+    prima("run", "--ea", "yes.grxml").check(1, f"yes.grxml:1:1: error: This is a grammar; {hint}")
 
 
 def test_no_row_at_all(prima: Prima, tmp_path: Path) -> None:

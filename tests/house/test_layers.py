@@ -60,7 +60,7 @@ INSIDE = {
     "markup": [
         {"collecting", "limits", "sniff", "uris", "vocabulary", "tree"},
         {"edits", "encodings", "hints", "spans", "wellformed"},
-        {"build", "check"},
+        {"build", "check", "roots"},
         {"reader"},
         {"__init__"},
     ],
@@ -73,7 +73,7 @@ INSIDE = {
     ],
     "language": [{"values"}, {"commands", "distributions"}, {"arguments"}, {"__init__"}],
     "loading": [
-        {"diagnoses", "files", "web", "writing"},
+        {"diagnoses", "files", "similar", "web", "writing"},
         {"folders"},
         {"kinds"},
         {"applications"},

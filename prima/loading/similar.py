@@ -1,0 +1,37 @@
+"""Guesses which file a wrong name means."""
+
+from __future__ import annotations
+
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from prima.errors import Hint, Span, meant
+from prima.interpreter.events import near
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+MOST_BESIDE = 300
+"""How many files of a folder are considered in a guess."""
+
+
+def nearby(path: Path, *spans: Span, listed: dict[Path, list[Path]]) -> Hint:
+    """A hint that suggests the file that a wrong name most likely means."""
+    return meant(alike(path, listed), *spans)
+
+
+def alike(path: Path, listed: dict[Path, list[Path]]) -> str:
+    """The file in the same folder that a wrong name most likely means; its suffix counts little.
+
+    ``listed`` caches each folder's files: a document may name very many.
+    """
+    folder = path.parent
+    if folder not in listed:
+        try:
+            beside = islice(folder.iterdir(), MOST_BESIDE)
+            listed[folder] = sorted(one for one in beside if not one.is_dir())
+        except (OSError, ValueError):
+            listed[folder] = []
+    files = sorted(listed[folder], key=lambda one: one.suffix == path.suffix)  # the last one counts
+    stems = {one.stem: one.name for one in files if one.name != path.name}
+    return stems.get(near(path.stem, stems), "")
