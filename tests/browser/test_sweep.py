@@ -30,8 +30,7 @@ def opened(browser: Browser, page: Path, size: tuple[int, int] = DESK, **more: A
     return Opened(browser, page, size, wait="#map-rows", **more)
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
+@pytest.mark.parametrize(("scheme", "size"), [("light", DESK), ("dark", PHONE)])
 def test_axe_finds_nothing(
     browser: Browser, page: Path, scheme: str, size: tuple[int, int]
 ) -> None:

@@ -25,8 +25,10 @@ def records(scenario: str) -> list[Record]:
 
 
 def test_check_names_what_differs_and_a_run_without_it_writes(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    quick = pictures.GRAPHS["sweep"][0], lambda _path: "<svg/>"
+    monkeypatch.setitem(pictures.GRAPHS, "sweep", quick)  # hundreds of runs; make check does them
     shutil.copytree(ROOT / "documents", tmp_path / "documents")
     assert pictures.main([], tmp_path) == 0
     drawn = tmp_path / "docs" / "pictures" / "trees.svg"

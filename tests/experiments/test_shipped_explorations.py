@@ -16,7 +16,6 @@ QUICK = [
     "library-alone",
     "navigate-by-laser",
     "picture-alone",
-    "pizza-and-follow",
     "pizza-and-video-timer",
     "three-applications",
     "touched-on-the-way",

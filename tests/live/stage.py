@@ -178,6 +178,8 @@ class ScenarioDriver(SimDriver):
         self.cast = cast
         self._since = since
         """What the user does by then is left out."""
+        self._sensed: dict[str, Any] = {}
+        """The sensors' values as told."""
         self.heard: list[tuple[int, list[str]]] = []
         """What is listened for, and since when (ms)."""
         self.hearing: Callable[[], Conductor] = lambda: Conductor(cast.robot, dict)
@@ -227,8 +229,9 @@ class ScenarioDriver(SimDriver):
         self._tell = tell
         for value in held:
             tell(value)
-        if self.people.sensors:
-            tell(Sensed(dict(self.people.sensors)))
+        if self.people.sensors != self._sensed:  # each report wakes the run
+            self._sensed = dict(self.people.sensors)
+            tell(Sensed(self._sensed))
 
     def observe(self, now: int, records: list[Record]) -> None:
         self.people.observe(now, records)
