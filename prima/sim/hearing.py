@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import chain, product
 
 from prima.devices.profile import Profile
-from prima.errors import Hint, Place, Problem, Span, meant, one_of, suggestion
+from prima.errors import Hint, Place, Problem, Span, meant, suggestion
 from prima.errors.diagnoses.names import UNKNOWN_EVENT, UNSUPPORTED_COMMAND
 from prima.interpreter.elements import Document
 from prima.interpreter.events import STANDARD, KnownEvents, event_place, near
@@ -26,6 +26,7 @@ from prima.language.commands import TABLE_4_2
 from prima.language.values import read_value
 from prima.markup.spans import instead, value_span
 from prima.markup.tree import Node
+from prima.sim.asked import check_services
 from prima.sim.devices import Cast
 from prima.sim.expected import COMMANDS, check_values
 from prima.sim.map import Map
@@ -75,9 +76,9 @@ def check_hearing(cast: Cast) -> list[Problem]:
     problems += world.plan.narrow(room_beside(cast.robot)) if world.plan is not None else ()
     corners = [*_corners(nodes, events, pages, world)]
     problems += [*corners, *_words(nodes, cast)]
+    problems += check_services(cast, events)
     if pages:
         return problems  # what a VoiceXML application accepts is known only at run time
-    problems += _services(events, cast)
     places = {one.place for one in corners}
     triggers = [one for one in _triggers(nodes, events, cast) if one.place not in places]
     return [*problems, *_unheard(nodes, events), *triggers]
@@ -325,24 +326,3 @@ def _nobody(nodes: list[Node]) -> Iterator[Problem]:
         message = f"Nobody is there: <{node.tag}> does nothing without a <person>."
         remedy = 'Write where they are at first, such as <person at="..."/>.'
         yield Problem(node.place, "warning", "missing-element", message, remedy)
-
-
-def _services(events: list[KnownEvents], cast: Cast) -> Iterator[Problem]:
-    """Services that do not exist, if another was meant, or that are another application's."""
-    owners: dict[str, set[str]] = {}
-    for service in cast.scenario.services:
-        owners.setdefault(service.name, set()).add(service.application)
-    for document, one in zip(cast.documents, events, strict=True):
-        for node, name in one.asked:
-            message, remedy = "", Hint()
-            if name in owners and owners[name].isdisjoint(("", document.id)):
-                message = f'The scenario has the service "{name}" for {one_of(sorted(owners[name]))} alone.'
-                remedy = Hint(
-                    f'In the scenario, write a <service name="{name}"> for this application.'
-                )
-            elif name not in owners and (other := near(name, owners)):
-                message = f'The scenario has no service "{name}".'
-                remedy = meant(other, *value_span(node, "to"))
-            if message:
-                place = node.attribute_place("to")
-                yield Problem(place, "warning", "no-such-name", message, remedy)

@@ -254,7 +254,7 @@ INSIDE = {
         {"expected", "sensed", "incidents", "services", "telephone", "triggers"},
         {"people"},
         {"devices"},
-        {"rehearsal"},
+        {"asked", "rehearsal"},
         {"hearing"},
         {"__init__"},
     ],

@@ -89,6 +89,30 @@ def test_nobody_walks_where_nobody_is(
     assert {(one.severity, one.code) for one in found} <= {("warning", "missing-element")}
 
 
+@pytest.mark.parametrize(
+    ("asking", "told"),
+    [
+        ('<data name="d" src="service:wether"/>', [(2, 'The scenario has no service "wether".')]),
+        ('<submit next=" service:wether#f "/>', [(2, 'The scenario has no service "wether".')]),
+        ('<data name="d" src="service:weather"/>', []),
+        ('<data name="d" src="service:news"/>', []),
+    ],
+)
+def test_a_service_that_a_voicexml_document_names(
+    asking: str, told: list[tuple[int, str]], tmp_path: Path
+) -> None:
+    (tmp_path / "a.vxml").write_text(
+        VXML.format("", f"\n<form id='f'><block>{asking}</block></form>")
+    )
+    path = tmp_path / "s.xml"
+    service = '<service name="weather"><reply/></service>'
+    head = SCENARIO.partition("<application")[0]
+    path.write_text(f'{head}<application src="a.vxml"/>{service}</scenario>', encoding="utf-8")
+    found = [one for one in loading.load_scenario(path).problems if "service" in one.message]
+    assert [(one.place.line, one.message) for one in found] == told
+    assert all(one.fixes and "weather" in one.remedy for one in found)
+
+
 # Worlds ---------------------------------------------------------------------------------
 WORLD = """<world xmlns="urn:prima:world:1" version="1.0" id="w">
 <place id="a" x="0" y="0"/><place id="b" x="4" y="0"/>

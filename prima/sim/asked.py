@@ -1,0 +1,61 @@
+"""Checks the names of services that applications ask."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from prima.errors import Problem, meant, one_of
+from prima.errors.diagnoses.names import NO_SUCH_NAME
+from prima.interpreter.elements import Document
+from prima.interpreter.events import KnownEvents, near
+from prima.markup.spans import value_span
+from prima.markup.tree import Node
+from prima.messages import SERVICE
+from prima.sim.devices import Cast
+
+NAMING = ("next", "src")
+"""Attributes of VoiceXML elements that name a service by ``service:NAME``."""
+
+NO_SERVICE = NO_SUCH_NAME.says('The scenario has no service "{name}".', severity="warning")
+OF_OTHERS = NO_SUCH_NAME.says(
+    'The scenario has the service "{name}" for {others} alone.',
+    'In the scenario, write a <service name="{name}"> for this application.',
+    "warning",
+)
+
+
+def check_services(cast: Cast, events: Sequence[KnownEvents]) -> Iterator[Problem]:
+    """Services that do not exist, if another was meant, or that are another application's.
+
+    ``events`` has an entry for each document of PRIMA's own language.
+    """
+    owners: dict[str, set[str]] = {}
+    for service in cast.scenario.services:
+        owners.setdefault(service.name, set()).add(service.application)
+    for owner, node, attribute, name in _asks(cast, events):
+        place = node.attribute_place(attribute)
+        if name in owners and owners[name].isdisjoint(("", owner)):
+            yield OF_OTHERS.at(place, name=name, others=one_of(sorted(owners[name])))
+        elif name not in owners and (other := near(name, owners)):
+            hint = meant(other, *value_span(node, attribute, name))
+            yield NO_SERVICE.at(place, hint, name=name)
+
+
+def _asks(cast: Cast, events: Sequence[KnownEvents]) -> Iterator[tuple[str, Node, str, str]]:
+    """Who asks a service: the application and its element, the attribute and the name in it."""
+    natives = iter(events)
+    for document in cast.documents:
+        if isinstance(document, Document):
+            yield from ((document.id, node, "to", name) for node, name in next(natives).asked)
+        else:
+            for node, attribute, name in _by_uri(document.page.root):
+                yield document.id, node, attribute, name
+
+
+def _by_uri(root: Node) -> Iterator[tuple[Node, str, str]]:
+    """The elements of a VoiceXML document that name a service."""
+    for node in root.walk():
+        for attribute in NAMING:
+            uri = node.get(attribute).strip()
+            if uri.startswith(SERVICE):
+                yield node, attribute, uri.removeprefix(SERVICE).partition("#")[0]
