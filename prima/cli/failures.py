@@ -46,8 +46,10 @@ def _message(code: int, text: str = "") -> Callable[[Any], int]:
     return handle
 
 
-def missing(error: MissingFile) -> str:
-    """The message of a file that is not there, with the name of one that is alike."""
+def in_words(error: UsageError) -> str:
+    """The message of a wrong use, with the name of a file like one that is not there."""
+    if not isinstance(error, MissingFile):
+        return str(error)
     from prima.loading.files import path_of
     from prima.loading.similar import alike
 
@@ -56,8 +58,8 @@ def missing(error: MissingFile) -> str:
     return f'{error} Did you mean "{path.with_name(similar)}"?' if similar else str(error)
 
 
-def _missing(error: MissingFile) -> int:
-    tell(f"prima: {brief(missing(error), LONGEST)}")
+def _usage_error(error: UsageError) -> int:
+    tell(f"prima: {brief(in_words(error), LONGEST)}")
     return USAGE
 
 
@@ -124,8 +126,7 @@ NOT_UTF8 = "the name of a file is not UTF-8 and cannot be written here; rename i
 HANDLERS: list[tuple[type[BaseException], Callable[[Any], int]]] = [
     (SystemExit, lambda _error: FINE),  # click raises it when nobody reads any more
     (DocumentError, _problems),
-    (MissingFile, _missing),
-    (UsageError, _message(USAGE)),
+    (UsageError, _usage_error),
     (RunError, _message(RUN)),
     (click.exceptions.NoArgsIsHelpError, _no_arguments),
     (click.ClickException, _usage),

@@ -23,8 +23,8 @@ from prima.cli.common import (
     raise_limits,
     tell,
 )
-from prima.cli.failures import missing, whoever_reads
-from prima.errors import MissingFile, Problem, UsageError, listed, one_of
+from prima.cli.failures import in_words, whoever_reads
+from prima.errors import Problem, UsageError, listed, one_of
 from prima.markup.limits import LIMITS
 
 WATCH_SECONDS = 0.3
@@ -113,10 +113,8 @@ def _check(
     for index, name in enumerate(names, 1):
         try:
             problems += validation.problems(name)
-        except MissingFile as error:
-            unread.append(missing(error))
         except UsageError as error:
-            unread.append(str(error))
+            unread.append(in_words(error))
         if len(names) >= MANY and sys.stderr.isatty():
             click.echo(f"\r{index} of {len(names)} files", err=True, nl=index == len(names))
     problems = loading.once([*problems, *validation.ignored()])
