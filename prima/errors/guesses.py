@@ -11,6 +11,8 @@ from prima.errors.problems import Edit, Fix, Hint, Span
 
 MANY_LETTERS, MANY_WORDS = 60, 300
 """Limits of words that are compared, to bound the time."""
+SHORTEST = 3
+"""Letters that a word has at least to abbreviate another."""
 MOST_COMPARED = 30_000
 """Maximum number of comparisons for one document."""
 
@@ -50,9 +52,12 @@ def guessable(word: str, known: Iterable[str]) -> list[str]:
 
 
 def nearest_word(word: str, known: Iterable[str]) -> str:
-    """The known word most similar to another, or nothing."""
-    words = guessable(word, known)
-    alike = [one for one in words if one.casefold() == word.casefold()]
+    """The known word most similar to another, or the only one that it abbreviates; or nothing."""
+    words, folded = guessable(word, known), word.casefold()
+    alike = [one for one in words if one.casefold() == folded]
+    if not alike and len(word) >= SHORTEST:
+        begun = [one for one in words if one.casefold().startswith(folded)]
+        alike = begun if len(begun) == 1 else []
     if words and not alike:
         from difflib import get_close_matches  # costs a third of a start, and is rarely needed
 

@@ -66,6 +66,7 @@ def test_all_problems_of_a_file_at_once_with_exact_places() -> None:
         ('<form id="a"><catch event="x"/></form>', "unknown-element", '<on event="...">'),
         ('<form id="a"><speak>Hi</speak></form>', "misplaced-element", "block"),
         ('<form id="a"><block tame="x"/></form>', "unknown-attribute", '"name"'),
+        ('<form id="a"><field name="x"><opt>a</opt></field></form>', "unknown-element", '"option"'),
         ('<form id="ask"><block><goto next="#aks"/></block></form>', "no-such-form", '"ask"'),
         ('<var name="goal"/><form id="a"><block><log expr="gaol"/></block></form>', "undeclared-variable", '"goal"'),
         ('<form id="a"><block>Hello</block></form>', "stray-text", "<speak>"),

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 
 from prima.errors import Problem
 from prima.interpreter.checks.arguments import given_to
+from prima.interpreter.checks.calls import check_calls
 from prima.interpreter.checks.code import check_code
 from prima.interpreter.checks.commands import check_branches, check_texts, check_units
 from prima.interpreter.checks.facts import Facts
@@ -31,6 +32,7 @@ CHECKS: tuple[Callable[[Facts], Iterator[Problem]], ...] = (
     check_reachable,
     check_items,
     check_code,
+    check_calls,
     check_texts,
     check_branches,
     check_endless,

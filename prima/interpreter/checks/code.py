@@ -93,7 +93,7 @@ def check_code(facts: Facts) -> Iterator[Problem]:
     """Check all code of a document, and the variables that it uses."""
     variables = Variables(facts)
     waiting: list[tuple[Expression, Known, bool]] = []
-    for expr, known, script in _all_code(facts):
+    for expr, known, script in all_code(facts):
         if (declared if script else compiled)(expr.code) is None:
             waiting.append((expr, known, script))  # needs an engine
         else:
@@ -127,7 +127,8 @@ def _used(variables: Variables, expr: Expression, known: Known, script: bool) ->
 Code = tuple[Expression, Known, bool]
 
 
-def _all_code(facts: Facts) -> Iterator[Code]:
+def all_code(facts: Facts) -> Iterator[Code]:
+    """All code of a document, with the variables that it sees, and whether it is a script."""
     yield from _outside(facts.document, Known(facts.shared), facts.known_in(None))
     for form, items in facts.forms:
         known = facts.known_in(form)
