@@ -28,7 +28,7 @@ from prima.voicexml.elements import HANDLERS, INPUTS, ITEMS
 ALWAYS = frozenset(
     [
         *("session", "application", "document", "dialog", "lastresult$"),
-        *("_event", "_message", "_prompt", "_dtmf", "event"),
+        *("_event", "_message", "_prompt", "_dtmf", "connection", "telephone", "event"),
         *("Node", "DOMException"),
     ]
 )

@@ -265,6 +265,7 @@ def test_a_variable_that_is_used_before_it_is_declared_is_told(
         '<script src="gone.js"/><form><block><log expr="anything"/></block></form>',
         '<form><block><foreach item="x" array="[1]"><log expr="x"/></foreach></block></form>',
         '<form><block><log expr="session.connection + lastresult$.length"/></block></form>',
+        '<form><block><log expr="connection.local.uri + telephone.ani"/></block></form>',
         '<catch event="e"><log expr="_event + x"/></catch><form><var name="x"/></form>',
         '<form><var name="x"/><block><script>y = x; a: while (y--) break a;</script></block></form>',
         "<script>with (Math) { var y = floor(PI); } function f() { return g() + y; }"
