@@ -20,7 +20,7 @@ from prima.voicexml.owner import MachineOwner
 from prima.voicexml.prompts import Speaker
 from prima.voicexml.settings import form_items
 from prima.voicexml.speech import Speech
-from prima.voicexml.state import SCOPES, Context, Flow, GoDialog, HungUp, UriRequest
+from prima.voicexml.state import HANGUP, SCOPES, Context, Flow, GoDialog, HungUp, UriRequest
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 STEP_TAGS = 10
@@ -101,7 +101,9 @@ class Content(Speaker):
                 raise GoOut()
             case "disconnect":
                 self.report(node, context, local)
-                raise HungUp("connection.disconnect.hangup", "", source(node))
+                if self.owner.gone == HANGUP:  # there is nobody left to disconnect (1.5.4)
+                    raise GoOut(HANGUP)
+                raise HungUp(HANGUP, "", source(node))
             case "return":
                 self.give_back(node, context, local)
 

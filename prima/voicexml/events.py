@@ -42,7 +42,7 @@ class Events:
         """Find an event's handler and run it, or do what the platform does (5.2.4, 5.2.5)."""
         self._count(context, thrown)
         try:
-            if isinstance(thrown, HungUp) and not self.owner.gone:
+            if isinstance(thrown, HungUp):
                 yield from self._hang_up(thrown)
             handler = self.find(context, thrown)
             if handler is None:
@@ -140,7 +140,7 @@ class Events:
     def _hang_up(self, thrown: HungUp) -> Flow:
         """The user is gone: play what is queued before, and nothing after (5.3.11)."""
         try:
-            if self.owner.queue and not thrown.outside:
+            if self.owner.queue and not (thrown.outside or self.owner.gone):
                 yield from self.owner.play()
         finally:
             self.owner.gone = thrown.name

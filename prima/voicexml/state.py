@@ -105,6 +105,10 @@ class UnitOver(Thrown):
     """A unit around form items has taken longer than its longest duration (rule U5)."""
 
 
+HANGUP = "connection.disconnect.hangup"
+"""The event of a user who hangs up, or whom the application disconnects (5.2.6)."""
+
+
 class HungUp(Thrown):
     """The user has left or is about to: a hangup, a disconnect, a transfer (1.5.4)."""
 

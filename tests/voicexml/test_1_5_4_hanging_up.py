@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.helpers.telephone import STOP, Quiet, ended, logs, run, shown, transfer
 from tests.helpers.voice import vxml
 
@@ -38,6 +40,26 @@ def test_after_a_hangup_values_can_be_submitted(place: Path) -> None:
     assert [what for what in shown(made) if what.startswith('"')] == ['"Well?"']
     sent = [record["data"] for record in made.records if record["phase"] == "send"]
     assert sent[0]["params"] == {"a": 1}
+    assert ended(made)[1] == "connection.disconnect.hangup"
+
+
+@pytest.mark.parametrize("handled", ['<goto next="#end"/>', "<log>bye</log><disconnect/>"])
+@pytest.mark.parametrize("first", ["", "<block>Bye.<disconnect/></block>"])
+def test_a_disconnect_after_a_hangup_ends_the_application(
+    place: Path, handled: str, first: str
+) -> None:
+    app = f"""<catch event="connection.disconnect.hangup">{handled}</catch>
+    <form>{first}<field name="f"><prompt>Well?</prompt>{STOP}</field></form>
+    <form id="end"><block><log>bye</log><disconnect/></block></form>"""
+    made = run(place, app, '<when asked="Well?" after="1s"><hang-up/></when>')
+    assert (logs(made), ended(made)[1]) == (["bye"], "connection.disconnect.hangup")
+
+
+def test_a_disconnect_after_a_transfer_is_an_event_once(place: Path) -> None:
+    app = """<catch event="connection.disconnect"><log expr="_event"/><disconnect/></catch>
+    <form><transfer dest="tel:+1-555-1234" type="blind"/></form>"""
+    made = run(place, app)
+    assert logs(made) == ["connection.disconnect.transfer", "connection.disconnect.hangup"]
     assert ended(made)[1] == "connection.disconnect.hangup"
 
 
