@@ -144,6 +144,7 @@ class Documents:
             else:
                 page = yield from load_page(self.owner, whole, node, request)
         if (page or context.page).dialog(fragment) is None:
+            name = f' "{fragment}"' if fragment else ""
             where = f" in {page.uri}" if page else ""
-            raise Thrown.at(node, "error.badfetch", f'there is no dialog "{fragment}"{where}')
+            raise Thrown.at(node, "error.badfetch", f"there is no dialog{name}{where}")
         return page, fragment

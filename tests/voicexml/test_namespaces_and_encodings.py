@@ -190,6 +190,13 @@ def test_a_document_without_dialogs_tells_where(tmp_path: Path) -> None:
     assert failure == f"app: {told}"
 
 
+def test_a_further_document_without_dialogs_is_told_by_its_name(tmp_path: Path) -> None:
+    (tmp_path / "root.vxml").write_text(f'{HEAD}<var name="a"/></vxml>', encoding="utf-8")
+    made = run(tmp_path, '<form><block><goto next="root.vxml"/></block></form>')
+    [failure] = made.failures
+    assert failure.endswith(": there is no dialog in root.vxml")
+
+
 def test_attributes_that_exclude_each_other_are_one_error_wherever_they_are_told(
     tmp_path: Path,
 ) -> None:
