@@ -62,3 +62,29 @@ def _complete(node: Node, throws: bool) -> bool:
     """Whether each branch of an ``if`` leaves its dialog, the last of them being ``else``."""
     found = [*branches(node)]
     return found[-1][0].tag == "else" and all(leaves(part, throws) for _, part in found)
+
+
+def numbered(node: Node) -> dict[int, str]:
+    """The keys of a field's options or a menu's choices, by their index (2.2).
+
+    With ``dtmf="true"`` a menu numbers the first nine choices that have no keys of their own.
+    """
+    found: dict[int, str] = {}
+    number = 0
+    for one in node.all("option", "choice"):
+        found[one.index] = one.get("dtmf")
+        if not one.get("dtmf") and node.get("dtmf") == "true" and number < 9:
+            number += 1
+            found[one.index] = str(number)
+    return found
+
+
+def words_of(option: Node) -> str:
+    """The text of an option or choice, including its markup's."""
+    parts: list[str] = []
+    for item in option.content:
+        if isinstance(item, str):
+            parts.append(item)
+        elif item.tag not in ("grammar", "desc", "metadata"):
+            parts.append(words_of(item))
+    return " ".join("".join(parts).split())

@@ -13,6 +13,7 @@ from prima.markup.tree import Node
 from prima.messages import Hypothesis, Json, Say
 from prima.script.budget import Budget
 from prima.voicexml.document import Page
+from prima.voicexml.elements import numbered, words_of
 from prima.voicexml.fetching import held, refusal
 from prima.voicexml.matching import GrammarMatch, Listener, keys, listener, phrase, ways
 from prima.voicexml.owner import MachineOwner
@@ -267,29 +268,3 @@ class Inputs:
     def _failed(self, node: Node, message: str) -> None:
         """A tag failed on the utterance, so the grammar does not take it."""
         self.owner.app.actions.append(Say("log", f"no match: {message}", source(node)))
-
-
-def numbered(node: Node) -> dict[int, str]:
-    """The keys of a field's options or a menu's choices, by their index (2.2).
-
-    With ``dtmf="true"`` a menu numbers the first nine choices that have no keys of their own.
-    """
-    found: dict[int, str] = {}
-    number = 0
-    for one in node.all("option", "choice"):
-        found[one.index] = one.get("dtmf")
-        if not one.get("dtmf") and node.get("dtmf") == "true" and number < 9:
-            number += 1
-            found[one.index] = str(number)
-    return found
-
-
-def words_of(option: Node) -> str:
-    """The text of an option or choice, including its markup's."""
-    parts: list[str] = []
-    for item in option.content:
-        if isinstance(item, str):
-            parts.append(item)
-        elif item.tag not in ("grammar", "desc", "metadata"):
-            parts.append(words_of(item))
-    return " ".join("".join(parts).split())

@@ -9,16 +9,21 @@ from prima.errors.diagnoses.grammars import NO_ANSWER
 from prima.markup.tree import Node
 from prima.voicexml.arranging import parts_of
 from prima.voicexml.document import Page, broken
+from prima.voicexml.elements import numbered, words_of
 
 ASKING = ("field", "initial")
 REMEDY = "Give it a <grammar>, <option>s or a type. At run time it is error.semantic."
+CHOICES = "Give its <choice>s words or keys. At run time it is error.semantic."
 NO_GRAMMAR = NO_ANSWER.says(
     "No grammar listens at the <{tag}>{name}: it takes no answer at all.", REMEDY, "warning"
+)
+NO_CHOICE = NO_ANSWER.says(
+    "No grammar listens at the <menu>{name}: it takes no answer at all.", CHOICES, "warning"
 )
 
 
 def check_listening(page: Page, root: Page | None) -> Iterator[Problem]:
-    """Warnings of fields that nobody can answer (2.0, 3.1.4), unless they may never be asked."""
+    """Warnings of questions that nobody can answer (2.0, 3.1.4), unless they may never be asked."""
     if broken(page) is not None or (page.application and root is None):
         return
     wider = [page.root, *([root.root] if root is not None else [])]
@@ -29,6 +34,9 @@ def check_listening(page: Page, root: Page | None) -> Iterator[Problem]:
         if not (everywhere or _listens(item) or item.get("name") in given):
             name = f" {item.get('name')}".rstrip()
             yield NO_GRAMMAR.at(item.place, tag=item.tag, name=name)
+    for menu in page.root.all("menu"):
+        if not (shared or _listens(menu)):
+            yield NO_CHOICE.at(menu.place, name=f" {menu.get('id')}".rstrip())
 
 
 def _asked_alone(page: Page) -> Iterator[Node]:
@@ -45,17 +53,31 @@ def _surely_asked(item: Node) -> bool:
 
 def _listens(node: Node) -> bool:
     """Whether an item or dialog has a grammar of its own, or commands that listen everywhere."""
-    held = any(one.tag in ("grammar", "option", "choice", "link") for one in node.nodes)
+    keys = numbered(node)
+    held = any(_is_heard(one, keys.get(one.index, "")) for one in node.nodes)
     return held or bool(node.get("type")) or _universals(node)
+
+
+def _is_heard(node: Node, dtmf: str) -> bool:
+    """Whether something that the user says or types is taken by a part of an item or dialog."""
+    match node.tag:
+        case "grammar":
+            return True
+        case "link":
+            return bool(node.all("grammar")) or bool(node.get("dtmf"))
+        case "option" | "choice":
+            return bool(words_of(node)) or bool(dtmf) or bool(node.all("grammar"))
+        case _:
+            return False
 
 
 def _shares(root: Node) -> bool:
     """Whether something listens in all of a document: links, dialogs and grammars of its scope."""
     dialogs = root.all("form", "menu")
     return (
-        bool(root.all("link"))
+        any(_is_heard(one, "") for one in root.all("link"))
         or _universals(root)
-        or any(one.get("scope") == "document" for one in dialogs)
+        or any(one.get("scope") == "document" and _listens(one) for one in dialogs)
         or any(one.get("scope") == "document" for node in dialogs for one in node.all("grammar"))
     )
 

@@ -13,9 +13,9 @@ from prima.voicexml.arranging import Queued, holds, is_unit, parts_of
 from prima.voicexml.choosing import ItemSelection
 from prima.voicexml.content import Content
 from prima.voicexml.document import Page
-from prima.voicexml.elements import ITEMS
+from prima.voicexml.elements import ITEMS, numbered, words_of
 from prima.voicexml.events import Events
-from prima.voicexml.inputs import Inputs, numbered, words_of
+from prima.voicexml.inputs import Inputs
 from prima.voicexml.items import Items
 from prima.voicexml.owner import VoiceApplication
 from prima.voicexml.questions import Questions

@@ -8,6 +8,7 @@ import pytest
 
 from prima import api, loading
 from tests.helpers.validating import VXML, in_the_passage, told
+from tests.helpers.voice import Call
 
 
 @pytest.mark.parametrize(
@@ -117,6 +118,9 @@ UNIVERSALS = '<property name="universals" value="all"/>'
         f'<form><p:iu xmlns:p="urn:prima:dialogue:1">{FIELD.format("", "")}</p:iu></form>',
         "<form>" + FIELD.format(' modal="true"', "") + "</form><link event='e' dtmf='1'/>",
         f"<form>{FIELD.format('', '')}</form><form>{RULES.format('')}</form>",
+        f"<form>{FIELD.format('', '<option/>')}</form>",
+        f"<form>{FIELD.format('', '')}</form><link event='e'/>",
+        f"<form>{FIELD.format('', '')}</form><form scope='document'/>",
     ],
 )
 def test_a_question_of_voicexml_at_which_no_grammar_listens_is_told(
@@ -149,6 +153,25 @@ def test_a_question_of_voicexml_at_which_something_listens_is_fine(
     tmp_path: Path, content: str
 ) -> None:
     assert [one for one in told(tmp_path, content) if "no-answer" in one] == []
+
+
+@pytest.mark.parametrize(
+    ("content", "warned"),
+    [
+        ('<menu id="m"><choice event="e"/></menu>', True),
+        ('<menu id="m"><choice event="e"><audio src="a.wav"/></choice></menu>', True),
+        ('<menu id="m"><choice event="e"><audio src="a.wav">Tea</audio></choice></menu>', False),
+        ('<menu id="m"><choice event="e" dtmf="1"/></menu>', False),
+        ('<menu id="m" dtmf="true"><choice event="e"/></menu>', False),
+        ('<menu id="m"><choice event="e"/></menu><link event="e" dtmf="1"/>', False),
+    ],
+)
+def test_a_menu_of_which_nothing_can_be_chosen_is_told(
+    tmp_path: Path, content: str, warned: bool
+) -> None:
+    says = "no-answer No grammar listens at the <menu> m: it takes no answer at all."
+    assert [says in one for one in told(tmp_path, content) if "no-answer" in one] == [True] * warned
+    assert Call(content).ended.startswith("error.semantic") == warned
 
 
 def test_what_listens_in_an_application_root_listens_in_its_leaves(tmp_path: Path) -> None:

@@ -10,8 +10,7 @@ from prima.checks.prices.tags import says
 from prima.devices.voice import timeline
 from prima.markup.tree import Node
 from prima.messages import Cue
-from prima.voicexml.elements import SILENT
-from prima.voicexml.inputs import words_of
+from prima.voicexml.elements import SILENT, words_of
 from prima.voicexml.prompts import UNKNOWN_MS
 from prima.voicexml.speech import Speech, language_of, read_markup
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
