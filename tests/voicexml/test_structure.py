@@ -353,6 +353,8 @@ def test_an_items_expression_without_a_value_is_error_semantic(item: str) -> Non
         ("<form><field name='a$'><option>x</option></field></form>", ['"a$" is reserved']),
         ("<form><block><foreach item='a.b' array='[]'/></block></form>", ['"a.b" is not a name']),
         ("<form><block><prompt><foreach item='1' array='[]'/></prompt></block></form>", ['"1" is not a name']),
+        ("<form><block><assign name='session.a' expr='1'/></block></form>", ['"session.a" cannot be assigned']),
+        ("<form><block><assign name='sessions.a' expr='1'/></block></form>", []),
         ("<menu><choice dtmf='1 x' event='e'>a</choice></menu>", ['dtmf "1 x"']),
         ("<menu><choice dtmf='1 2*#A' event='e.f-g_1'>a</choice></menu>", []),
         ("<form><field name='f'><option dtmf='one'>a</option></field></form>", ['dtmf "one"']),

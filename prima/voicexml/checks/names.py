@@ -36,6 +36,12 @@ RESERVED_NAME = BAD_VALUE.says(
     "warning",
 )
 
+READ_ONLY = BAD_VALUE.says(
+    '"{name}" cannot be assigned, as the session is read-only: a run throws error.semantic.',
+    "Assign a variable of your own.",
+    "warning",
+)
+
 
 def check_script_names(script: Node) -> Iterator[Problem]:
     """Variables of a script that hide the platform's scopes (5.1.2)."""
@@ -51,9 +57,14 @@ def _hides(place: Place, name: str) -> Problem:
 
 
 def check_name(node: Node) -> Iterator[Problem]:
-    """A variable that no expression can name, or whose name is the platform's (5.1.1)."""
+    """A variable that no expression can name, or whose name is the platform's (5.1.1).
+
+    What belongs to the session cannot be assigned either (5.1.2).
+    """
     attribute = NAMING.get(node.key, "")
     name = node.get(attribute)
+    if node.key == "assign" and node.get("name").startswith("session."):
+        yield READ_ONLY.at(node.attribute_place("name"), name=node.get("name"))
     if not name:
         return
     place = node.attribute_place(attribute)
