@@ -27,16 +27,21 @@ def check_listening(page: Page, root: Page | None) -> Iterator[Problem]:
     if broken(page) is not None or (page.application and root is None):
         return
     wider = [page.root, *([root.root] if root is not None else [])]
-    given = {node.get("name") for node in page.root.walk() if node.key == "assign"}
     shared = any(map(_shares, wider))
+    yield from _unanswered(page, shared)
+    for menu in page.root.all("menu"):
+        if not (shared or _listens(menu)):
+            yield NO_CHOICE.at(menu.place, name=f" {menu.get('id')}".rstrip())
+
+
+def _unanswered(page: Page, shared: bool) -> Iterator[Problem]:
+    """Items at which nothing listens; ``shared`` says whether something does in all of them."""
+    given = {node.get("name") for node in page.root.walk() if node.key == "assign"}
     for item in _asked_alone(page):
         everywhere = shared and item.get("modal") != "true"
         if not (everywhere or _listens(item) or item.get("name") in given):
             name = f" {item.get('name')}".rstrip()
             yield NO_GRAMMAR.at(item.place, tag=item.tag, name=name)
-    for menu in page.root.all("menu"):
-        if not (shared or _listens(menu)):
-            yield NO_CHOICE.at(menu.place, name=f" {menu.get('id')}".rstrip())
 
 
 def _asked_alone(page: Page) -> Iterator[Node]:
