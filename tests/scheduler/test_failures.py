@@ -108,6 +108,23 @@ def test_e1_of_another_requests_loops_that_end_the_application_hears() -> None:
     assert check(stage.records) == []
 
 
+def test_e1_of_a_loop_that_was_left_the_application_does_not_hear() -> None:
+    """What fails was requested later and continues the stream (O3)."""
+    stage = Stage()
+    stage.request("ea", TRACK)
+    stage.select()
+    stage.at(5).leave("ea")
+    stage.request("ea", say("Ouch."), cause=EVENT, state=2)
+    assert stage.select() == ["ea#2"]
+    assert [r["tree"] for r in stage.phases("request")] == ["ea:1", "ea:1"]
+    stage.at(10).mediator.failed("ea#2", "speaker", "broken")
+    assert stage.select() == []
+    assert stage.told("ea") == ["error.device.speaker"]
+    stage.at(500).end("ea#1.1", goal=False)
+    assert stage.select() == []
+    assert check(stage.records) == []
+
+
 def test_e1_a_unit_that_has_begun_is_finished_whole() -> None:
     stage = Stage()
     unit = Group(chain(say("One."), say("Two.")))

@@ -282,6 +282,22 @@ def test_x1_the_response_to_an_answer_does_not_wait_for_the_way_back() -> None:
     assert stage.select() == ["ea#5"]
 
 
+def test_x1_a_way_back_goes_on_when_another_branch_has_failed() -> None:
+    """What the application says of the failure relies on it too (E1)."""
+    nod = Step(command("gesture", name="nod"), (0,))
+    stage = way_back_that_waits("prima+x1", nod, Step(say("Two."), (1,)))
+    stage.at(1000).end("xa#1", x=0.0, y=0.0, heading=20.0)
+    assert stage.select() == ["ea#5.1"]
+    stage.at(1200).mediator.failed("ea#3", "arm", "broken")
+    stage.settle(lambda: stage.request("ea", say("Sorry.")))
+    assert stage.select() == []
+    stage.at(1500).end("ea#5.1", goal=False, x=2.0, y=0.0, heading=20.0)
+    assert stage.select() == ["ea#5.2"]
+    stage.at(2000).end("ea#5.2", x=4.0, y=1.0, heading=20.0)
+    assert stage.select() == ["ea#6"]
+    assert check(stage.records, "prima+x1") == []
+
+
 def test_x1_a_way_back_that_k1_keeps_does_not_keep_the_floor() -> None:
     # fa would wait to drive back until ea no longer engages the user, ea for fa's floor.
     stage = Stage("prima+x1", apps={"fa": "fa", "ea": "ea", "xa": "ea"})
