@@ -70,6 +70,16 @@ def test_o1_in_a_window_a_command_follows_the_latest_of_the_windows_stream() -> 
     assert stage.phases("request")[-1]["parent"] == "ea#2"
 
 
+def test_o1_in_a_window_a_command_follows_a_unit_and_not_what_is_in_it() -> None:
+    stage = Stage()
+    unit = Group(chain(say("One."), say("Two.")))
+    stage.request("ea", steps=[Step(unit), Step(command("turn", angle=90))])
+    assert stage.select() == ["ea#1", "ea#3", "ea#2"]
+    stage.at(10).end("ea#2", then=lambda: stage.request("ea", command("turn", angle=0)))
+    stage.select()
+    assert stage.phases("request")[-1]["parent"] == "ea#1"
+
+
 def test_o2_now_cancels_the_trees_that_share_a_device() -> None:
     stage = Stage()
     stage.request("ea", move(), say("There."))
