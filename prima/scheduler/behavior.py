@@ -229,6 +229,13 @@ class Behavior:
         self.priority = HIGH if row is None else row.priority
 
     @property
+    def what(self) -> Command | Group:
+        """Its Command or, if it is a unit, the group."""
+        what = self.command or self.group
+        assert what is not None
+        return what
+
+    @property
     def in_order(self) -> list[str]:
         """Its devices in the order in which they are checked and reported."""
         return sorted(self.devices)
@@ -261,8 +268,7 @@ class Behavior:
     @property
     def restartable(self) -> bool:
         """Whether the AB gives way to a reaction and starts again (X2)."""
-        what = self.group or self.command
-        return what is not None and what.restartable and not self.silent
+        return self.what.restartable and not self.silent
 
     def next_loop(self) -> None:
         """U2: begin another loop of a feedback Command: an AB with a name of its own."""

@@ -132,9 +132,7 @@ def shown_cues(cues: tuple[Cue, ...]) -> list[dict[str, Json]]:
 
 def _asked_by_author(ab: Behavior) -> Record:
     """The request behind an AB: the arguments of its Command, and its line."""
-    what = ab.command or ab.group
-    assert what is not None
-    fields: Record = {"source": line_of(what.source)}
+    fields: Record = {"source": line_of(ab.what.source)}
     if (command := ab.command) is not None:
         fields["args"], fields["extra"] = command.args or None, command.extra or None
         fields["cues"] = shown_cues(command.cues) if command.cues else None
