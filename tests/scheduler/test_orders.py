@@ -101,6 +101,18 @@ def test_o2_what_runs_on_other_devices_finishes() -> None:
     assert stage.running == {"ea#1", "ea#3"}
 
 
+def test_o2_of_what_finishes_the_application_hears_once() -> None:
+    stage = Stage()
+    turn = replace(command("turn", angle=90), now=True)
+    stage.request("ea", steps=[Step(say("A long story.")), Step(command("turn", angle=9))])
+    stage.select()
+    stage.at(10).request("ea", turn)
+    stage.select()
+    stage.at(20).request("ea", replace(turn))
+    assert stage.select() == ["ea#4"] and stage.running == {"ea#1", "ea#4"}
+    assert stage.told("ea").count("cancel.speak") == 1
+
+
 def test_o2_another_applications_abs_are_left_alone() -> None:
     stage = Stage()
     stage.request("ea", move())
