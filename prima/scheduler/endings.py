@@ -187,7 +187,7 @@ def delete_rest(
 
     Other runs in it are cancelled.
     """
-    for other in list(reversed(list(tree.values()))):
+    for other in reversed(list(tree.values())):
         if other.in_group:
             continue
         if other.state in (LINKED, WAITING):
@@ -223,7 +223,7 @@ def close_unit(mediation: Mediation, app: Application, number: int) -> None:
         return
     assert unit.inside is not None
     unit.inside.open, unit.late = False, None
-    for ab in list(reversed(list(unit.inside.members.values()))):
+    for ab in reversed(list(unit.inside.members.values())):
         if ab.state is RUNNING:
             silence(ab)
         elif ab.state is not GONE:

@@ -108,7 +108,7 @@ def unit_timeout(mediation: Mediation, unit: Behavior) -> None:
         mediation.tell(unit.app, unit.stream, notice)
         return
     silence(unit)
-    for ab in list(reversed(list(unit.inner.values()))):
+    for ab in reversed(list(unit.inner.values())):
         if ab.state is not RUNNING:
             delete(mediation, ab, "U5")
     delete_rest(mediation, unit.stream.members, run, "U5")
