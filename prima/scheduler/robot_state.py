@@ -89,7 +89,7 @@ class Effects:
         if where is not None and math.dist(where, pose[:2]) > FAR:
             return [_go(where, heading)]
         if heading is not None and abs(difference(heading, pose[2])) > TURNED:
-            return [Command("set-direction", {"heading": round(heading, 1)})]
+            return [Command("set-direction", {"heading": _rounded(heading, 1)})]
         return []
 
     def _turned_since(self, body: RobotState) -> bool:
@@ -103,11 +103,16 @@ class Effects:
         )
 
 
+def _rounded(number: float, digits: int) -> float:
+    """A number as it is written: never -0.0."""
+    return round(number, digits) + 0.0
+
+
 def _go(position: tuple[float, float], heading: float | None) -> Command:
-    args: dict[str, float] = {"x": round(position[0], 3), "y": round(position[1], 3)}
+    args: dict[str, float] = {"x": _rounded(position[0], 3), "y": _rounded(position[1], 3)}
     if heading is None:
         return Command("set-position", args)
-    return Command("set-position-and-direction", {**args, "heading": round(heading, 1)})
+    return Command("set-position-and-direction", {**args, "heading": _rounded(heading, 1)})
 
 
 def _apart(head: Head, other: Head) -> bool:

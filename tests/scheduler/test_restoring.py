@@ -48,6 +48,24 @@ def test_x1_a_stream_that_resumes_stands_where_it_stood() -> None:
     assert stage.rule("ea#3") == "S1"
 
 
+def test_x1_a_way_back_is_written_without_a_negative_zero() -> None:
+    stage = Stage("prima+x1")
+    stage.request("ea", move(), command("set-direction", heading=0), say("First."), say("Second."))
+    stage.select()
+    stage.at(500).end("ea#1.1", x=-0.0001, y=4.0, heading=90.0)
+    stage.select()
+    stage.at(600).end("ea#2", x=-0.0001, y=4.0, heading=-0.01)
+    stage.select()
+    stage.request("fa", command("turn", angle=3), cause=EVENT)
+    stage.select()
+    stage.at(1000).end("ea#3")
+    stage.select()
+    stage.at(1500).end("fa#1", x=9.0, y=0.0, heading=0.0)
+    stage.select()
+    [made] = [r for r in stage.phases("request") if r.get("inserted")]
+    assert str(made["args"]) == "{'x': 0.0, 'y': 4.0, 'heading': 0.0}"
+
+
 def test_x1_who_waits_for_its_own_way_back_is_kept_waiting_by_nobody_else() -> None:
     stage = at_a_panel("prima+x1", say("Second."))
     assert stage.select() == []
