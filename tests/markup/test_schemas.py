@@ -151,7 +151,7 @@ def test_generated_documents_are_valid_by_table_and_schema(
 
 
 @pytest.mark.parametrize("vocabulary", NAMESPACES.values(), ids=lambda one: one.name)
-@settings(max_examples=400, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_table_and_schema_give_one_verdict(vocabulary: Vocabulary, data: st.DataObject) -> None:
     root = data.draw(mutated(vocabulary))
