@@ -43,8 +43,8 @@ from prima.errors.words import counted, one_of, with_article
 
 __all__ = [
     "LONGEST_TEXT", "MOST_TOLD", "SEVERITIES", "TOO_MUCH", "Diagnosis", "DocumentError", "Edit",
-    "Fix", "Hint", "MissingFile", "Place", "PrimaError", "Problem", "RunError", "Severity", "Span", "UsageError",
-    "brief", "counted", "did_you_mean", "few", "few_guesses", "guessable", "has_errors",
+    "Fix", "Hint", "MissingFile", "Place", "PrimaError", "Problem", "RunError", "Severity", "Span",
+    "UsageError", "brief", "counted", "did_you_mean", "few", "few_guesses", "guessable", "has_errors",
     "in_order", "listed", "meant", "nearest_word", "one_of", "replaced", "suggestion",
     "with_article",
 ]  # fmt: skip
@@ -76,7 +76,7 @@ class UsageError(PrimaError):
 
 
 class MissingFile(UsageError):
-    """There is no file of this name; ``args`` has its path."""
+    """A file does not exist; ``args`` holds its path."""
 
     def __str__(self) -> str:
         return f"{self.args[0]}: cannot be read: No such file or directory."

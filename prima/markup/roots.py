@@ -55,7 +55,7 @@ def _other_document(root: Node, vocabularies: Sequence[Vocabulary]) -> Problem |
     if not own:
         return None
     wanted = one_of(DOCUMENTS.get(one.namespace, VOICEXML) for one in vocabularies)
-    return OTHER_DOCUMENT.at(root.place, Hint(_use(root, wanted)), own=own, wanted=wanted)
+    return OTHER_DOCUMENT.at(root.place, Hint(_use(root, own, wanted)), own=own, wanted=wanted)
 
 
 def _no_document(root: Node, vocabularies: Sequence[Vocabulary]) -> Problem:
@@ -85,14 +85,13 @@ def kind_of(root: Node) -> str:
     return DOCUMENTS.get(root.namespace, "")
 
 
-def _use(root: Node, wanted: str) -> str:
-    """How to use a document that is not of the kind wanted; or nothing."""
-    own, file = kind_of(root), root.source.file
+def _use(root: Node, own: str, wanted: str) -> str:
+    """How to use a document of its own kind, where another is wanted; or nothing."""
     if own == GRAMMAR:
         return 'An application names it by <grammar src="..."/>.'
     if wanted != "a scenario" or own not in (APPLICATION, VOICEXML):
         return ""
-    option = f"--{root.get('kind', 'ea')} {file}"
+    option = f"--{root.get('kind', 'ea')} {root.source.file}"
     return (
         f"prima run and prima talk take it by {option}."
         ' A scenario names it by <application src="..."/>.'

@@ -48,20 +48,26 @@ def test_x1_a_stream_that_resumes_stands_where_it_stood() -> None:
     assert stage.rule("ea#3") == "S1"
 
 
-def test_x1_a_way_back_is_written_without_a_negative_zero() -> None:
+def turned_away(then: Command, x: float, y: float, heading: float) -> Stage:
+    """The EA has gone somewhere and turned, when the FA turns the robot, which ends elsewhere."""
     stage = Stage("prima+x1")
-    stage.request("ea", move(), command("set-direction", heading=0), say("First."), say("Second."))
+    stage.request("ea", move(), command("set-direction", heading=90), say("First."), then)
     stage.select()
-    stage.at(500).end("ea#1.1", x=-0.0001, y=4.0, heading=90.0)
+    stage.at(500).end("ea#1.1", x=x, y=y, heading=0.0)
     stage.select()
-    stage.at(600).end("ea#2", x=-0.0001, y=4.0, heading=-0.01)
+    stage.at(600).end("ea#2", x=x, y=y, heading=heading)
     stage.select()
     stage.request("fa", command("turn", angle=3), cause=EVENT)
     stage.select()
     stage.at(1000).end("ea#3")
     stage.select()
-    stage.at(1500).end("fa#1", x=9.0, y=0.0, heading=0.0)
+    stage.at(1500).end("fa#1", x=0.0, y=0.0, heading=0.0)
     stage.select()
+    return stage
+
+
+def test_x1_a_way_back_is_written_without_a_negative_zero() -> None:
+    stage = turned_away(say("Second."), -0.0001, 4.0, -0.01)
     [made] = [r for r in stage.phases("request") if r.get("inserted")]
     assert str(made["args"]) == "{'x': 0.0, 'y': 4.0, 'heading': 0.0}"
 
@@ -89,19 +95,7 @@ def test_x1_who_waits_for_its_own_way_back_is_kept_waiting_by_nobody_else() -> N
 def test_x1_what_moves_from_where_the_robot_stands_relies_on_it(
     kind: str, text: str | None, args: dict[str, Any], way: str
 ) -> None:
-    stage, then = Stage("prima+x1"), command(kind, text, **args)
-    stage.request("ea", move(), command("set-direction", heading=90), say("First."), then)
-    stage.select()
-    stage.at(500).end("ea#1.1", x=4.0, y=1.0, heading=0.0)
-    stage.select()
-    stage.at(600).end("ea#2", x=4.0, y=1.0, heading=90.0)
-    stage.select()
-    stage.request("fa", command("turn", angle=3), cause=EVENT)
-    stage.select()
-    stage.at(1000).end("ea#3")
-    stage.select()
-    stage.at(1500).end("fa#1", x=0.0, y=0.0, heading=0.0)
-    stage.select()
+    stage = turned_away(command(kind, text, **args), 4.0, 1.0, 90.0)
     assert inserted(stage) == [("X1", way)]
 
 

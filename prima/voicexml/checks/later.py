@@ -21,7 +21,7 @@ from prima.script.shared import IsolatedSyntax, syntax
 from prima.voicexml.arranging import UNIT, is_unit, parts_of
 from prima.voicexml.checks.attributes import bad_value, fits, instead_of
 from prima.voicexml.checks.guests import command_problems
-from prima.voicexml.checks.names import check_name, check_script_names
+from prima.voicexml.checks.names import check_assigned, check_name, check_script_names
 from prima.voicexml.elements import ITEMS, handler_number
 from prima.voicexml.vocabulary import (
     EXPRESSIONS,
@@ -104,7 +104,7 @@ def _check_node(node: Node, lang: str) -> Iterator[Problem]:
     if node.key == "property":
         yield from _property_problems(node)
     if node.key == "assign":
-        yield from no_step(node)
+        yield from (*no_step(node), *check_assigned(node))
     if node.key == "script" and node.own_text.strip():
         yield from check_script_names(node)
 

@@ -57,14 +57,9 @@ def _hides(place: Place, name: str) -> Problem:
 
 
 def check_name(node: Node) -> Iterator[Problem]:
-    """A variable that no expression can name, or whose name is the platform's (5.1.1).
-
-    What belongs to the session cannot be assigned either (5.1.2).
-    """
+    """A variable that no expression can name, or whose name is the platform's (5.1.1)."""
     attribute = NAMING.get(node.key, "")
     name = node.get(attribute)
-    if node.key == "assign" and node.get("name").startswith("session."):
-        yield READ_ONLY.at(node.attribute_place("name"), name=node.get("name"))
     if not name:
         return
     place = node.attribute_place(attribute)
@@ -72,3 +67,9 @@ def check_name(node: Node) -> Iterator[Problem]:
         yield _hides(place, name)
     elif wrong := wrong_name(name):
         yield (NOT_A_NAME if wrong == "not a name" else RESERVED_NAME).at(place, name=name)
+
+
+def check_assigned(node: Node) -> Iterator[Problem]:
+    """An assignment to a variable of the session, which is read-only (5.1.2)."""
+    if node.get("name").startswith("session."):
+        yield READ_ONLY.at(node.attribute_place("name"), name=node.get("name"))
