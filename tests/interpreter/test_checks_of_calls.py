@@ -46,6 +46,10 @@ def test_a_param_that_may_be_meant(names: tuple[str, ...], then: str) -> None:
     assert warned(param(*names), then=then) == []
 
 
+ANOTHER = """<form id="b"><subdialog name="r" src="#more"/>
+  <block><log expr="r.anser"/><exit/></block></form>
+<form id="more"><var name="anser"/><block><log>x</log><return namelist="anser"/></block></form>"""
+"""A call whose result has the name of another form's, and is another one."""
 USE = '<log expr="r.anser + 1"/>'
 
 
@@ -63,6 +67,7 @@ def test_a_misspelt_result() -> None:
         ('<log expr="r.length"/>', RETURN, ""),
         ('<log expr="r.toString()"/>', RETURN, ""),
         (USE, "<goto next-expr=\"'#ot' + 'her'\"/>", OTHER),  # leads anywhere
+        ('<goto next="#b"/><log expr="r.answer"/>', RETURN, ANOTHER),
         (USE, '<var name="anser"/><return namelist="anser answer"/>', ""),
     ],
 )

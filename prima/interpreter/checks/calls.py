@@ -25,7 +25,6 @@ NOT_RETURNED = UNDECLARED_VARIABLE.says(
     'The form "{form}" returns no "{name}": its value is undefined.', severity="warning"
 )
 
-
 MOST_FORMS = 100
 """A form from which gotos lead to more forms than these may return anything."""
 
@@ -43,13 +42,17 @@ class _Calls:
     def __init__(self, facts: Facts) -> None:
         self.facts = facts
         self.calls = [
-            item for _, items in facts.forms for item in items if isinstance(item, Subdialog)
+            (facts.known_in(form), item)
+            for form, items in facts.forms
+            for item in items
+            if isinstance(item, Subdialog)
         ]
+        """Each with the variables that its form's code sees."""
         self._returned: dict[str, set[str]] = {}
 
     def params(self) -> Iterator[Problem]:
         """Params that the called form has no variable for, if it has one of a similar name."""
-        for call in self.calls:
+        for _, call in self.calls:
             form = self.facts.document.forms.get(call.form)
             if form is None or not call.params:
                 continue
@@ -65,11 +68,12 @@ class _Calls:
     def results(self) -> Iterator[Problem]:
         """Properties of results that the called form never returns."""
         others = {act.name for _, act in self.facts.acts.of(Declare)} | set(self.facts.shared)
-        called = {call.name: call.form for call in self.calls if call.name not in others}
-        for expr, _, script in all_code(self.facts):
+        called = {(known, call.name): call.form for known, call in self.calls}
+        for expr, known, script in all_code(self.facts):
             for use in _names(expr.code, script).uses:
-                if use.name in called and use.part is not None and not use.holder:
-                    yield from self._unreturned(called[use.name], expr, *use.part)
+                form = called.get((known, use.name))
+                if form and use.part is not None and not use.holder and use.name not in others:
+                    yield from self._unreturned(form, expr, *use.part)
 
     def _unreturned(self, form: str, expr: Expression, start: int, name: str) -> Iterator[Problem]:
         if form not in self._returned:
