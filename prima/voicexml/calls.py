@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Generator
 from dataclasses import dataclass
 
@@ -14,6 +13,7 @@ from prima.messages import Command, Cue, Data, Json, Transferred
 from prima.voicexml.arranging import take_last_said
 from prima.voicexml.fetching import gathered
 from prima.voicexml.owner import MachineOwner
+from prima.voicexml.platform import uncalled
 from prima.voicexml.questions import open_to_answers
 from prima.voicexml.results import marked_and_recorded
 from prima.voicexml.state import Context, Flow, HungUp, Resume, TakenUtterance, thrown_outside
@@ -23,8 +23,6 @@ CONNECT_MS = 60_000
 LISTEN = "20s"
 """How long each of the repeated questions during a call listens."""
 ANSWERED, NEAR_END = "answered", "near_end_disconnect"
-TELEPHONE = re.compile(r"tel:\+?[-.() 0-9A-Da-dpw*#]+(;.*)?")
-ADDRESS = re.compile(r"sips?:[^\s@]+(@[^\s@]+)?")
 
 
 @dataclass(slots=True)
@@ -69,7 +67,8 @@ class Calls:
             raise GoOut(self.owner.gone)
         call = Call(item, content.word(item, "dest", context, local), kind_of(item))
         aai = content.word(item, "aai", context, local)
-        check_destination(call.to, item)
+        if (refused := uncalled(call.to)) is not None:
+            raise Thrown.at(item, *refused)
         if call.listens:
             yield from gathered(self.owner, lambda: self.owner.inputs.activate(context))
         self.owner.items_of.forget_results(context)
@@ -200,21 +199,3 @@ class Calls:
 def kind_of(item: Node) -> str:
     """The type of a transfer, from ``type`` or the older attribute; blind by default."""
     return item.get("type") or ("bridge" if item.get("bridge") == "true" else "blind")
-
-
-def check_destination(uri: str, item: Node) -> None:
-    """Refuse a destination that cannot be called (2.3.7.3).
-
-    Raises:
-        Thrown: ``error.unsupported.uri`` for a scheme other than a telephone's,
-            ``error.connection.baddestination`` for a destination invalid in its scheme.
-    """
-    scheme = uri.partition(":")[0].lower()
-    known = scheme in ("tel", "sip", "sips")
-    if ":" in uri and not known:
-        message = f'"{uri}" cannot be called; write "tel:", "sip:" or "sips:"'
-        raise Thrown.at(item, "error.unsupported.uri", message)
-    form = TELEPHONE if scheme == "tel" else ADDRESS
-    if not known or form.fullmatch(scheme + uri[len(scheme) :]) is None:
-        message = f'"{uri}" is not a telephone number; write it as "tel:+1-555-1234"'
-        raise Thrown.at(item, "error.connection.baddestination", message)

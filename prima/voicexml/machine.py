@@ -18,6 +18,7 @@ from prima.voicexml.events import Events
 from prima.voicexml.inputs import Inputs
 from prima.voicexml.items import Items
 from prima.voicexml.owner import VoiceApplication
+from prima.voicexml.platform import NO_CHOICES
 from prima.voicexml.questions import Questions
 from prima.voicexml.scopes import Documents
 from prima.voicexml.settings import answering
@@ -95,7 +96,7 @@ class Machine:
         owner = context.item if context.item is not None else context.form
         choices = owner.all("choice", "option") if owner is not None else []
         if owner is None or not choices or _holds_enumerate(node):
-            raise Thrown.at(node, "error.semantic", "there are no choices here to enumerate")
+            raise Thrown.at(node, *NO_CHOICES)
         keys = numbered(owner)
         if not node.content:
             speech.parts.append("; ".join(filter(None, map(words_of, choices))))

@@ -10,12 +10,11 @@ from prima.markup.tree import Node
 from prima.messages import BEEP, Command, Cue, Data, Event, Json
 from prima.voicexml.matching import KEYS
 from prima.voicexml.owner import MachineOwner
+from prima.voicexml.platform import unrecorded
 from prima.voicexml.results import marked_and_recorded
 from prima.voicexml.settings import setting
 from prima.voicexml.state import Context, Flow, TakenUtterance
 
-FORMATS = frozenset(["audio/basic", "audio/x-alaw-basic", "audio/x-wav", "audio/wav"])
-"""Formats in which every platform records (appendix E)."""
 BEEP_MS = 500
 END_KEYS = "#*"
 """Keys that may end a spoken recording; others would be taken for its last word."""
@@ -49,9 +48,8 @@ class RecordItems:
         media_type = item.get("type") if item.tag == "record" else ""
         if item.tag != "record" and setting(context, "recordutterance") == "true":
             media_type = setting(context, "recordutterancetype")
-        name = media_type.partition(";")[0].strip().lower()
-        if name and name not in FORMATS:
-            raise Thrown.at(item, "error.unsupported.format", f'nothing is recorded as "{name}"')
+        if (refused := unrecorded(media_type)) is not None:
+            raise Thrown.at(item, *refused)
 
     def prepare(self, item: Node, question: Command) -> None:
         """Make a question ask for a recording: a beep at its end, and its bounds as cues."""

@@ -145,7 +145,7 @@ INSIDE = {
     ],
     "voicexml": [
         {
-            *("caught", "cues", "dom", "elements", "recordings", "site", "upgrade"),
+            *("caught", "cues", "dom", "elements", "platform", "recordings", "site", "upgrade"),
             *("variablenames", "vocabulary"),
         },
         {"arranging", "speech"},

@@ -20,6 +20,7 @@ from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.shared import IsolatedSyntax, syntax
 from prima.voicexml.arranging import UNIT, is_unit, parts_of
 from prima.voicexml.checks.attributes import bad_value, fits, instead_of
+from prima.voicexml.checks.failing import check_failing
 from prima.voicexml.checks.guests import command_problems
 from prima.voicexml.checks.names import check_assigned, check_name, check_script_names
 from prima.voicexml.elements import ITEMS, handler_number
@@ -88,7 +89,7 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
         problems += _targets(node, dialogs)
     for dialog in root.all("form", "menu"):
         problems += _items(dialog, dialogs)
-    return [*problems, *_first_prompt(root)]
+    return [*problems, *check_failing(root), *_first_prompt(root)]
 
 
 def _check_node(node: Node, lang: str) -> Iterator[Problem]:

@@ -1,0 +1,43 @@
+"""What this platform cannot do (VoiceXML 2.0, 2.2.4, 2.3.6, 2.3.7 and appendix E)."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+FORMATS = frozenset(["audio/basic", "audio/x-alaw-basic", "audio/x-wav", "audio/wav"])
+"""Formats in which every platform records (appendix E)."""
+TELEPHONE = re.compile(r"tel:\+?[-.() 0-9A-Da-dpw*#]+(;.*)?")
+ADDRESS = re.compile(r"sips?:[^\s@]+(@[^\s@]+)?")
+
+
+class Unsupported(NamedTuple):
+    """The event that refuses something, and why."""
+
+    event: str
+    message: str
+
+
+NO_CHOICES = Unsupported("error.semantic", "there are no choices here to enumerate")
+
+
+def unrecorded(media_type: str) -> Unsupported | None:
+    """Why nothing can be recorded in a format (2.3.6; 2.1, 7.2); any is fine if it is empty."""
+    name = media_type.partition(";")[0].strip().lower()
+    if not name or name in FORMATS:
+        return None
+    return Unsupported("error.unsupported.format", f'nothing is recorded as "{name}"')
+
+
+def uncalled(uri: str) -> Unsupported | None:
+    """Why a destination cannot be called (2.3.7.3): its scheme, or what it lacks in its scheme."""
+    scheme = uri.partition(":")[0].lower()
+    known = scheme in ("tel", "sip", "sips")
+    if ":" in uri and not known:
+        message = f'"{uri}" cannot be called; write "tel:", "sip:" or "sips:"'
+        return Unsupported("error.unsupported.uri", message)
+    form = TELEPHONE if scheme == "tel" else ADDRESS
+    if known and form.fullmatch(scheme + uri[len(scheme) :]) is not None:
+        return None
+    message = f'"{uri}" is not a telephone number; write it as "tel:+1-555-1234"'
+    return Unsupported("error.connection.baddestination", message)

@@ -1,0 +1,67 @@
+"""``prima validate`` of VoiceXML that is valid, but fails whenever a run reaches it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from prima import api
+
+FAILING = {
+    "object": ('<object name="o" classid="method://x"/>', "error.unsupported.objectname"),
+    "format": ('<record name="r" type="audio/mpeg; rate=8"/>', "error.unsupported.format"),
+    "scheme": ('<transfer name="t" dest="phone:12"/>', "error.unsupported.uri"),
+    "number": ('<transfer name="t" dest="desk"/>', "error.connection.baddestination"),
+    "choices": ("<block>One of <enumerate/></block>", "error.semantic"),
+    "in a field": ('<field name="f" type="digits"><enumerate/></field>', "error.semantic"),
+}
+FINE = {
+    "another type": '<record name="r" type="audio/x-wav;rate=8"/><record name="s"/>',
+    "calls": '<transfer name="t" dest="tel:+1-555"/><transfer name="u" destexpr="where"/>',
+    "options": '<field name="f"><option>tea</option><prompt><enumerate/></prompt></field>',
+    "a handler of the form": "<catch><enumerate/></catch>",
+    "maybe never": '<object name="o" classid="method://x" cond="session.objects"/>',
+    "expected": '<object name="o"><catch event="error.unsupported"/></object>',
+    "expected by name": '<transfer name="t" dest="phone:1"><catch event="error.unsupported.uri"/></transfer>',
+}
+
+
+def failing(folder: Path, form: str, more: str = "") -> list[tuple[str, str]]:
+    path = folder / "a.vxml"
+    path.write_text(
+        f'<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml"{more}>'
+        f'<var name="where" expr="\'tel:1\'"/><form>{form}<block/></form></vxml>'
+    )
+    told = api.validate([str(path)])
+    return [(one.message, one.remedy) for one in told if one.code == "always-fails"]
+
+
+@pytest.mark.parametrize("what", FAILING)
+def test_what_always_fails_is_told_with_its_event(tmp_path: Path, what: str) -> None:
+    form, event = FAILING[what]
+    ((_, remedy),) = failing(tmp_path, form)
+    assert event in remedy
+
+
+@pytest.mark.parametrize("what", FINE)
+def test_what_may_work_is_not_told(tmp_path: Path, what: str) -> None:
+    assert failing(tmp_path, FINE[what]) == []
+
+
+def test_a_handler_of_any_error_expects_none(tmp_path: Path) -> None:
+    form, _ = FAILING["object"]
+    assert len(failing(tmp_path, f"<error>Sorry.</error>{form}")) == 1
+
+
+def test_a_root_document_may_expect_it(tmp_path: Path) -> None:
+    form, _ = FAILING["object"]
+    assert failing(tmp_path, form, ' application="root.vxml"') == []
+
+
+def test_the_message_says_what_to_write_instead(tmp_path: Path) -> None:
+    ((message, remedy),) = failing(tmp_path, FAILING["scheme"][0])
+    assert message == (
+        '<transfer> always fails: "phone:12" cannot be called; write "tel:", "sip:" or "sips:".'
+    )
+    assert remedy == "At run time it is error.unsupported.uri: change it, or catch the event."
