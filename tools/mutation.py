@@ -127,7 +127,7 @@ def _at(
     statement = node if isinstance(node, ast.stmt) else within
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
         function = node.name if function == "module" else f"{function}.{node.name}"
-    for new in (*_conditions(parent, field, node), *_variants(node)):
+    for new in (*_conditions(parent, field, node), *_variants(node), *_shortened(parent, node)):
         yield Change(parent, field, index, new, statement, function)
     for name, value in ast.iter_fields(node):
         if name in UNTOUCHED:
@@ -182,6 +182,18 @@ def _variants(node: ast.AST) -> Iterator[ast.AST]:
             yield ast.Call(ast.Name(CALLED[name], ast.Load()), given, kept)
 
 
+def _shortened(parent: ast.AST, node: ast.AST) -> Iterator[ast.AST]:
+    """A call without one of its named arguments, a tuple without one of its elements."""
+    match node:
+        case ast.Call(called, given, named):
+            for at, one in enumerate(named):
+                if one.arg != "strict":  # it only guards
+                    yield ast.Call(called, given, named[:at] + named[at + 1 :])
+        case ast.Tuple([_, _, *_] as elements, ast.Load()) if not isinstance(parent, ast.Subscript):
+            for at in range(len(elements)):
+                yield ast.Tuple(elements[:at] + elements[at + 1 :], ast.Load())
+
+
 def _constants(value: object) -> Iterator[ast.AST]:
     if isinstance(value, bool):
         yield ast.Constant(not value)
@@ -192,7 +204,12 @@ def _constants(value: object) -> Iterator[ast.AST]:
 
 
 def _dropped(node: ast.stmt) -> Iterator[ast.AST]:
-    """A statement left out, where the code after it still has its variables."""
+    """A statement left out, where the code after it still has its variables; a loop left early."""
+    match node:
+        case ast.While(test, body, orelse):
+            yield ast.If(test, body, orelse)
+        case ast.Continue():
+            yield ast.Break()
     match node:
         case ast.Expr() | ast.Delete() | ast.Continue() | ast.Break() | ast.Raise():
             yield ast.Pass()

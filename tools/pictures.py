@@ -8,6 +8,7 @@ writes nothing, names what differs and exits with 1. It works in a checkout.
 from __future__ import annotations
 
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from html import escape
@@ -30,6 +31,7 @@ LEGEND = (
     "grey: the stream is suspended;  dashed: it waits, by the rule named;  flag: an event;"
     "  ring: the application handles an end"
 )
+Point = tuple[float, float]
 SEEN = 0.1
 """Seconds that are long enough to be drawn."""
 
@@ -87,9 +89,8 @@ def between(records: list[Record], name: str, begins: str, *ends: str) -> list[B
     for record in records:
         key = base(record.get(name) or "")
         if record["phase"] in ends:
-            for bar in made:
-                if bar.name == key and bar.end < 0:
-                    bar.end = record["time"]
+            for bar in (bar for bar in made if bar.name == key and bar.end < 0):
+                bar.end = record["time"]
         if record["phase"] == begins:
             made.append(Bar(key, record["app"], record["time"], text=record.get("rule") or ""))
     for bar in made:
@@ -312,47 +313,62 @@ def parents(request: Record) -> list[str]:
     return [base(name) for name in found if name]
 
 
+def depths(asked: dict[str, Record]) -> dict[str, int]:
+    """How many ABs come before each one, along the longest way."""
+    found: dict[str, int] = {}
+    for name, request in asked.items():
+        found[name] = 1 + max([found[parent] for parent in parents(request)], default=-1)
+    return found
+
+
+def places(names: list[str], depth: dict[str, int], left: float, top: float) -> dict[str, Point]:
+    """Where the ABs of one application are drawn: those of one depth below one another."""
+    used: Counter[int] = Counter()
+    found: dict[str, Point] = {}
+    for name in names:
+        found[name] = (left + 4 + depth[name] * 124, top + 14 + used[depth[name]] * 48)
+        used[depth[name]] += 1
+    return found
+
+
+def behavior(request: Record, state: str, colour: int, where: dict[str, Point]) -> list[str]:
+    """One AB of working memory, with lines from those before it."""
+    x, top = where[request["behavior"]]
+    kind = {"running": "", "waiting": "none", "linked": "linked"}[state]
+    before = [where[parent] for parent in parents(request) if parent in where]
+    return [
+        box(x, top, 108, 34, f"s{colour} {kind}"),
+        text(x + 5, top + 14, f"{request['behavior']} {state}", "small"),
+        text(x + 5, top + 27, words(request), "", 104),
+        *(line(from_x + 108, from_y + 17, x, top + 17) for from_x, from_y in before),
+    ]
+
+
+def moment(records: list[Record], left: float, time: float) -> tuple[list[str], float]:
+    """Working memory at a time, and the height that it takes."""
+    asked = {r["behavior"]: r for r in records if r["phase"] == "request"}
+    depth, state = depths(asked), memory_at(records, time)
+    parts, y = [text(left + 4, 14, f"at {time:.2f} s", "name")], 30.0
+    for app in applications(records):
+        colour = colours(run_of(records).apps)[app]
+        names = [name for name in state if asked[name]["app"] == app]
+        where = places(names, depth, left, y)
+        for name in names:
+            parts += behavior(asked[name], state[name], colour, where)
+        parts.append(text(left + 4, y + 8, f"{app}: one tree, one stream", "small"))
+        y += 30 + 48 * max(Counter(depth[name] for name in names).values(), default=0)
+    running = [name for name, now in state.items() if now == "running"]
+    busy = [f"{device} by {name}" for name in running for device in asked[name]["devices"]]
+    parts.append(text(left + 4, y + 4, "occupied: " + ", ".join(busy), "small"))
+    return parts, y + 14
+
+
 def memory(records: list[Record], title: str, description: str) -> str:
     """Working memory at the first event, and when the first AB after it has ended."""
     event = float(events(records)[0]["time"])
     after = next(float(r["time"]) for r in records if r["phase"] == "end" and r["time"] > event)
-    asked = {r["behavior"]: r for r in records if r["phase"] == "request"}
-    depth: dict[str, int] = {}
-    for name, request in asked.items():
-        depth[name] = 1 + max([depth[parent] for parent in parents(request)], default=-1)
-    parts: list[str] = []
-    height = 0.0
-    for left, time in ((0, event), (WIDTH / 2 + 6, after)):
-        state = memory_at(records, time)
-        parts.append(text(left + 4, 14, f"at {time:.2f} s", "name"))
-        y = 30.0
-        for app in applications(records):
-            where: dict[str, tuple[float, float]] = {}
-            used: dict[int, int] = {}
-            for name in (name for name in state if asked[name]["app"] == app):
-                row = used.get(depth[name], 0)
-                used[depth[name]] = row + 1
-                x, top = left + 4 + depth[name] * 124, y + 14 + row * 48
-                where[name] = (x, top)
-                kind = {"running": "", "waiting": "none", "linked": "linked"}[state[name]]
-                parts.append(box(x, top, 108, 34, f"s{colours(run_of(records).apps)[app]} {kind}"))
-                parts.append(text(x + 5, top + 14, f"{name} {state[name]}", "small"))
-                parts.append(text(x + 5, top + 27, words(asked[name]), "", 104))
-                for parent in parents(asked[name]):
-                    if parent in where:
-                        from_x, from_y = where[parent]
-                        parts.append(line(from_x + 108, from_y + 17, x, top + 17))
-            parts.append(text(left + 4, y + 8, f"{app}: one tree, one stream", "small"))
-            y += 30 + 48 * max(used.values(), default=0)
-        busy = [
-            f"{device} by {name}"
-            for name, now in state.items()
-            if now == "running"
-            for device in asked[name]["devices"]
-        ]
-        parts.append(text(left + 4, y + 4, "occupied: " + ", ".join(busy), "small"))
-        height = max(height, y + 14)
-    return svg(title, description, height, parts)
+    one, other = moment(records, 0, event), moment(records, WIDTH / 2 + 6, after)
+    return svg(title, description, max(one[1], other[1]), [*one[0], *other[0]])
 
 
 # Files -----------------------------------------------------------------------------------------

@@ -82,7 +82,7 @@ def _tell(mediation: Mediation, lost: list[Behavior]) -> None:
 
 def _notices(ab: Behavior, run: AwaitedRun, last: bool) -> list[Notice]:
     """The notices that an AB has expired and, after the last one, that its request is done."""
-    command = ab.command or Command("iu", hook=[])
+    command = ab.command or Command("iu")
     fate: Literal["cancelled", "expired"] = "expired" if run.left or run.begun else "cancelled"
     notices = [Notice(fate, run.number, command, event=f"expired.{command.type}")]
     if last and run.left == 0 and run.begun:

@@ -384,3 +384,33 @@ def test_e1_a_unit_in_a_unit_fails_with_it() -> None:
     stage.select()
     assert stage.running == set()
     assert check(stage.records, "prima") == []
+
+
+def test_e1_of_units_in_units_each_fails_for_the_same_reason() -> None:
+    stage = Stage()
+    innermost = Group([Step(say("In.")), Step(command("turn", angle=90))])
+    middle = Group([Step(innermost), Step(command("move-head"))])
+    stage.request("ea", Group([Step(middle), Step(command("point-by-hand", angle=1))]))
+    stage.select()
+    [speaking] = [
+        ab.id for ab in stage.mediator.memory.running.values() if "In." in str(ab.command)
+    ]
+    stage.at(100).mediator.failed(speaking, "speaker", "broken")
+    stage.select()
+    fails = [(r["command"], r["event"], r["message"]) for r in stage.phases("fail")]
+    assert fails == [
+        ("speak", "error.device.speaker", "broken"),
+        *[("iu", "error.device.speaker", "broken")] * 3,
+    ]
+    assert stage.running == set()
+
+
+def test_e1_what_hangs_fails_though_what_hangs_beside_it_has_ended_with_another() -> None:
+    stage = Stage()
+    stage.request("ea", Group([Step(say("One.")), Step(command("move-head"))]))
+    stage.request("fa", command("turn", angle=9))
+    stage.select()
+    stage.at(900_000).mediator.expire()
+    stage.select()
+    assert stage.running == set()
+    assert stage.told("fa") == ["error.device.locomotion"]

@@ -143,6 +143,8 @@ def test_x8_what_follows_an_answered_question_reacts_to_the_answer() -> None:
     assert stage.select() == ["fa#2"]
     [start] = [r for r in stage.phases("start") if r["behavior"] == "fa#2"]
     assert start["cause"] == TOUCH + 1
+    [answered] = stage.phases("cancel")
+    assert (answered["outcome"], answered["data"]) == ("answered", {"outcome": "filled"})
 
 
 def test_x8_what_is_requested_after_an_answered_reaction_reacts_to_the_answer() -> None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from prima.messages import Group
+from prima.messages import Group, Step
 from prima.scheduler.failures import HANG_MS
-from tests.helpers.stage import Stage, ask, chain, restartable, say
+from tests.helpers.stage import Stage, ask, chain, command, restartable, say
 
 TOUCH = 7
 
@@ -95,3 +95,25 @@ def test_o3_what_is_requested_in_a_later_instant_begins_a_stream_of_its_own() ->
     stage.select()
     first, _, last = stage.phases("request")
     assert first["tree"] != last["tree"]
+
+
+def test_an_order_to_stop_names_the_application() -> None:
+    stage = Stage()
+    stage.request("ea", say("Long."))
+    stage.select()
+    stage.mediator.emergency(True, True, 8)
+    stage.select()
+    assert [(one.verb, one.behavior, one.app) for one in stage.orders] == [
+        ("start", "ea#1", "ea"),
+        ("abort", "ea#1", "ea"),
+    ]
+
+
+def test_v1_a_question_in_a_unit_in_a_unit_is_the_running_question() -> None:
+    stage = Stage()
+    inner = Group([Step(ask("Well?")), Step(command("move-head"))])
+    stage.request("ea", Group([Step(inner), Step(command("turn", angle=9))]))
+    stage.select()
+    question = stage.mediator.question()
+    assert question is not None and question.command is not None
+    assert question.command.text == "Well?"

@@ -97,8 +97,8 @@ def test_x2_of_what_runs_in_parallel_what_speaks_tells_how_much_was_done() -> No
 def test_x2_where_nothing_speaks_the_first_tells_how_much_was_done() -> None:
     steps = [
         Step(say("One.")),
-        Step(command("gesture", name="nod")),
         Step(command("move-head", pan=30)),
+        Step(command("turn", angle=90)),
     ]
     stage = interrupted(Group(steps, restartable=True), "ea#2")
     assert told(stage, "ea#4", {"done": 0.5}) == []

@@ -5,6 +5,8 @@ Each rule by its number, on the smallest case that shows it.
 
 from __future__ import annotations
 
+import pickle
+
 import pytest
 
 from prima.messages import Group, Step
@@ -193,6 +195,8 @@ def test_an_unknown_policy_is_refused_with_a_remedy(text: str, message: str, mea
     assert f"{caught.value.wrong} {caught.value.remedy}" == str(caught.value)
     assert caught.value.meant == meant
     assert caught.value.word == (text.partition("+")[2] if text.startswith("prima+") else "")
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert vars(again) == vars(caught.value), "as a process that plays runs gives it back"
 
 
 def test_all_extensions_are_chosen_at_once() -> None:
