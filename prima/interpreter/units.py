@@ -43,6 +43,10 @@ from prima.markup.tree import Node
 SPEAKS_LONG = LONG_UNIT.says(
     "This unit speaks for about {seconds} s: no reaction can start.", "Divide it (thesis 4.5)."
 )
+TOO_LATE = LONG_UNIT.says(
+    "This unit speaks for about {seconds} s, beyond its longest duration: error.unit.timeout ends it.",
+    "Divide it (thesis 4.5), or write a longer duration.",
+)
 NOW_BEHIND_OTHERS = NOW_INSIDE.says(
     "<{p}{tag}> is wanted now; it is not allowed in a <{p}par>, <{p}seq> or <{p}iu> after others.",
     "Put it first.",
@@ -133,6 +137,15 @@ def long_unit(node: Node, ms: int) -> Iterator[Problem]:
     """Warn of a unit that speaks so long that no reaction is possible in it."""
     if ms > LONG_UNIT_MS:
         yield SPEAKS_LONG.at(node.place, seconds=ms // 1000)
+
+
+def long_group(node: Node, ms: int, longest: int) -> Iterator[Problem]:
+    """Warn of a unit around Commands that speaks for long, or that its own duration (U5) ends."""
+    if ms <= longest:
+        yield from long_unit(node, ms)
+    else:
+        place = node.attribute_place("longest") if "longest" in node.attributes else node.place
+        yield TOO_LATE.at(place, seconds=f"{round(ms / 1000, 1):g}")
 
 
 def not_in_unit(row: CommandType) -> str:

@@ -11,10 +11,10 @@ from prima.errors import Problem
 from prima.interpreter.entering import EnteredDocument
 from prima.interpreter.repeats import told_twice
 from prima.interpreter.selection import beginnings
-from prima.interpreter.units import Reached, long_unit, speak, unit_problem, unit_speaks
+from prima.interpreter.units import Reached, long_group, long_unit, speak, unit_problem, unit_speaks
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.voicexml.acting import commands_in
-from prima.voicexml.arranging import UNIT, is_unit
+from prima.voicexml.arranging import UNIT, is_unit, longest_of
 from prima.voicexml.caught import thrown_in
 from prima.voicexml.document import Page, broken
 from prima.voicexml.elements import HANDLERS
@@ -61,7 +61,7 @@ def _check_units(sketch: Sketch, root: Page | None) -> Iterator[Problem]:
         yield from long_unit(unit.node, unit_speaks(unit, page.lang))
     for node in page.root.walk():
         if is_unit(node) and node.key != UNIT:
-            yield from long_unit(node, speak(commands_in(node), page.lang))
+            yield from long_group(node, speak(commands_in(node), page.lang), longest_of(node))
 
 
 def _source(sketch: Sketch, root: Page | None) -> EnteredDocument:

@@ -176,6 +176,9 @@ def test_a_name_of_many_parts_takes_no_more_room_than_a_few_of_them() -> None:
     ("handler", "told"),
     [
         ('<on event="message"><log expr="event.data.txt"/></on>', 1),
+        ('<on event="interrupted.speak"><log expr="event.data.herd"/></on>', 1),
+        ('<on event="interrupted"><log expr="event.data.done + event.data.heard"/></on>', 0),
+        ('<on event="late"><log expr="event.data.tekst"/></on>', 1),
         ('<on event="message" cond="event.data.form == \'Ann\'"><exit/></on>', 1),
         ('<on event="touch.head touch.back"><script>var a = event.data?.sensr;</script></on>', 1),
         ('<on event="message"><log expr="event.data.text + event.data[\'txt\']"/></on>', 0),

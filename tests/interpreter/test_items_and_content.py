@@ -209,3 +209,20 @@ def test_what_is_wrong_with_a_pause_is_told(content: str, code: str, remedy: str
     _, problems = read(f"<form id='a'><block>{content}<exit/></block></form>")
     (problem,) = [one for one in problems if one.code != "long-turn"]  # a pause may be that, too
     assert problem.code == code and remedy in problem.remedy, problem
+
+
+@pytest.mark.parametrize(
+    ("longest", "said", "message"),
+    [
+        ("2s", "word " * 10, "about 3.4 s, beyond its longest duration"),
+        ("1s", 'a<break time="2s"/>', "about 2.1 s, beyond its longest duration"),
+        ("5s", "word " * 10, ""),
+        ("60s", "word " * 80, "about 27 s: no reaction"),
+    ],
+)
+def test_a_unit_that_its_own_speech_outlasts_is_told(longest: str, said: str, message: str) -> None:
+    _, problems = read(
+        f"<form id='a'><block><iu longest='{longest}'><speak>{said}</speak></iu><exit/></block></form>"
+    )
+    told = [one.message for one in problems if one.code == "long-unit"]
+    assert len(told) == bool(message) and message in "".join(told)

@@ -125,3 +125,13 @@ def test_the_fields_of_a_unit_are_variables_of_the_form(tmp_path: Path) -> None:
 def test_a_document_with_errors_is_told_of_nothing_else_in_its_units(tmp_path: Path) -> None:
     body = unit(f"<block>{LONG}</block>") + f"<form {P}><block><p:unit/></block></form>"
     assert [one.code for one in warned(tmp_path, vxml(body))] == ["unknown-element"]
+
+
+def test_a_unit_that_its_own_speech_outlasts_is_told(tmp_path: Path) -> None:
+    said = "<p:speak>This takes longer than two seconds to say.</p:speak>"
+    body = f'<form {P}><block><p:iu longest="2s">{said}</p:iu></block></form>'
+    text = vxml(body)
+    [problem] = warned(tmp_path, text)
+    assert problem.code == "long-unit" and "error.unit.timeout" in problem.message
+    line = text.splitlines()[problem.place.line - 1]
+    assert line[problem.place.column - 1 :].startswith("2s")

@@ -32,7 +32,8 @@ LONG_UNIT = Diagnosis(
     "Long unit",
     (
         "While a unit runs, no reaction can use its devices. Divide its speech "
-        "into pieces at semantic breakpoints (thesis 4.5)."
+        "into pieces at semantic breakpoints (thesis 4.5). A unit whose speech takes longer than "
+        "its longest duration never ends by itself (rule U5)."
     ),
     rule="thesis, 4.5",
     severity="warning",

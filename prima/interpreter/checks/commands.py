@@ -11,7 +11,7 @@ from prima.errors.diagnoses.values import NOTHING_TO_SAY
 from prima.interpreter.acts import CommandRun, GroupTemplate, StepTemplate, Text, run_commands
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Field, Form, Prompt, Unit
-from prima.interpreter.units import long_unit, speak, unit_speaks
+from prima.interpreter.units import long_group, long_unit, speak, unit_speaks
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 
@@ -76,8 +76,8 @@ def check_units(facts: Facts) -> Iterator[Problem]:
     for _, run in facts.acts.of(CommandRun):
         for step in run.steps:
             if isinstance(step.what, GroupTemplate):
-                commands = run_commands(step.what.steps)
-                yield from long_unit(step.what.node, speak(commands, lang))
+                group, ms = step.what, speak(run_commands(step.what.steps), lang)
+                yield from long_group(group.node, ms, group.longest)
 
 
 def check_branches(facts: Facts) -> Iterator[Problem]:

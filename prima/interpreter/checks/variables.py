@@ -34,6 +34,8 @@ FIELDS = {
     "corner": ("corner",),
     **dict.fromkeys(("noinput", "nomatch"), ("command", "utterance", "confidence")),
     "error.service": ("service", "message"),
+    "interrupted": ("done", "heard"),
+    "late": ("text",),
 }
 """What the data of events holds that are raised by the language itself."""
 FIELD = re.compile(r"data\s*\??\.\s*([A-Za-z_$][\w$]*)")
