@@ -122,6 +122,21 @@ def test_f3_what_outranks_the_floor_takes_it_only_if_it_needs_its_devices() -> N
         assert ("fa#1" in stage.running) and ("ea#1.2" in stage.running) is (floor == "ea:1")
 
 
+def test_f3_what_needs_a_device_of_what_follows_words_of_resumption_takes_the_floor() -> None:
+    stage = Stage("prima+x9")
+    stage.request("ea", say("One."), move(), cause=EVENT, words=say("As I said."))
+    stage.select()
+    stage.at(100).request("fa", say("Oh!"), cause=EVENT + 1)
+    stage.at(500).end("ea#1")
+    assert stage.select() == ["fa#1"]
+    stage.at(1000).end("fa#1")
+    assert stage.select() == ["ea#3"] and inserted(stage) == [("X9", "speak")]
+    assert stage.floor == ["ea:1"]
+    stage.at(1100).request("fa", command("turn", angle=9))
+    assert stage.select() == ["fa#2"]
+    assert stage.floor == ["ea:1", "fa:2"], "the move that follows the words needs the base"
+
+
 def test_f3_a_robot_that_guides_does_not_stop_for_every_sentence() -> None:
     stage = Stage()
     stage.request("ea", move(), cause=EVENT)

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from prima.invariants import check
+from prima.language.commands import TABLE_4_2
 from prima.messages import (
     Command,
     Group,
@@ -18,6 +19,7 @@ from tests.helpers.generated.world import World
 from tests.helpers.stage import Stage, ask, chain, command, inserted, move, say
 
 EVENT = 7
+NOD = command("move-head", pan=0, tilt=20)
 
 
 def at_a_panel(policy: str, *then: Command) -> Stage:
@@ -407,3 +409,22 @@ def test_a_way_back_that_is_put_in_gives_up_neither_channel_nor_conversation() -
         run = drive(script, policy)
         assert check(run.records, policy) + run.problems == []
         assert run.complete
+
+
+def test_x1_of_a_way_back_a_robot_does_what_it_can() -> None:
+    """It cannot go to a position, but turn its head."""
+    table = {name: row for name, row in TABLE_4_2.items() if not name.startswith("set-")}
+    stage = Stage("prima+x1", table=table)
+    stage.request("ea", move(), command("move-head", pan=30), say("First."), say("Second."))
+    stage.select()
+    stage.at(500).end("ea#1.1", x=4.0, y=1.0, heading=90.0)
+    stage.select()
+    stage.at(600).end("ea#2")
+    stage.select()
+    stage.request("fa", steps=[Step(command("turn", angle=9)), Step(NOD)], cause=EVENT)
+    stage.select()
+    stage.at(700).end("fa#1", x=0.0, y=0.0, heading=0.0)
+    stage.at(800).end("fa#2")
+    stage.at(1000).end("ea#3")
+    stage.select()
+    assert inserted(stage) == [("X1", "move-head")]
