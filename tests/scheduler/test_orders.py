@@ -308,6 +308,19 @@ def test_o3_of_several_streams_that_run_the_one_that_started_last_goes_on() -> N
     assert [r["tree"] for r in stage.phases("request")] == ["ea:1", "ea:2", "ea:2"]
 
 
+def test_o3_of_several_streams_that_have_all_paused_the_one_that_started_last_goes_on() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), say("Two."), cause=EVENT)
+    stage.request("ea", command("gesture", name="nod"), say("Nod."), cause=EVENT + 1)
+    assert stage.select() == ["ea#3", "ea#1"], "the reaction to the latest event starts first"
+    stage.at(500).end("ea#1")
+    stage.end("ea#3")
+    stage.leave("ea")
+    stage.request("ea", say("On."), state=2)
+    assert stage.select() == ["ea#5"]
+    assert stage.phases("request")[-1]["tree"] == "ea:1"
+
+
 def test_o3_of_several_streams_that_have_not_begun_the_latest_goes_on() -> None:
     stage = Stage()
     stage.request("fa", say())
