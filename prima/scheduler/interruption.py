@@ -75,9 +75,8 @@ def _remember_parts(mediation: Mediation, unit: Behavior) -> None:
     every = [*commands_of(unit.group.steps)]
     finished = [command for command in every if id(command) not in pending]
     running = [part for part in left if part.state is RUNNING and part.command is not None]
-    reporting = min(running, key=_speaks_first, default=None)
-    if reporting is not None:
-        mediation.halted_units[reporting.name] = HaltedUnit(unit, finished, len(every))
+    reporting = min(running, key=_speaks_first)  # one always runs in a running unit
+    mediation.halted_units[reporting.name] = HaltedUnit(unit, finished, len(every))
 
 
 def _pending(part: Behavior) -> list[Command]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.scheduler.behavior import GONE, RUNNING, Behavior, Stream
+from prima.scheduler.behavior import RUNNING, Behavior, Stream
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.memory import WorkingMemory
 from prima.scheduler.rules import before, third_turn
@@ -21,7 +21,7 @@ def acknowledgement(stream: Stream, memory: WorkingMemory) -> Behavior | None:
 
     A further question does not count: it lasts as long as the user takes.
     """
-    coming = (ab for ab in stream.members.values() if ab.state not in (GONE, RUNNING))
+    coming = (ab for ab in stream.members.values() if ab.state is not RUNNING)
     first = next((ab for ab in coming if ab.unit is None and "speaker" in ab.devices), None)
     if first is None or not all(map(_soon_over, [first, *before(first, memory)])):
         return None

@@ -359,17 +359,26 @@ def test_f5_stops_nothing_that_has_no_wheels() -> None:
     assert stage.phases("stop") == []
 
 
-@pytest.mark.parametrize("turns_first, stops", [(False, ["ea#1.1"]), (True, [])])
+@pytest.mark.parametrize(
+    ("turns_first", "nested", "stops"),
+    [
+        (False, False, ["ea#1.1"]),
+        (False, True, ["ea#1.1"]),
+        (True, False, []),
+        (True, True, []),
+    ],
+)
 def test_f5_a_unit_takes_the_wheels_when_a_command_in_it_does(
-    turns_first: bool, stops: list[str]
+    turns_first: bool, nested: bool, stops: list[str]
 ) -> None:
-    unit = (say(), command("turn", angle=9))
+    pair = (say(), command("turn", angle=9))
+    unit = Group(chain(*(reversed(pair) if turns_first else pair)))
     stage = Stage()
     stage.request("ea", move())
     stage.select()
-    stage.request("fa", Group(chain(*(reversed(unit) if turns_first else unit))), cause=EVENT)
+    stage.request("fa", Group(chain(unit)) if nested else unit, cause=EVENT)
     stage.at(500).end("ea#1.1", goal=False)
-    assert stage.select() == ["fa#1", "fa#2"]
+    assert stage.select() == ["fa#1", "fa#2", "fa#3"][: 2 + nested]
     assert [r["behavior"] for r in stage.phases("stop")] == stops
 
 

@@ -321,6 +321,19 @@ def test_o3_of_several_streams_that_have_all_paused_the_one_that_started_last_go
     assert stage.phases("request")[-1]["tree"] == "ea:1"
 
 
+def test_o3_of_several_streams_the_one_that_runs_goes_on_though_another_started_last() -> None:
+    stage = Stage()
+    stage.request("ea", command("gesture", name="bow"), cause=EVENT)
+    stage.select()
+    stage.request("ea", say("One."), say("Two."), cause=EVENT + 1)
+    stage.select()
+    stage.at(500).end("ea#2")
+    stage.leave("ea")
+    stage.request("ea", say("On."), state=2)
+    assert stage.select() == ["ea#4"]
+    assert stage.phases("request")[-1]["tree"] == "ea:1"
+
+
 def test_o3_of_several_streams_that_have_not_begun_the_latest_goes_on() -> None:
     stage = Stage()
     stage.request("fa", say())

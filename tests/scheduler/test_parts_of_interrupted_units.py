@@ -137,3 +137,18 @@ def test_x2_nothing_heard_is_not_told(data: Data, done: float) -> None:
 def test_x2_what_was_said_is_told_though_nothing_of_the_rest_was_heard() -> None:
     stage = interrupted(unit(say("One."), say("Two.")), "ea#2")
     assert told(stage, "ea#3", {"done": 0.0}) == [{"done": 0.5, "heard": "One."}]
+
+
+def test_x2_what_a_unit_has_just_begun_tells_how_much_was_done() -> None:
+    """The next Command of a unit starts before a reaction of the same instant is looked at."""
+    stage = Stage("prima+x2")
+    stage.request("ea", unit(say("One."), say("Two.")))
+    stage.select()
+    stage.at(500).end("ea#2")
+    stage.request("fa", ask("Yes?"), cause=EVENT)
+    assert stage.select() == ["ea#3", "fa#1"]
+    [interrupt] = stage.phases("interrupt")
+    assert interrupt["behavior"] == "ea#1"
+    assert told(stage, "ea#3", {"done": 0.0}) == [{"done": 0.5, "heard": "One."}]
+    stage.at(900).end("fa#1")
+    assert stage.select() == ["ea#1", "ea#4"], "it starts from its beginning"

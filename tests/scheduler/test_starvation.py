@@ -85,6 +85,13 @@ def test_e4_another_priority_is_not_counted() -> None:
     assert stage.phases("starve") == []
 
 
+def test_e4_all_that_wait_for_the_loops_are_counted() -> None:
+    stage = tracked(3, {"fa": "fa", "ea": "ea", "eb": "ea"})
+    stage.at(1).request("ea", command("topological-move", to="room"))
+    stage.request("eb", TURN)
+    assert loops(stage, 30) == {"eb#1": 4}, "also behind one of another priority"
+
+
 def test_e4_only_waits_for_the_loops_are_counted() -> None:
     """What waits for the speaker alone is not starved by somebody who drives."""
     stage = tracked(2, {"fa": "fa", "ea": "ea", "eb": "ea"})
