@@ -9,5 +9,5 @@ ROOT = Path(__file__).resolve().parent.parent
 """The checkout."""
 
 pytest.register_assert_rewrite("tests.helpers")
-settings.register_profile("untimed", deadline=None)  # a busy machine is no fault
+settings.register_profile("untimed", deadline=None)  # a busy machine is not a fault
 settings.load_profile("untimed")

@@ -59,7 +59,7 @@ def date(text: str, folded: str) -> str | None:
 
 
 def _counted(said: str | None) -> int | None:
-    """A number in Japanese; 0, which is no year, month or day, if it cannot be read."""
+    """A number in Japanese; 0, not a year, month or day, if it cannot be read."""
     return None if said is None else cardinal(said) or 0
 
 

@@ -206,7 +206,7 @@ class _Work:
         for two, own, at in lines:
             threads = (one >= self.boxes) + (two >= self.boxes)
             weight = 4.0 if threads == 2 else 1.0
-            # Boxes lie level with boxes, so that a chain is no staircase; lines go where they go.
+            # Boxes lie level with boxes, so that a chain is level too; lines go where they go.
             meets = at - own if threads else 0.0
             total += weight * (self.aside[two] + meets)
             weights += weight

@@ -98,7 +98,7 @@ def use_of(does: Does, kind: str) -> RosUse:
         return use
     message = "A <does> of a ROS robot needs by and type."
     if use.name and use.type:
-        message = f'"{use.type}" is no {use.kind or "interface"} type.'
+        message = f'"{use.type}" is not a type of {use.kind or "interface"}s.'
     remedy = 'Write for example by="/spin" type="nav2_msgs/action/Spin".'
     raise UsageError(f"{does.place}: {kind}: {message} {remedy}")
 

@@ -101,7 +101,7 @@ def test_own_events_count_only_for_the_devices_of_their_reactions(tmp_path: Path
         '<on event="end.gesture" reactive="true"><gesture name="nod"/></on></form>'
     )
     (delay,) = certified(tmp_path, body).delays
-    assert delay.known, "what is no reaction gives way, and a nod needs no speaker"
+    assert delay.known, "what is not a reaction gives way, and a nod needs no speaker"
 
 
 def test_own_events_are_nobody_elses(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from tests.helpers.certified import faults
 from tests.helpers.certifying import ASKS, FA, HEAD, PROFILE, block, certified, lasting, run, waited
 
 LATE = FA.replace("<speak>", '<move-head tilt="10"/><speak>')
-"""An FA whose first Command is no response."""
+"""An FA whose first Command is not a response."""
 
 
 def test_the_first_word_may_come_long_after_the_first_command(tmp_path: Path) -> None:

@@ -139,7 +139,7 @@ def test_the_demos_have_useful_certificates(fa: Path, ea: Path) -> None:
     ],
 )
 def test_whoever_talks_without_an_end_is_certified_to(tmp_path: Path, body: str, why: str) -> None:
-    """As the run shows: an FA's sentence that is no reaction waits as long as that goes on."""
+    """As the run shows: an FA's sentence that is not a reaction waits as long as that goes on."""
     own = (
         '<form id="s"><block><send event="now" delay="1s"/></block>'
         '<on event="now"><speak>It is three.</speak><exit/></on></form>'

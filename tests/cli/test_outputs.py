@@ -177,7 +177,7 @@ def test_only_a_scenario_has_an_expected_table(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"expected table of .*named\.scenario"):
         check_output(tmp_path / "named.txt", "page", tmp_path / "named.scenario")
     os.mkfifo(tmp_path / "pipe.xml")
-    check_output(tmp_path / "pipe.txt", "page")  # nothing waits for what is no file
+    check_output(tmp_path / "pipe.txt", "page")  # nothing waits for a pipe
 
 
 def test_a_record_that_is_no_object_is_told_plainly(tmp_path: Path) -> None:

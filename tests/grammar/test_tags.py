@@ -1,4 +1,4 @@
-"""Names in tags, and tags that are no script (SISR)."""
+"""Names in tags, and tags that are not scripts (SISR)."""
 
 from __future__ import annotations
 

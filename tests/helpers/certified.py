@@ -227,7 +227,7 @@ def _unfinished(certificate: Certificate, run: Watched, since: float) -> int:
 
 
 def _starved(certificate: Certificate, run: Watched, rates: dict[str, float]) -> list[str]:
-    """Commands that are no reactions, and wait for longer than all that the EA does in one go."""
+    """Commands that are not reactions, and wait for longer than all that the EA does in one go."""
     found = []
     for spell in run.of(certificate.fa):
         since = max([spell.asked, *(_over(run, name) for name in spell.parents)])

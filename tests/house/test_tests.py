@@ -16,7 +16,7 @@ PACKAGE, TESTS = ROOT / "prima", ROOT / "tests"
 BESIDE = {
     "bad_input", "browser", "cases", "helpers", "house", "invariants", "mistakes", "parties"
 }  # fmt: skip
-"""Folders that are no room of the package; docs/development.md says what is in each."""
+"""Folders that mirror no room of the package; docs/development.md says what is in each."""
 
 FILES = [
     path

@@ -287,7 +287,7 @@ def test_generated_runs_meet_it_too(mutation: Mutation, monkeypatch: pytest.Monk
         try:
             records = run(made, mutation.policy).records
         except (AssertionError, KeyError, ValueError):
-            return  # a broken mediator may break down: that is no violation told
+            return  # a broken mediator may break down: that is not a violation
         if mutation.invariant in numbers(check(records, mutation.policy)):
             raise Met
 

@@ -98,7 +98,7 @@ def check_going_on(cast: Cast, records: list[Record], cut: int, path: Path) -> N
 @pytest.mark.parametrize("name", ["touched-on-the-way", "picture-alone"])
 def test_a_run_goes_on_wherever_it_was_cut_off(name: str, tmp_path: Path) -> None:
     cast = cast_of(name)
-    cast.robot.speed *= 4  # another loop of the same movement is no other cut
+    cast.robot.speed *= 4  # another loop of the same movement is not another cut
     records = carried_out(live_loop(cast))
     for cut in range(1, len(records)):
         check_going_on(cast, records, cut, tmp_path / "visit.jsonl")

@@ -56,8 +56,8 @@ def test_the_type_tells_the_kind(written: str, kind: str) -> None:
     [
         ('by="/x"', "needs by and type"),
         ('type="nav2_msgs/action/Spin"', "needs by and type"),
-        ('by="/x" type="Spin"', '"Spin" is no interface type'),
-        ('by="/x" type="nav2_msgs/action/Spin" as="topic"', "is no topic type"),
+        ('by="/x" type="Spin"', '"Spin" is not a type of interfaces'),
+        ('by="/x" type="nav2_msgs/action/Spin" as="topic"', "is not a type of topics"),
     ],
 )
 def test_a_does_that_does_not_fit_is_told_with_its_place(written: str, told: str) -> None:

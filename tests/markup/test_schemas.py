@@ -133,7 +133,7 @@ def verdicts(vocabulary: Vocabulary, root: etree._Element) -> tuple[bool, list[P
     node, element = parse("x.xml", data), etree.fromstring(data)
     for one in element.iter():
         if not len(one) and not (one.text or "").strip():
-            one.text = None  # white space where nothing may stand is no content
+            one.text = None  # white space where nothing is allowed does not count
     problems: list[Problem] = []
     check_tree(node, vocabulary, problems)
     return compiled_schema(vocabulary.name).validate(element), problems

@@ -128,7 +128,7 @@ def test_e5_what_runs_is_aborted_and_its_unit_waits_with_it() -> None:
     ended = [(one["behavior"], one["rule"], one["outcome"]) for one in stage.phases("cancel")]
     assert ended == [("ea#2", "E5", "halted"), ("ea#1", "E5", "halted")]
     orders = [(one.verb, one.behavior) for one in stage.orders]
-    assert orders == [("start", "ea#2"), ("abort", "ea#2")], "a unit is no device's affair"
+    assert orders == [("start", "ea#2"), ("abort", "ea#2")], "devices know nothing of units"
     stage.at(20).mediator.emergency(False, True, 9)
     assert stage.select() == ["ea#1", "ea#2"]
 

@@ -150,7 +150,7 @@ def test_x5_is_the_rule_of_a_composed_start_without_a_floor() -> None:
     stage.select()
     stage.request("fa", Command("dance"))
     assert stage.select() == ["fa#1"] and stage.floor == []
-    assert stage.rule("fa#1") == "X5", "S4 is of ABs that share no device"
+    assert stage.rule("fa#1") == "X5", "S4 concerns ABs without a common device"
 
 
 def test_x5_who_has_the_floor_is_active_though_a_loop_of_the_move_started_later() -> None:

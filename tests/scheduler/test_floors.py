@@ -270,7 +270,7 @@ def test_f6_who_holds_the_floor_may_speak_into_a_topic() -> None:
     stage.at(12).request("fa", command("face-human"), say("Ouch there."), cause=EVENT)
     assert stage.select() == ["fa#1"], "the reaction takes the floor without a word"
     stage.at(20).end("fa#1")
-    assert stage.select() == ["fa#2"], "what follows it is no reaction, but has the floor"
+    assert stage.select() == ["fa#2"], "what follows it is not a reaction, but has the floor"
 
 
 def test_f6_a_topic_that_works_in_loops_may_be_spoken_into() -> None:

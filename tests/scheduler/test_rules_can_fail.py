@@ -328,7 +328,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("x9", "whoever resumes", reworded(preparation, "note_words", " and stream.spoken", "")),
     (
         "x9",
-        "what is no speech",
+        "what is not speech",
         reworded(preparation, "note_words", '"speaker" in ab.devices', "True"),
     ),
     ("x9", "for ever", reworded(preparation, "note_words", "ab.stream.words_due = False", "pass")),

@@ -111,7 +111,7 @@ def test_a_saved_session_says_which_row_each_line_follows(tmp_path: Path) -> Non
     text = talk.game.saved(str(tmp_path / "my visit.xml"))
     assert "<!-- after row 3, 1.16 s: guide Topological Move (to kidode-room) -->" in text
     assert '<when at="5s"><touch sensor="head"/></when>' in text
-    assert 'id="touched-on-the-way"' in text  # "my visit" is no id
+    assert 'id="touched-on-the-way"' in text  # "my visit" is not an id
     assert os.path.relpath(DOCUMENTS, tmp_path) in text
 
 

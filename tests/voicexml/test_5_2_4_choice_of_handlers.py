@@ -22,7 +22,7 @@ case(
     logs=["x"],
 )
 case(
-    "part of a token is no prefix",
+    "part of a token is not a prefix",
     "5.2.4",
     thrown("<catch event='a.b.cc a.bb a.'><log expr='_event'/></catch>", "a.bbb"),
     logs=["a.bbb"],

@@ -173,7 +173,7 @@ case(
 )
 for how in ('<throw event="a" message=""/>', """<throw event="a" messageexpr="''"/>"""):
     case(
-        f"an empty message is no missing one: {how}",
+        f"an empty message is not a missing one: {how}",
         "5.2.2",
         f"""<form><catch event="a"><log expr="_message === ''"/></catch><block>{how}</block></form>""",
         logs=["true"],

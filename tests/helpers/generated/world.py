@@ -31,7 +31,7 @@ from prima.scheduler.policy import EXTENSIONS
 from prima.transcript.lines import line
 
 STEPS = 600
-"""Instants that a run may have; more is a run cut off, which is no fault as such."""
+"""Instants that a run may have; more is a run cut off, not a fault as such."""
 
 
 APPS = ("fa", "ea", "xa")
