@@ -34,8 +34,8 @@ from prima.interpreter import (
     content,
     expressions,
     handling,
+    speaking,
     transfers,
-    units,
 )
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.interpreter.vocabulary.names import CONTENT, HANDLERS, SPEAKING
@@ -344,7 +344,7 @@ def limits() -> str:
         ),
         (
             "speech in one unit",
-            f"about {units.LONG_UNIT_MS // 1000} s",
+            f"about {speaking.LONG_UNIT_MS // 1000} s",
             "the warning `long-unit`",
         ),
         (

@@ -11,7 +11,8 @@ from prima.errors import Problem
 from prima.interpreter.entering import EnteredDocument
 from prima.interpreter.repeats import told_twice
 from prima.interpreter.selection import beginnings
-from prima.interpreter.units import Reached, long_group, long_unit, speak, unit_problem, unit_speaks
+from prima.interpreter.speaking import long_group, long_unit, speak, unit_speaks
+from prima.interpreter.units import Reached, unit_problem
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.voicexml.acting import commands_in
 from prima.voicexml.arranging import UNIT, is_unit, longest_of

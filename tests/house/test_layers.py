@@ -126,7 +126,7 @@ INSIDE = {
         {"elements"},
         {"events", "places", "pyengine", "sensors"},
         {"naming", "transfers"},
-        {"entering", "rounds", "surroundings", "units"},
+        {"entering", "rounds", "speaking", "surroundings", "units"},
         {"returning", "ways"},
         {"leaving"},
         {"repeats"},

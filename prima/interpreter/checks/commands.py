@@ -11,7 +11,7 @@ from prima.errors.diagnoses.values import NOTHING_TO_SAY
 from prima.interpreter.acts import CommandRun, GroupTemplate, StepTemplate, Text, run_commands
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Field, Form, Prompt, Unit
-from prima.interpreter.units import long_group, long_unit, speak, unit_speaks
+from prima.interpreter.speaking import long_group, long_unit, speak, unit_speaks
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 

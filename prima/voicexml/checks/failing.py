@@ -30,11 +30,10 @@ def check_failing(root: Node) -> Iterator[Problem]:
     """Warn of what always fails, unless the document expects it; its root document may."""
     if root.get("application"):
         return
-    for dialog in root.all("form", "menu"):
-        for item in dialog.walk():
-            for node, place, why in _failures(item):
-                if not any(_expects(one, why.event) for one in (root, dialog, item)):
-                    yield ALWAYS_FAILS.at(place, tag=node.tag, why=why.message, event=why.event)
+    for dialog, item in ((one, item) for one in root.all("form", "menu") for item in one.walk()):
+        for node, place, why in _failures(item):
+            if not any(_expects(one, why.event) for one in (root, dialog, item)):
+                yield ALWAYS_FAILS.at(place, tag=node.tag, why=why.message, event=why.event)
 
 
 def _failures(item: Node) -> Iterator[tuple[Node, Place, Unsupported]]:
