@@ -1,11 +1,12 @@
-"""Checks the names of services that applications ask."""
+"""Checks the names of services that applications ask, and of what their replies bring."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 
-from prima.errors import Problem, meant, one_of
-from prima.errors.diagnoses.names import NO_SUCH_NAME
+from prima.errors import Problem, Span, meant, one_of
+from prima.errors.diagnoses.names import NO_SUCH_NAME, UNDECLARED_VARIABLE
 from prima.interpreter.elements import Document
 from prima.interpreter.events import KnownEvents, near
 from prima.markup.spans import value_span
@@ -16,12 +17,44 @@ from prima.sim.devices import Cast
 NAMING = ("next", "src")
 """Attributes of VoiceXML elements that name a service by ``service:NAME``."""
 
+DATA = re.compile(r"\bevent\s*\??\.\s*data\s*\??\.\s*([A-Za-z_$][\w$]*)")
+REPLY = "reply."
+
 NO_SERVICE = NO_SUCH_NAME.says('The scenario has no service "{name}".', severity="warning")
 OF_OTHERS = NO_SUCH_NAME.says(
     'The scenario has the service "{name}" for {others} alone.',
     'In the scenario, write a <service name="{name}"> for this application.',
     "warning",
 )
+NOT_IN_REPLY = UNDECLARED_VARIABLE.says(
+    'No reply of "{service}" in the scenario has "{name}".', severity="warning"
+)
+
+
+def check_replies(cast: Cast) -> Iterator[Problem]:
+    """Data that handlers read of a reply, if other data was most likely meant."""
+    brought: dict[str, set[str]] = {}
+    for one in cast.scenario.services:
+        brought.setdefault(one.name, set()).update(*(reply.data for reply in one.replies))
+    for document in cast.documents:
+        root = document.node if isinstance(document, Document) else document.page.root
+        for handler in root.walk():
+            name = handler.get("event")
+            service = name.removeprefix(REPLY)
+            if handler.tag in ("on", "catch") and name.startswith(REPLY) and service in brought:
+                yield from _misread(handler, service, brought[service])
+
+
+def _misread(handler: Node, service: str, brought: set[str]) -> Iterator[Problem]:
+    """The names that a handler misspells of what a service's replies bring."""
+    codes = [(node, name) for node in handler.walk() for name in node.attributes]
+    for node, attribute in codes:
+        for found in DATA.finditer(node.get(attribute)):
+            name = found[1]
+            if name not in brought and (other := near(name, brought)):
+                place = node.source.inside(node.index, attribute, found.start(1))
+                hint = meant(other, Span.of(place, name))
+                yield NOT_IN_REPLY.at(place, hint, service=service, name=name)
 
 
 def check_services(cast: Cast, events: Sequence[KnownEvents]) -> Iterator[Problem]:

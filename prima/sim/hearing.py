@@ -26,7 +26,7 @@ from prima.language.commands import TABLE_4_2
 from prima.language.values import read_value
 from prima.markup.spans import instead, value_span
 from prima.markup.tree import Node
-from prima.sim.asked import check_services
+from prima.sim.asked import check_replies, check_services
 from prima.sim.devices import Cast
 from prima.sim.expected import COMMANDS, check_values
 from prima.sim.map import Map
@@ -76,7 +76,7 @@ def check_hearing(cast: Cast) -> list[Problem]:
     problems += world.plan.narrow(room_beside(cast.robot)) if world.plan is not None else ()
     corners = [*_corners(nodes, events, pages, world)]
     problems += [*corners, *_words(nodes, cast)]
-    problems += check_services(cast, events)
+    problems += [*check_services(cast, events), *check_replies(cast)]
     if pages:
         return problems  # what a VoiceXML application accepts is known only at run time
     places = {one.place for one in corners}

@@ -380,3 +380,35 @@ def test_a_place_named_by_a_variable_is_told_to_be_an_expression(tmp_path: Path)
     assert second.remedy == 'It is a variable: write toward-expr="spot".'
     assert [edit.text for edit in first.fixes[0].edits] == ['to-expr="goal']
     assert "variable" not in third.remedy
+
+
+@pytest.mark.parametrize(
+    ("read", "told"),
+    [
+        ("event.data.skyy", 'No reply of "weather" in the scenario has "skyy".'),
+        ("1 + event ?. data.wnid", 'No reply of "weather" in the scenario has "wnid".'),
+        ("event.data.sky + event.data.wind", ""),
+        ("event.data.humidity", ""),
+        ("'event.data' + event.name.skyy", ""),
+    ],
+)
+def test_data_that_a_handler_misspells_of_a_reply(read: str, told: str, tmp_path: Path) -> None:
+    form = f'<form id="f"><on event="reply.weather"><log expr="{read}"/></on></form>'
+    (tmp_path / "a.xml").write_text(
+        f'<prima xmlns="urn:prima:dialogue:1" version="1.0" id="a" kind="ea">{form}</prima>'
+    )
+    handler = '<catch event="reply.weather"><log expr="session.{}"/></catch><form/>'
+    (tmp_path / "a.vxml").write_text(VXML.format("", handler.format(read)))
+    reply = (
+        '<reply><data name="sky" value="x"/></reply><reply><data name="wind" value="y"/></reply>'
+    )
+    path, head = tmp_path / "s.xml", SCENARIO.partition("<application")[0]
+    for name in ("a.xml", "a.vxml"):
+        text = (
+            f'{head}<application src="{name}"/><service name="weather">{reply}</service></scenario>'
+        )
+        path.write_text(text, encoding="utf-8")
+        found = [one.message for one in loading.load_scenario(path).problems]
+        assert [one for one in found if one.startswith("No reply")] == ([told] if told else []), (
+            name
+        )
