@@ -220,16 +220,13 @@ class Chart:
         """Add one repetition of a repeated expansion."""
         part, done = spot.part, waiting.done
         assert isinstance(part, Repeat)
+        empty = cell.end == cell.start
+        if empty and done >= part.low:
+            return  # a repetition of nothing adds nothing
         cost = part.more if done >= part.low else 0.0
-        if cell.end == cell.start:
-            if done >= part.low:
-                return  # a repetition of nothing adds nothing
-            # The repetitions still required may be empty as well, each with its tags.
-            done = done + 1 if part.low - done <= MOST_EMPTY else part.low
-        else:
-            done += 1
-            if part.high is None or part.high > len(self.said):
-                done = min(done, part.low)  # any more make no difference
+        done = _one_more(part, done, empty)
+        if part.high is None or part.high > len(self.said):
+            done = min(done, part.low)  # any more make no difference
         self._again(spot, done, cell.end, ChartWay(0, cost, waiting.before, cell))
 
     def _again(self, spot: ChartSpot, done: int, end: int, way: ChartWay) -> None:
@@ -239,10 +236,11 @@ class Chart:
         cell = spot.begun.get((done, end))
         if cell is None:
             cell = spot.begun[done, end] = self._cell(None, spot.start, end)
-            full = done == part.high
-            if done >= part.low:
-                self._finish(spot, end, ChartWay(-done, 0.0 if full else part.stop, cell, None))
-            if not full:
+            times = part.low if done == _ENOUGH else done
+            if times >= part.low:
+                stop = 0.0 if times == part.high else part.stop
+                self._finish(spot, end, ChartWay(-times, stop, cell, None))
+            if done not in (part.high, _ENOUGH):
                 self._call(part.part, end, Waiting(spot, done, cell))
         cell.ways.append(way)
 
@@ -273,3 +271,17 @@ class Chart:
 
 
 _NO_WAY = ChartWay(0, 0.0, None, None)
+_ENOUGH = -1
+"""So many repetitions as are required, of which some match nothing."""
+
+
+def _one_more(part: Repeat, done: int, empty: bool) -> int:
+    """How many repetitions there are after one more.
+
+    As soon as one of those required matches nothing, no more than these are needed: then the
+    missing ones are counted, below :data:`_ENOUGH`.
+    """
+    if done < 0 or not empty:
+        return done + 1
+    missing = part.low - done - 1
+    return _ENOUGH - missing if missing < MOST_EMPTY else _ENOUGH
