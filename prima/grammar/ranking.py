@@ -6,6 +6,7 @@ repeat probabilities; among equal ones, the alternative written first and the lo
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
@@ -56,14 +57,15 @@ class Value(NamedTuple):
 
 def best(top: Cell, most: int) -> list[RankedParse]:
     """The best analyses of a cell, at most so many."""
-    order, cyclic = _order(top, strict=False)
-    if cyclic:  # use only ways made of earlier cells: every cell has one
-        order, _ = _order(top, strict=True)
-    most = max(1, min(most, MOST_KNOWN // len(order)))
+    groups = _groups(top)
+    most = max(1, min(most, MOST_KNOWN // sum(map(len, groups))))
     known: dict[int, list[RankedParse]] = {}
-    for cell in order:
-        known[cell.number] = _best(cell, list(_ways(cell, cyclic)), known, most)
-    return known[top.number]
+    for group in groups:
+        for cell in _settled(group, known):
+            # In a group, what is made of cells settled later contains itself.
+            ways = [way for way in cell.ways if all(one.number in known for one in _parts(way))]
+            known[cell.number] = _best(cell, ways, known, most)
+    return known.get(top.number, [])
 
 
 Candidate = tuple[int, float, int, int, int, int, int, RankedParse]
@@ -120,44 +122,89 @@ def _known(known: dict[int, list[RankedParse]], cell: Cell | None) -> Sequence[R
     return (None,) if cell is None else known[cell.number]
 
 
-def _ways(cell: Cell, strict: bool) -> Iterator[ChartWay]:
-    for way in cell.ways:
-        if strict and any(
-            part.number > cell.number
-            for part in (way.left, way.right)
-            if part is not None and (part.start, part.end) == (cell.start, cell.end)
-        ):
-            continue
-        yield way
+def _parts(way: ChartWay) -> Iterator[Cell]:
+    if way.left is not None:
+        yield way.left
+    if way.right is not None:
+        yield way.right
 
 
-def _order(top: Cell, strict: bool) -> tuple[list[Cell], bool]:
-    """All cells below the top one, parts first; and whether some contain themselves."""
-    order: list[Cell] = []
-    state: dict[int, bool] = {top.number: False}  # whether it is done
-    stack = [(top, _parts(top, strict))]
-    cyclic = False
+def _below(cell: Cell) -> Iterator[Cell]:
+    return (part for way in cell.ways for part in _parts(way))
+
+
+def _groups(top: Cell) -> list[list[Cell]]:
+    """All cells below the top one, parts first; cells that contain each other are one group.
+
+    These are the strong components of a graph, found by Gabow's algorithm.
+    """
+    groups: list[list[Cell]] = []
+    path, borders = [top], [0]
+    """The cells that have no group yet, and where groups on it may begin."""
+    place: dict[int, float] = {top.number: 0}
+    """Where a cell is on the path; infinity once it has a group."""
+    stack = [(top, _below(top))]
     while stack:
         cell, parts = stack[-1]
         part = next(parts, None)
         if part is None:
             stack.pop()
-            state[cell.number] = True
+            if borders[-1] == place[cell.number]:
+                group = path[borders.pop() :]
+                del path[-len(group) :]
+                place.update((one.number, math.inf) for one in group)
+                groups.append(group)
+        elif part.number not in place:
+            place[part.number] = len(path)
+            borders.append(len(path))
+            path.append(part)
+            stack.append((part, _below(part)))
+        else:
+            while borders[-1] > place[part.number]:
+                borders.pop()
+    return groups
+
+
+def _settled(group: list[Cell], known: dict[int, list[RankedParse]]) -> list[Cell]:
+    """The cells of a group in an order in which the best analysis of each is made of earlier ones.
+
+    No analysis is better than its parts, so that Knuth's generalisation of Dijkstra's algorithm
+    finds the best ones, the very best first.
+    """
+    if len(group) == 1:
+        return group
+    order: list[Cell] = []
+    prices: dict[int, tuple[int, float]] = {}
+    waiting: list[tuple[int, float, int]] = []
+    users: list[list[tuple[int, ChartWay]]] = [[] for _ in group]
+    places = {cell.number: place for place, cell in enumerate(group)}
+
+    def offer(place: int, way: ChartWay) -> None:
+        """Add a cell with the price of a way, if all parts of that have one."""
+        lost, cost = way.lost, way.cost
+        for part in _parts(way):
+            before = known.get(part.number)
+            paid = (before[0].lost, before[0].cost) if before else prices.get(part.number)
+            if paid is None:
+                return
+            lost, cost = lost + paid[0], cost + paid[1]
+        heappush(waiting, (lost, round(cost, 9), -place))  # what is inside comes first
+
+    for place, cell in enumerate(group):
+        for way in cell.ways:
+            offer(place, way)
+            for part in _parts(way):
+                if part.number in places:
+                    users[places[part.number]].append((place, way))
+    while waiting:
+        lost, cost, place = heappop(waiting)
+        cell = group[-place]
+        if cell.number not in prices:
+            prices[cell.number] = lost, cost
             order.append(cell)
-        elif part.number not in state:
-            state[part.number] = False
-            stack.append((part, _parts(part, strict)))
-        elif not state[part.number]:
-            cyclic = True
-    return order, cyclic
-
-
-def _parts(cell: Cell, strict: bool) -> Iterator[Cell]:
-    for way in _ways(cell, strict):
-        if way.left is not None:
-            yield way.left
-        if way.right is not None:
-            yield way.right
+            for user in users[-place]:
+                offer(*user)
+    return order
 
 
 def frames(analysis: RankedParse, said: MatchedUtterance) -> RuleFrame:

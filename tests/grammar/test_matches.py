@@ -43,6 +43,24 @@ def test_several_meanings_come_best_first_and_once() -> None:
     assert grammar.match("x", most=0) == []
 
 
+@pytest.mark.parametrize(
+    ("rules", "said", "weight", "confidence"),
+    [
+        ("$r = (/0.5/ $r | a) | $GARBAGE;", "a", 1, 1),
+        ("$r = $s | $GARBAGE; $s = $r | $t; $t = $s $NULL | a;", "a", 1, 1),
+        ("$r = a | (/0.5/ a | $r);", "a", 1, 1),
+        ("$r = /0.5/ $r | (/2/ a | /0.5/ a);", "a", 1, 1),
+        ("$r = a $t $GARBAGE; $t = ($t | /2/ b $t) | /0.1/ c | $s; $s = [$t] c;", "a b c", 1, 1),
+        ("$r = [$r] $GARBAGE [$r] tea;", "some green tea", 1, 0.667),
+    ],
+)
+def test_the_best_way_is_found_where_rules_contain_themselves(
+    rules: str, said: str, weight: float, confidence: float
+) -> None:
+    (one,) = load(ABNF + rules).match(said)
+    assert (one.weight, one.confidence) == (weight, confidence)
+
+
 def test_what_garbage_takes_lowers_the_confidence() -> None:
     grammar = load(ABNF + "$r = $GARBAGE tea;")
     assert [grammar.match(said)[0].confidence for said in ("tea", "some tea")] == [1.0, 0.75]
