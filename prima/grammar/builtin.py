@@ -74,8 +74,12 @@ _EXTENSION = re.compile(r" ?(?:\bextension\b|\bext\b|(?:\b|(?<=\d))x(?=\d|\b)|�
 _JOINED = re.compile(r"(?<=\d)[.,:](?=\d)")
 """A sign between digits of a telephone number."""
 _MONEY = re.compile(
-    r"([$€£¥]|[A-Za-z]{3})?\s*([0-9][0-9,]*)(?:\.([0-9]{1,2}))?\s*([$€£¥]|[A-Za-z]{3})?"
+    r"([$€£¥]|[A-Za-z]{3})?\s*([0-9]{1,3}(?:,[0-9]{3})+|[0-9]+)(?:\.([0-9]{1,2})|,([0-9]{1,2}))?"
+    r"\s*([$€£¥]|[A-Za-z]{3})?"
 )
+"""A point or, as in numbers, a comma before the hundredths."""
+_LOST_SIGN = re.compile(r"[$€£¥\u20a0-\u20bf]|(?<!\w)[-\u2212]\s*[0-9]")
+"""A currency or a minus that folding removes."""
 _UNIT = re.compile(
     "|".join(
         rf"\b{name}\b" if name.isascii() else name
@@ -210,19 +214,20 @@ def _currency(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
     if mode == "dtmf":
         whole, part = _decimal_keys(text)
         return f"{whole}.{part:0<2}" if whole and len(part) <= 2 else None
-    plain = _POINT_FIRST.sub("0.", text.strip(" !?"))
-    match = _MONEY.fullmatch(plain)
-    return _written_money(match) if match else _spoken_money(fold(plain))
+    plain = _POINT_FIRST.sub("0.", wide(text).strip(" !?")).replace("¢", " cents")
+    if match := _MONEY.fullmatch(plain):
+        return _written_money(match)
+    return None if _LOST_SIGN.search(plain) else _spoken_money(fold(plain))
 
 
 def _written_money(match: re.Match[str]) -> str | None:
     """``$12.50``, ``EUR 3``."""
-    unit = (match[1] or match[4] or "").lower()
+    unit = (match[1] or match[5] or "").lower()
     code = CURRENCIES.get(unit)
-    if (unit and code is None) or (match[1] and match[4]):
+    if (unit and code is None) or (match[1] and match[5]):
         return None
     whole = _plain(match[2].replace(",", ""))
-    return f"{code or ''}{whole}.{(match[3] or ''):0<2}"
+    return f"{code or ''}{whole}.{match[3] or match[4] or '':0<2}"
 
 
 def _spoken_money(said: str) -> str | None:

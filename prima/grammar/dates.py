@@ -5,7 +5,7 @@ from __future__ import annotations
 import calendar
 import re
 
-from prima.grammar.numbers import cardinal, ordinal
+from prima.grammar.numbers import cardinal, digits, ordinal
 
 MONTHS = {
     name: number
@@ -152,7 +152,7 @@ def _past(words: list[str], part: str) -> str | None:
     sign, named = _LINKS[words[at]], " ".join(words[at + 1 :])
     minutes = _minutes([word for word in words[:at] if word not in ("a", "minute", "minutes")])
     hour = 12 if named in _NOON | _MIDNIGHT else cardinal(named)
-    if not minutes or hour is None:
+    if minutes is None or not 0 < minutes < 60 or hour is None:
         return None
     part = part or _half_of_day(named, after=sign > 0)
     if sign < 0:
@@ -169,7 +169,7 @@ def _half_of_day(named: str, after: bool) -> str:
 
 def _words(words: list[str], part: str) -> str | None:
     """``five thirty``, ``oh five hundred``, ``seventeen forty five``."""
-    if words[:1] in (["oh"], ["o"], ["zero"]) and words[1:2] not in ([], ["hundred"]):
+    if words[:1] in (["oh"], ["o"], ["zero"]) and len(digits(" ".join(words[1:2])) or "") == 1:
         words = words[1:]
         part = part or ("h" if words[-1] == "hundred" else "")
     hour, rest = _hour(words)

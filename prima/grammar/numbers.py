@@ -115,6 +115,8 @@ def cardinal(text: str) -> int | None:
     """A whole number in a folded text: digits, English or Japanese words; or None."""
     if _FIGURES.fullmatch(text):
         return int(text.replace(",", "")) if len(text) <= MOST_FIGURES else None
+    if text == "ゼロ":
+        return 0
     if _JAPANESE.fullmatch(text):
         return _japanese(text)
     return _english(text.split())
