@@ -15,6 +15,7 @@ from prima.grammar.linking import Fetch, Library, Refusal, joined
 from prima.grammar.media import ABNF_TYPES, check_form, check_known, check_no_text, media_type
 from prima.grammar.model import GrammarDocument, Mode, Rule
 from prima.grammar.xmlform import read_xml
+from prima.markup.encodings import blank
 from prima.markup.limits import LIMITS, too_large
 from prima.markup.reader import parse
 from prima.markup.spans import value_span
@@ -183,7 +184,7 @@ def _bytes(text: str) -> bytes:
 
         return as_unicode(text)
     if "encoding" in text[:200]:
-        text = _DECLARED.sub(r"\1", text, count=1)
+        text = _DECLARED.sub(lambda one: one[1] + blank(one[0][len(one[1]) :]), text, count=1)
     return text.encode(errors="surrogatepass")
 
 

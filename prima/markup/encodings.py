@@ -105,6 +105,11 @@ def with_line_feeds(text: str) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
+def blank(text: str) -> str:
+    """Spaces in place of a text, with its line ends: what follows stays where it is."""
+    return re.sub(r"[^\n]", " ", text)
+
+
 def byte_place(file: str, encoding: str, error: UnicodeDecodeError) -> Place:
     """The place of the byte that is invalid in a file's encoding; columns count characters."""
     before = with_line_feeds(error.object[: error.start].decode(encoding, errors="ignore"))

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from prima.errors import DocumentError, Place, Problem, Span, replaced
 from prima.markup.build import MAX_NAME, LimitReached, Unclear, build
 from prima.markup.check import check_tree
-from prima.markup.encodings import ENCODING, decode
+from prima.markup.encodings import ENCODING, blank, decode
 from prima.markup.limits import LIMITS, refusal, too_deep
 from prima.markup.roots import check_root
 from prima.markup.tree import Node, Source
@@ -35,7 +35,7 @@ def parse(file: str, data: bytes, vocabularies: Sequence[Vocabulary] = ()) -> No
     end = text.find(">") + 1
     if text.startswith("<?xml") and text[:end].endswith("?>"):
         _check_declaration(file, text[:end])
-        text = " " * end + text[end:]  # the text is decoded, whatever it declares
+        text = blank(text[:end]) + text[end:]  # the text is decoded, whatever it declares
     source = Source(file, text)
     try:
         try:

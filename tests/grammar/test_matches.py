@@ -121,6 +121,18 @@ def test_encodings() -> None:
         load(abnf.replace("ISO-8859-1", "UTF-8").encode("latin-1"))
 
 
+@pytest.mark.parametrize("blank", [" ", "\n"])
+def test_places_count_the_declared_encoding_of_a_text(blank: str) -> None:
+    declared = f'<?xml version="1.0"{blank}encoding="ISO-8859-1"?>'
+    text = declared + xml('<rule id="r">x</rule>').replace('root="r"', 'root="q"')
+    for source in (text, text.encode()):
+        with pytest.raises(GrammarError) as caught:
+            load(source, base="g")
+        lines = text.splitlines()
+        column = lines[-1].index('root="q"') + len('root="') + 1
+        assert str(caught.value.problems[0].place) == f"g:{len(lines)}:{column}"
+
+
 # Elements inside a document ---------------------------------------------------
 def test_an_element_takes_language_and_mode_from_around_it() -> None:
     node = inside(

@@ -329,6 +329,14 @@ def test_columns_count_characters() -> None:
     assert place.column == xml(body).decode().index("<x/>") + 1
 
 
+def test_lines_of_an_xml_declaration_count() -> None:
+    declared = b"<?xml\n version='1.0'\n encoding='UTF-8'\n?>\n"
+    world = b'<world xmlns="urn:prima:world:1" version="1.0" id="w"><palce/></world>'
+    with pytest.raises(DocumentError) as wrong:
+        read_world("w.xml", declared + world)
+    assert str(wrong.value).startswith(f"w.xml:5:{world.index(b'<palce') + 1}: ")
+
+
 def test_other_documents_are_checked_alike(tmp_path: Path) -> None:
     world = b'<world xmlns="urn:prima:world:1" version="1.0" id="w">\n<place id="a" x="0" y="0"/>\n<way from="a" to="b"/></world>'
     with pytest.raises(DocumentError) as wrong:
