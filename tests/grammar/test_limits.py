@@ -109,6 +109,7 @@ def test_hostile_files_are_refused(source: str | bytes) -> None:
         "out.self = out",
         "for (let o = out, i = 0; i < 5000; i++) o = o.o = {}",
         "function f() { return f() + 1 } f()",
+        "for (let i = 0; i < 60; i++) out = [out, out]",
         "out = {toJSON: function () { throw 1 }}",
         "throw null",
         "out = Symbol()" + "; out.x.y",

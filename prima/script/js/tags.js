@@ -33,10 +33,19 @@ const unmark = (value) => {
   for (const key of keys(value)) value[key] = unmark(value[key]);
   return value;
 };
+// More parts than a value may have characters: stopped here, as nothing stops the engine inside JSON.
+const Failure = RangeError, most = 100000;
+const counted = () => {
+  let left = most;
+  return (_, value) => {
+    if (left-- <= 0) throw new Failure('the value has more than 100,000 parts');
+    return value;
+  };
+};
 const plain = (value) => value !== null && typeof value === 'object' && !isArray(value);
 return {
   box: function (text) { return { v: parse(text) }; },
-  json: function (box) { return stringify(box.v); },
+  json: function (box) { return stringify(box.v, counted()); },
   carry: function (box) {
     const text = stringify(mark(box.v));
     return text === undefined ? stringify(mark(undefined)) : text;
