@@ -18,7 +18,7 @@ from prima.grammar import (
     load,
 )
 from prima.grammar.answers import Answers
-from prima.grammar.text import fold
+from prima.grammar.text import MatchedUtterance, fold, utterance
 from prima.interpreter.places import source
 from prima.interpreter.transfers import Thrown
 from prima.markup.tree import Node
@@ -170,16 +170,27 @@ def _event(error: GrammarError) -> str:
 
 def phrase(text: str, value: Json, approximate: bool) -> Listener:
     """A listener to one phrase or, if approximate, to some of its words in order (2.2.5)."""
-    wanted = fold(text).split()
+    whole = fold(text)
+    words = [word for part in text.split() for word in fold(part).split()]
 
     def match(said: str, mode: str, _most: int) -> list[GrammarMatch]:
-        words = fold(said).split()
-        rest = iter(wanted)
-        near = approximate and bool(words) and all(word in rest for word in words)
-        return [GrammarMatch(said, value)] if mode == "voice" and (words == wanted or near) else []
+        heard = utterance(said, mode) if mode == "voice" else None
+        if heard is None:
+            return []
+        taken = heard.said == whole or (approximate and _in_order(words, heard))
+        return [GrammarMatch(said, value)] if taken else []
 
     parts = [text, *(text.split() if approximate else ())]
     return Listener(match, Answers(dict.fromkeys(parts, value)))
+
+
+def _in_order(words: list[str], heard: MatchedUtterance) -> bool:
+    """Whether some of the words make up an utterance, which may have no spaces between them."""
+    places = {0}
+    for word in words:
+        ends = [place + len(word) for place in places if heard.said.startswith(word, place)]
+        places |= {heard.after(end) for end in ends if heard.edges[end]}
+    return bool(heard.said) and len(heard.said) in places
 
 
 def keys(dtmf: str, value: Json) -> Listener:

@@ -301,6 +301,16 @@ def test_an_approximate_option_takes_parts_in_their_order() -> None:  # 2.2.5
     assert call.logs() == ["no", "the big moose"]
 
 
+@pytest.mark.parametrize(
+    "said", ["京都", "ニュース", "京都ニュース", "大学 ニュース", "FM ニュース"]
+)
+def test_an_approximate_option_takes_words_that_no_spaces_divide(said: str) -> None:  # 2.2.5
+    option = '<option accept="approximate" value="x">京都 大学 FM ニュース</option>'
+    call = Call(ask(f"{option}<nomatch><log>no</log></nomatch>"))
+    call.answer("京", "ニュース京都", said)
+    assert call.logs() == ["no", "no", "x"]
+
+
 def test_a_menu_goes_where_its_choice_leads() -> None:
     call = Call(
         """<menu dtmf="true"><prompt>Choose: <enumerate/></prompt>
