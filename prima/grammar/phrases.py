@@ -45,7 +45,7 @@ class _Phrases:
         self._left = STEPS
 
     def of(self, part: Part, depth: int = 0) -> Iterator[str]:
-        """Phrases of an expansion, with each repeatable part once."""
+        """Phrases of an expansion, with each repeatable part as often as needed, and once."""
         self._left -= 1
         if depth > DEEP or self._left < 0:
             return
@@ -63,8 +63,8 @@ class _Phrases:
                     yield from islice(self.of(one, depth + 1), self._most)
             case Sequence(parts):
                 yield from self._joined(parts, depth + 1)
-            case Repeat(inner, low):
-                yield from self.of(inner, depth + 1)
+            case Repeat(inner, low) if low <= STEPS:
+                yield from self._joined([inner] * max(low, 1), depth + 1)
                 if not low:
                     yield ""
 

@@ -9,6 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from prima.grammar import load
+from prima.grammar.answers import Answers
+from prima.grammar.phrases import phrases
 
 SRGS = "http://www.w3.org/2001/06/grammar"
 QUICK = settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
@@ -80,6 +82,19 @@ def test_both_forms_take_and_mean_the_same(one: tuple[str, str], two: tuple[str,
             for grammar in (abnf, xml)
         ]
         assert found[0] == found[1], (said, one, two)
+
+
+@QUICK
+@given(expansions(), expansions())
+def test_phrases_that_are_offered_are_taken(one: tuple[str, str], two: tuple[str, str]) -> None:
+    grammar = load(f"#ABNF 1.0;\nlanguage en;\nroot $r;\n$r = {one[0]};\n$s = {two[0]};\n")
+    for phrase in phrases(Answers(grammars=[grammar])):
+        assert grammar.match(phrase), (phrase, one, two)
+
+
+def test_phrases_repeat_what_is_needed() -> None:
+    grammar = load("#ABNF 1.0;\nlanguage en;\nroot $r;\n$r = (a | b)<2-3> c<0-> | x<1000000000>;\n")
+    assert phrases(Answers(grammars=[grammar]))[:4] == ["a a", "a b", "b a", "b b"]
 
 
 FORMS = {
