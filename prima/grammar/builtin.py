@@ -14,7 +14,7 @@ from urllib.parse import unquote
 from prima.grammar import dates
 from prima.grammar.model import BuiltIn
 from prima.grammar.numbers import cardinal, dialled, digits, number
-from prima.grammar.text import fold, wide
+from prima.grammar.text import AROUND, fold, wide
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -192,7 +192,7 @@ def _number(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
     if mode == "dtmf":
         whole, part = _decimal_keys(text)
         return f"{whole}.{part}" if part else whole or None
-    plain = _POINT_FIRST.sub("0.", wide(text).strip().replace("\u2212", "-"))
+    plain = _POINT_FIRST.sub("0.", wide(text).strip(AROUND).replace("\u2212", "-"))
     sign = plain[0] if plain[:1] in ("-", "+") else ""
     return number(f"{sign}{fold(plain)}")
 
@@ -214,7 +214,8 @@ def _currency(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
     if mode == "dtmf":
         whole, part = _decimal_keys(text)
         return f"{whole}.{part:0<2}" if whole and len(part) <= 2 else None
-    plain = _POINT_FIRST.sub("0.", wide(text).strip(" !?")).replace("¢", " cents")
+    plain = _POINT_FIRST.sub("0.", wide(text).strip(AROUND).rstrip(".。"))
+    plain = plain.replace("¢", " cents")
     if match := _MONEY.fullmatch(plain):
         return _written_money(match)
     return None if _LOST_SIGN.search(plain) else _spoken_money(fold(plain))

@@ -20,7 +20,7 @@ from prima.grammar.model import (
     Tag,
     Words,
 )
-from prima.grammar.text import MatchedUtterance
+from prima.grammar.text import AsGiven, MatchedUtterance
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -94,6 +94,7 @@ class Chart:
         self.steps_left = most_steps
         self.open = False
         """Whether an utterance that begins with this one may match."""
+        self._given: AsGiven | None = None
         self._spots: dict[tuple[int, int], ChartSpot] = {}
         self._cells = 0
         self._todo: list[tuple[Waiting | None, ChartSpot | Cell]] = []
@@ -260,11 +261,12 @@ class Chart:
         start, mode = spot.start, self.utterance.mode
         rest = self.said[start:]
         self.open = self.open or (self._prefixes and part.open(rest, mode))
+        given = self._given = self._given or AsGiven(self.utterance)
         for end in self.utterance.words_from(start):
             whole = start == 0 and end == len(self.said)
             if end - start > MOST_READ and not whole:
                 continue
-            value = part.read(self.utterance.text if whole else self.said[start:end], mode)
+            value = part.read(self.utterance.text if whole else given.text(start, end), mode)
             self.steps_left -= 20
             if value is not None:
                 self._finish(spot, self.utterance.after(end), _NO_WAY).value = value

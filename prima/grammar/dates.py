@@ -6,6 +6,7 @@ import calendar
 import re
 
 from prima.grammar.numbers import cardinal, digits, ordinal
+from prima.grammar.text import AROUND
 
 MONTHS = {
     name: number
@@ -46,7 +47,7 @@ YEARS = range(1500, 3000)
 
 def date(text: str, folded: str) -> str | None:
     """``yyyymmdd`` with a question mark for each digit that was not said, or None."""
-    figures = text.strip(" .。!").lower()
+    figures = text.strip(f"{AROUND}.。").lower()
     for pattern in _FIGURES:
         if match := pattern.fullmatch(figures):
             found = match.groupdict()

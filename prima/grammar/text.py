@@ -25,6 +25,10 @@ _KEPT = re.compile(r"((?<!\d)\d++(?:[.,:]\d++)+|(?<=[^\W\d_])[+#]+(?![\w+#]))")
 _APOSTROPHE = re.compile(r"['\u2019\u2018`\u00b4]")
 _PLAIN = re.compile(r"[a-z0-9]+(?: [a-z0-9]+)*")
 _TOKEN = re.compile(r'"([^"]*)"|([^\s"]+)')
+_GIVEN = re.compile(r"\S+")
+CURRENCY_SIGNS = frozenset("$€£¥¢＄￥￡￠")
+AROUND = " \"'“”()!?,;:"
+"""Signs of the sentence around a value."""
 KEYS = frozenset("0123456789*#ABCD")
 """The keys of a telephone (SRGS Appendix E)."""
 KEY_NAMES = {"star": "*", "pound": "#"}
@@ -104,6 +108,34 @@ class MatchedUtterance:
     def words_from(self, start: int) -> list[int]:
         """Where a stretch of whole words that begins at a position may end."""
         return self.ends[bisect_right(self.ends, start) :]
+
+
+class AsGiven:
+    """What was given for a stretch of whole words, with the signs that folding removes."""
+
+    def __init__(self, heard: MatchedUtterance) -> None:
+        self._heard = heard
+        self._starts: dict[int, int] = {}
+        self._ends: dict[int, int] = {}
+        """Where words of the folded utterance begin and end in the text."""
+        at = end = 0
+        for word in _GIVEN.finditer(heard.text if heard.mode == "voice" else ""):
+            folded = fold(word[0])
+            if not heard.said.startswith(folded, at):
+                return  # what follows is known as it is folded
+            if (
+                folded or word[0].strip(AROUND) in CURRENCY_SIGNS
+            ):  # which belongs to the words around it
+                self._starts.setdefault(at, word.start())
+                end = at + len(folded) if folded else end
+                self._ends[end] = word.end()
+                at = heard.after(end) if folded else at
+
+    def text(self, start: int, end: int) -> str:
+        """The text of a stretch; folded where it begins or ends inside a word."""
+        first, last = self._starts.get(start), self._ends.get(end)
+        known = first is not None and last is not None
+        return self._heard.text[first:last] if known else self._heard.said[start:end]
 
 
 def utterance(text: str, mode: str) -> MatchedUtterance | None:
