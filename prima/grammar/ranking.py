@@ -176,8 +176,8 @@ def _settled(group: list[Cell], known: dict[int, list[RankedParse]]) -> list[Cel
     order: list[Cell] = []
     prices: dict[int, tuple[int, float]] = {}
     waiting: list[tuple[int, float, int]] = []
-    users: list[list[tuple[int, ChartWay]]] = [[] for _ in group]
-    places = {cell.number: place for place, cell in enumerate(group)}
+    users: dict[int, list[tuple[int, ChartWay]]] = {cell.number: [] for cell in group}
+    every = [(place, way) for place, cell in enumerate(group) for way in cell.ways]
 
     def offer(place: int, way: ChartWay) -> None:
         """Add a cell with the price of a way, if all parts of that have one."""
@@ -190,19 +190,18 @@ def _settled(group: list[Cell], known: dict[int, list[RankedParse]]) -> list[Cel
             lost, cost = lost + paid[0], cost + paid[1]
         heappush(waiting, (lost, round(cost, 9), -place))  # what is inside comes first
 
-    for place, cell in enumerate(group):
-        for way in cell.ways:
-            offer(place, way)
-            for part in _parts(way):
-                if part.number in places:
-                    users[places[part.number]].append((place, way))
+    for place, way in every:
+        offer(place, way)
+        for part in _parts(way):
+            if part.number in users:
+                users[part.number].append((place, way))
     while waiting:
         lost, cost, place = heappop(waiting)
         cell = group[-place]
         if cell.number not in prices:
             prices[cell.number] = lost, cost
             order.append(cell)
-            for user in users[-place]:
+            for user in users[cell.number]:
                 offer(*user)
     return order
 
