@@ -31,7 +31,7 @@ from prima.script.hoisting import Hoisted, hoisted
 from prima.script.names import script_names
 from prima.script.surrogates import as_json, well_formed, well_formed_json
 from prima.script.syntax import FAILURES, Syntax, column_in, confined, script_error
-from prima.script.wrapping import Helpers, assignment, guarded, head, wrapped
+from prima.script.wrapping import INTO, TARGET, Helpers, assignment, guarded, head, wrapped
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -106,8 +106,7 @@ class Engine:
         function = self._compiled.get(code)
         if function is None:
             self._check(self._syntax.expression, code)
-            give = f"return typeof $v === 'string' ? {sandbox.GIVE}($v) : $v"
-            function = self._compile(f"const $v = (\n{code}\n); {give}")
+            function = self._compile(f"return {sandbox.GIVE}((\n{code}\n))")
             self._compiled[code] = function
         return function
 
@@ -266,8 +265,8 @@ class Engine:
         function = self._giving.get(code)
         if function is None:
             self._check(self._syntax.expression, code)
-            body = f"{sandbox.DECLARE}($s, $n, (\n{code}\n))"
-            function = self._function(f"{self._names},$s,$n", f"{self._withs}{body}")
+            body = f"{self._withs}{sandbox.DECLARE}({INTO}, {TARGET}, (\n{code}\n))"
+            function = self._function(f"{self._names},{INTO},{TARGET}", body)
             self._giving[code] = function
         self._evaluate(code, function, (*scopes, scope, name))
 

@@ -13,8 +13,8 @@ from prima.script.names import script_names
 from prima.script.sandbox import DECLARE, GUARD, NAME, SAFE
 from prima.script.syntax import FAILURES, script_error
 
-INTO = "$into$"
-"""The scope in which a script declares variables, for our code around it."""
+INTO, TARGET = f"into{STRANGE}", f"name{STRANGE}"
+"""The scope in which code declares variables, and the variable's name, for our code around it."""
 EVALUATING = re.compile(r"eval|\\u")
 """Code that may evaluate other code in its scope."""
 
@@ -38,9 +38,9 @@ class Helpers(dict[str, Any]):
 def guarded(parameters: str, body: str) -> str:
     """The code of a function; exceptions of code in it become our errors."""
     if EVALUATING.search(body):  # it might declare anything, even in our function
-        return f"{GUARD}(function({parameters}){{{body}}})"
+        return f"{GUARD}(({parameters})=>{{{body}}})"
     caught = f"catch({STRANGE}){{throw {SAFE}({STRANGE})}}"
-    return f"(function({parameters}){{try{{{body}}}{caught}}})"
+    return f"(({parameters})=>{{try{{{body}}}{caught}}})"
 
 
 def _short(scope: str) -> str:

@@ -94,6 +94,27 @@ def test_what_a_script_declares_is_a_variable_of_its_scope(
     assert scopes.value(code) == value
 
 
+def test_names_in_our_own_code_are_free_for_documents() -> None:
+    scopes = Scopes()
+    names = ["$n", "$s", "$v", "$into$", "last"]
+    for name in names:
+        scopes.engine.assign(scopes.document, name, "1", scopes.all)
+    scopes.run("function f() { return $v + $n + $s + $into$; }")
+    assert scopes.value("[f(), $v + $n + $s + $into$]") == [4, 4]
+    assert scopes.value("Object.keys(document)") == [*names, "f"]
+
+
+@pytest.mark.parametrize(
+    "code", ["arguments", "arguments[1]", "(() => arguments)()", "eval('arguments')"]
+)
+def test_an_expression_has_no_arguments(code: str) -> None:
+    """It is code of its scope, of no function: ours, which it stands in, shows nothing."""
+    scopes = Scopes()
+    for evaluate in (scopes.engine.value, scopes.engine.condition):
+        with pytest.raises(ScriptError, match="arguments is not defined"):
+            evaluate(code, scopes.all)
+
+
 def test_functions_see_what_becomes_of_their_scripts_variables() -> None:
     scopes = Scopes()
     scopes.run("var lang = 'en'; function greet() { return lang; }")

@@ -30,6 +30,7 @@
   // surrogate pair, and cuts one at its first NUL: such a text is given as an object.
   const indexOf = String.prototype.indexOf, box = Object;
   const give = (said) => {
+    if (typeof said !== 'string') return said;
     const whole = short(said, said.length);
     return apply(indexOf, whole, ['\0']) < 0 ? whole : box(whole);
   };
