@@ -117,7 +117,7 @@ def _of_walk(walk: Walk) -> Names:
 
 def _add(made: Names, walk: Walk, start: int, name: str, how: str, scope: CodeScope) -> None:
     top = walk.top
-    home = scope.home(name)
+    home = scope.home(name, how == "write")
     if home is not None and home is not top:
         return
     if how != "change":  # also read there

@@ -32,10 +32,10 @@ class CodeScope:
         """A new scope in it."""
         return self if self.depth >= DEEPEST else CodeScope(self, function=function, hides=hides)
 
-    def home(self, name: str) -> CodeScope | None:
-        """The scope that declares a name."""
+    def home(self, name: str, written: bool = False) -> CodeScope | None:
+        """The scope that declares a name; ``with`` declares no name that may be a new variable."""
         scope: CodeScope | None = self
-        while scope is not None and name not in scope.names and not scope.hides:
+        while scope is not None and name not in scope.names and (written or not scope.hides):
             scope = scope.outer
         return scope
 

@@ -83,6 +83,7 @@ class Scopes:
         (["var a = 1\nvar [b] = [2]\nvar {c} = {c: 3}\na++"], "[a, b, c]", [2, 2, 3]),
         (["const {a, b} = {a: 1, b: 2}; let [c] = [3]; function f() { return a + b + c++; }", "f();"], "c", 4),
         (["for (var {n} = {n: 0}, i = 5; n < 3; n++); for (var {length} of ['ab']); if (n) var [m] = [6]"], "[n, i, length, m]", [3, 5, 2, 6]),
+        (["var d = {h: 1}; with (d) { h = 2; g = h + 1; } function f() { with (Math) { three = floor(PI); } } f();"], "[d, g, three]", [{"h": 2}, 3, 3]),
         ([r"var \u0061b = 1; function f\u0061() { return \u{61}b; } l\u{6f}ose = 2; let \u0063 = 3;"], "[ab, fa(), loose, c]", [1, 1, 2, 3]),
     ],
 )  # fmt: skip
