@@ -28,13 +28,14 @@ from prima.script.ecmascript import (
 )
 from prima.script.evaluation import SCOPES, ScriptError
 from prima.script.globals import INHERITED, METHODS
+from prima.script.surrogates import well_formed
 
 Operation = Callable[[Any, Any, Scopes], Any]
 
 LONGEST = 100_000
 """Maximum length of a text; no longer one could leave the scopes."""
 LONGEST_KEY = 63
-"""How much of a member's name the engine's messages quote."""
+"""How many bytes of a member's name the engine's messages quote."""
 SHORT = 200
 """Length up to which work with a text is not counted."""
 HIGH, LOW = frozenset(map(chr, range(0xD800, 0xDC00))), frozenset(map(chr, range(0xDC00, 0xE000)))
@@ -87,8 +88,7 @@ def member(value: Any, key: str, index: int, line: int, column: int, scopes: Sco
             return value
         return value.get(key, UNDEFINED)
     if value is None or value is UNDEFINED:
-        message = f"TypeError: cannot read property '{key}' of {text(value)}"
-        raise ScriptError(message, [(line, column)])
+        raise _unreadable(key, value, line, column)
     if isinstance(value, str):
         work(scopes, value)
         return float(units(value)) if key == "length" else unit(value, index)
@@ -107,9 +107,8 @@ def member_of(value: Any, name: Any, line: int, column: int, scopes: Scopes) -> 
             which Python does not have.
     """
     if value is None or value is UNDEFINED:
-        key = "{}" if isinstance(name, list | dict) else text(name)[:LONGEST_KEY]
-        message = f"TypeError: cannot read property '{key}' of {text(value)}"
-        raise ScriptError(message, [(line, column)])
+        key = "{}" if isinstance(name, list | dict) else text(name)
+        raise _unreadable(key, value, line, column)
     key = _key(name, scopes)
     if type(value) is dict and key in value:
         return value[key]
@@ -148,6 +147,15 @@ def _is_built_in(key: str, value: Any) -> bool:
 def _built_in(key: str, line: int, column: int) -> ScriptError:
     message = f"TypeError: '{key}' is the name of a function that all such values have"
     return ScriptError(message, [(line, column)])
+
+
+def _unreadable(key: str, value: Any, line: int, column: int) -> ScriptError:
+    """The error of reading a member of null or undefined, in the engine's words: one line of text
+    that can be written, whatever the name is."""
+    whole = well_formed(key[:LONGEST_KEY]).partition("\0")[0].encode()
+    quoted = whole[:LONGEST_KEY].decode(errors="ignore")
+    message = f"TypeError: cannot read property '{quoted}' of {text(value)}"
+    return ScriptError(message.splitlines()[0], [(line, column)])
 
 
 def work(scopes: Scopes, value: Any) -> None:

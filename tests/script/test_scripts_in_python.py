@@ -101,6 +101,26 @@ def test_a_computed_name_finds_no_built_in_function(name: str) -> None:
     assert engine.condition("name in table", scopes)
 
 
+@pytest.mark.parametrize(
+    "name",
+    ["smile[1]", "'a' + smile[2]", "lines", "nul", "long", "'x' + long", "'x' + long + smile[1]"],
+)
+def test_an_error_quotes_a_name_as_the_engine_does(name: str) -> None:
+    """Whatever is in it, the message can be written into a transcript."""
+    told = []
+    for engine in (PythonEngine(), ENGINE):
+        scopes = scopes_of(engine)
+        engine.fill(
+            scopes[1],
+            {"smile": "a😀z", "nul": "a\0b", "lines": "a\nb", "long": "é" * 40, "nil": None},
+        )
+        with pytest.raises(ScriptError) as caught:
+            engine.value(f"nil[{name}]", scopes)
+        told.append(str(caught.value))
+    assert told[0] == told[1]
+    assert told[0].encode().decode() == told[0]
+
+
 @pytest.mark.parametrize("value", [None, 5, "x"])
 def test_a_variable_hides_a_conversion(value: Any) -> None:
     for engine in (PythonEngine(), ENGINE):
