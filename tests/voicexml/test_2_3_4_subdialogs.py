@@ -71,6 +71,15 @@ case(
     logs=["1"],
 )
 case(
+    "an object's member is passed as a member whatever its name is",
+    "2.3.4",
+    """<form><var name="o" expr="JSON.parse('{&quot;__proto__&quot;: {&quot;n&quot;: 1}}')"/>
+    <subdialog name="s" src="#t"><param name="a" expr="o"/>
+    <filled><log expr="JSON.stringify(s.a) + s.a.n"/></filled></subdialog></form>
+    <form id="t"><var name="a"/><block><return namelist="a"/></block></form>""",
+    logs=['{"__proto__":{"n":1}}undefined'],
+)
+case(
     "what is returned becomes properties of the subdialog's variable",
     "2.3.4",
     """<form><subdialog name="s" src="#t"><filled><log expr="s.a + s.b.c"/></filled></subdialog></form>

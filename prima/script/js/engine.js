@@ -3,6 +3,7 @@ const give = globalThis['\u01c0give'], declare = globalThis['\u01c0declare'], Te
 const stringify = JSON.stringify, isArray = Array.isArray, text = String, parse = JSON.parse;
 const number = Number, own = Object.hasOwn, freeze = Object.freeze, keys = Object.keys;
 const prototype = Object.getPrototypeOf, base = Object.prototype, Known = Map, List = Array;
+const define = Object.defineProperty;
 // Scopes inherit next to nothing: a variable may have any name, also "constructor".
 const root = Object.create(null, {
   hasOwnProperty: { value: base.hasOwnProperty, writable: true },
@@ -16,7 +17,8 @@ const copy = (v, done) => {
   if (done.has(v)) return done.get(v);
   const made = isArray(v) ? new List(v.length) : {};
   done.set(v, made);
-  for (const key of keys(v)) made[key] = copy(v[key], done);
+  for (const key of keys(v)) define(made, key, { __proto__: null,  // also one named __proto__
+    value: copy(v[key], done), writable: true, enumerable: true, configurable: true });
   return made;
 };
 // Data that nobody may change, and that follows what it is a view of.
