@@ -31,7 +31,16 @@ from prima.script.hoisting import Hoisted, hoisted
 from prima.script.names import script_names
 from prima.script.surrogates import as_json, well_formed, well_formed_json
 from prima.script.syntax import FAILURES, Syntax, column_in, confined, script_error
-from prima.script.wrapping import INTO, TARGET, Helpers, assignment, guarded, head, wrapped
+from prima.script.wrapping import (
+    INTO,
+    TARGET,
+    Helpers,
+    assignment,
+    guarded,
+    head,
+    refusing,
+    wrapped,
+)
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -106,7 +115,7 @@ class Engine:
         function = self._compiled.get(code)
         if function is None:
             self._check(self._syntax.expression, code)
-            function = self._compile(f"return {sandbox.GIVE}((\n{code}\n))")
+            function = self._compile(code, f"return {sandbox.GIVE}((\n{code}\n))")
             self._compiled[code] = function
         return function
 
@@ -114,10 +123,10 @@ class Engine:
         """See :meth:`Syntax.lenient`."""
         return self._syntax.lenient(code)
 
-    def _compile(self, body: str, scopes: tuple[str, ...] | None = None) -> Any:
-        """A function of scopes; by default of all of them."""
+    def _compile(self, code: str, body: str, scopes: tuple[str, ...] | None = None) -> Any:
+        """A function of scopes, by default of all of them, with the code of an expression."""
         names, withs = (self._names, self._withs) if scopes is None else head(scopes)
-        return self._function(names, f"{withs}{{{body}}}")
+        return self._function(names, f"{refusing(code)}{withs}{{{body}}}")
 
     def _function(self, parameters: str, body: str) -> Any:
         """A function of the engine; exceptions of code in it become our errors."""
@@ -209,7 +218,9 @@ class Engine:
         if function is None:
             self._check(self._syntax.expression, code)
             body = f"return !!(\n{code}\n)"
-            function = self._conditions[key] = self._compile(body, self._scopes[: len(scopes)])
+            function = self._conditions[key] = self._compile(
+                code, body, self._scopes[: len(scopes)]
+            )
         return bool(self._evaluate(code, function, scopes))
 
     def text(self, code: str, scopes: tuple[Scope, ...]) -> str:
@@ -265,7 +276,8 @@ class Engine:
         function = self._giving.get(code)
         if function is None:
             self._check(self._syntax.expression, code)
-            body = f"{self._withs}{sandbox.DECLARE}({INTO}, {TARGET}, (\n{code}\n))"
+            around = f"{refusing(code)}{self._withs}"
+            body = f"{around}{sandbox.DECLARE}({INTO}, {TARGET}, (\n{code}\n))"
             function = self._function(f"{self._names},{INTO},{TARGET}", body)
             self._giving[code] = function
         self._evaluate(code, function, (*scopes, scope, name))
@@ -283,7 +295,8 @@ class Engine:
         if function is None:
             self._check(self._syntax.expression, code)
             names = self._scopes[: len(scopes)]
-            function = self._assigning[key] = self._compile(assignment(name, code, names), names)
+            body = assignment(name, code, names)
+            function = self._assigning[key] = self._compile(code, body, names)
         self._evaluate(code, function, scopes)
 
     def detach(self, scope: Scope, name: str) -> None:

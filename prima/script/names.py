@@ -41,9 +41,10 @@ class Names:
     declared: set[str] = field(default_factory=set)
     """Names declared at the top level, outside of functions and blocks."""
     read: dict[str, int] = field(default_factory=dict)
-    """Undeclared names that are read, with the first offset; ``typeof x`` reads nothing."""
+    """Undeclared names that must be variables, with the first offset: those that are read, in an
+    expression also those that are assigned; ``typeof x`` reads nothing."""
     written: set[str] = field(default_factory=set)
-    """Undeclared names that are assigned: new global variables."""
+    """Undeclared names that are assigned: new variables of a script's scope."""
     changed: set[str] = field(default_factory=set)
     """Undeclared names that are updated: ``x++``, ``x += 1``."""
     now: dict[str, int] = field(default_factory=dict)
@@ -99,33 +100,35 @@ def bound_names(code: Code, target: Node) -> list[str]:
 
 def _names(code: str, script: bool) -> Names:
     parsed = (parse_script if script else parse_expression)(code)
-    return Names(opaque=True) if parsed is None else _of_walk(Walk(parsed).go())
+    return Names(opaque=True) if parsed is None else _of_walk(Walk(parsed).go(), script)
 
 
-def _of_walk(walk: Walk) -> Names:
+def _of_walk(walk: Walk, script: bool) -> Names:
     made = Names(set(walk.top.names), called=walk.called, opaque=walk.opaque)
     for start, name, how, scope in sorted(walk.found, key=lambda one: one[0]):
         if how in OBJECTS:
             made.uses.append(Use(name, start, how, start in walk.given, start in walk.parted))
         else:
-            _add(made, walk, start, name, how, scope)
+            _add(made, walk, start, name, how, scope, script)
     for _, name, how, _ in walk.found:
         if how == "ask":
             made.now.pop(name, None)
     return made
 
 
-def _add(made: Names, walk: Walk, start: int, name: str, how: str, scope: CodeScope) -> None:
+def _add(
+    made: Names, walk: Walk, start: int, name: str, how: str, scope: CodeScope, script: bool
+) -> None:
     top = walk.top
-    home = scope.home(name, how == "write")
+    home = scope.home(name, script and how == "write")
     if home is not None and home is not top:
         return
     if how != "change":  # also read there
         part = walk.parts.get(start)
         made.uses.append(Use(name, start, declares=how == "declare", part=part))
-    if home is None and how == "read":
+    if home is None and (how == "read" or (how == "write" and not script)):
         made.read.setdefault(name, start)
         if scope.function is top:
             made.now.setdefault(name, start)
-    elif home is None and how in ("write", "change"):
+    if home is None and how in ("write", "change"):
         (made.written if how == "write" else made.changed).add(name)

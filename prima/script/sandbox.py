@@ -29,7 +29,7 @@ PRELUDE = source("repeatable.js")
 
 SAFE, GUARD, EVALUATE = "\u01c0safe", "\u01c0guard", "\u01c0evaluate"
 GIVE, DECLARE = "\u01c0give", "\u01c0declare"
-NAME = "\u01c0name"
+NAME, REFUSE = "\u01c0name", "\u01c0refuse"
 """Names of the functions of :data:`GUARDS`, which documents hardly use."""
 
 GUARDS = source("guards.js")

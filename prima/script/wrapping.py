@@ -9,8 +9,8 @@ from typing import Any
 from prima.script.evaluation import ScriptError
 from prima.script.globals import GLOBALS, IDENTIFIER, STRANGE, WORD
 from prima.script.hoisting import HIDDEN, Hoisted
-from prima.script.names import script_names
-from prima.script.sandbox import DECLARE, GUARD, NAME, SAFE
+from prima.script.names import expression_names, script_names
+from prima.script.sandbox import DECLARE, GUARD, NAME, REFUSE, SAFE
 from prima.script.syntax import FAILURES, script_error
 
 INTO, TARGET = f"into{STRANGE}", f"name{STRANGE}"
@@ -52,6 +52,19 @@ def head(scopes: tuple[str, ...]) -> tuple[str, str]:
     """The parameters of a function of scopes, and the code that makes their variables visible."""
     names = [_short(name) for name in scopes]
     return ",".join(names), "".join(f"with({name})" for name in names)
+
+
+ASSIGNING = re.compile("(?<![=!<>])=(?![=>])")
+"""What code has that assigns a variable."""
+
+
+def refusing(code: str) -> str:
+    """What stands around all scopes of an expression that assigns variables: where nobody declares
+    one, that is an error, as the engine would forget its value."""
+    if ASSIGNING.search(code) is None:
+        return ""
+    names = sorted(expression_names(code).written - GLOBALS)
+    return f"with({REFUSE}({json.dumps(names)}))" if names else ""
 
 
 PLACE = re.compile(rf"""{WORD}(?:\.{WORD}|\[(?:[\w$.+-]+|"[^"\\\]]*"|'[^'\\\]]*')\])*""")

@@ -133,6 +133,7 @@ BODIES = [
     '<watch name="w" when="nobody"/><form id="f"/>',
     '<on event="tick" cond="nobody"><exit/></on><form id="f"/>',
     '<form id="f"><var name="v" expr="nobody"/></form>',
+    '<form id="f"><var name="v" expr="(nobody = 1)"/></form>',
     '<form id="f"><script>nobody();</script></form>',
     '<form id="f"><watch name="w" when="nobody"/></form>',
     '<form id="f"><on event="tick" cond="nobody"><exit/></on></form>',

@@ -10,7 +10,7 @@ from prima.script.choices import choices
 from prima.script.engine import Engine
 from prima.script.evaluation import SCOPES, ScriptError
 from prima.script.hoisting import hoisted
-from prima.script.names import script_names
+from prima.script.names import expression_names, script_names
 from tests.helpers.work import steps
 
 
@@ -114,6 +114,45 @@ def test_an_expression_has_no_arguments(code: str) -> None:
     for evaluate in (scopes.engine.value, scopes.engine.condition):
         with pytest.raises(ScriptError, match="arguments is not defined"):
             evaluate(code, scopes.all)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "y = 1",
+        "0 || (y = 1)",
+        "(() => { y = 1; })()",
+        "[x, y] = [1, 2]",
+        "y ||= 1",
+        "y &&= 1",
+        "y++",
+    ],
+)
+def test_an_expression_cannot_assign_what_nobody_declares(code: str) -> None:
+    """It has no scope of its own in which that could become a variable."""
+    scopes = Scopes()
+    scopes.run("var x = 0;")
+    engine = scopes.engine
+    for evaluate in (
+        engine.value,
+        engine.condition,
+        lambda *one: engine.assign_declared("x", *one),
+    ):
+        with pytest.raises(ScriptError, match="ReferenceError: y is not defined"):
+            evaluate(code, scopes.all)
+    with pytest.raises(ScriptError, match="ReferenceError: y is not defined"):
+        engine.assign(scopes.document, "z", code, scopes.all)
+    assert "y" in expression_names(code).free or "y" in expression_names(code).changed
+    scopes.run("var y = 0;")
+    scopes.value(code)
+    assert scopes.value("typeof y") == "number"
+
+
+def test_what_an_expression_assigns_may_stay_within_it() -> None:
+    scopes = Scopes()
+    assert scopes.value("(function () { var y; y = 1; return y; })()") == 1
+    assert scopes.value("typeof y === 'undefined' ? 2 : (y = 3)") == 2
+    assert scopes.value("(document.y = 4, y = y + 1)") == 5
 
 
 def test_functions_see_what_becomes_of_their_scripts_variables() -> None:

@@ -42,9 +42,20 @@
     else define(scope, name,
       { __proto__: null, value: value, writable: true, enumerable: value !== scope });
   };
+  // A scope whose variables cannot be assigned; to be read, they must be declared further in.
+  const Missing = ReferenceError;
+  const refuse = (names) => {
+    const made = { __proto__: null };
+    for (let i = 0; i < names.length; i++) define(made, names[i], {
+      __proto__: null, get: undefined,
+      set: () => { throw new Missing(names[i] + ' is not defined'); },
+    });
+    return made;
+  };
   const given = {
     '\u01c0give': give,
     '\u01c0declare': declare,
+    '\u01c0refuse': refuse,
     '\u01c0safe': safe,
     '\u01c0guard': (f) => (guards[f.length] || any)(f),
     '\u01c0evaluate': guards[1]((code) => { evaluate(code); }),
