@@ -2,8 +2,8 @@
 
 A script and ``<var>`` declare variables in one space (VoiceXML 2.0, 5.1), which all later code
 reads and writes. Here, code can only run inside a function, whose declarations are local. So a
-top-level ``var`` is run as an assignment to an existing variable of the scope, and a top-level
-``function`` under another name, from which the scope gets it.
+top-level ``var`` or ``class`` is run as an assignment to an existing variable of the scope, and a
+top-level ``function`` under another name, from which the scope gets it.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ HIDDEN = "$_"
 """Appended to the name of a top-level function."""
 DECLARED_FUNCTIONS = ("function_declaration", "generator_function_declaration")
 CLASSES = ("class_declaration", "class")
+CALLS = ("call_expression", "new_expression")
 WORDS = ("var", "let", "const", "function", "class")
 
 
@@ -33,13 +34,13 @@ class Hoisted:
     """Those that the scope gets first, from their names with :data:`HIDDEN`."""
     others: list[str] = field(default_factory=list)
     """Other declarations, to be copied to the scope after it has run."""
-    shifts: list[tuple[int, int]] = field(default_factory=list)
-    """Lines, and the columns in them after which the text is shifted to the right."""
+    shifts: list[tuple[int, int, int]] = field(default_factory=list)
+    """Lines, the columns in them after which the text is shifted to the right, and how far."""
 
     def column(self, line: int, column: int) -> int:
         """The column in the script as it is written."""
-        for at, start in self.shifts:
-            column -= len(HIDDEN) if at == line and start < column else 0
+        for at, start, width in self.shifts:
+            column -= width if at == line and start < column else 0
         return column
 
 
@@ -62,7 +63,9 @@ class _Hoister:
         self.edits: list[tuple[int, int, str]] = []
         """Edits: start, end and new text."""
         nodes = list(code.walk())
-        self.shares = any(node.type in FUNCTIONS or node.type in CLASSES for node in nodes)
+        sharing = FUNCTIONS.union(CLASSES, CALLS)
+        self.shares = any(node.type in sharing for node in nodes)
+        """Whether functions may see its declarations: its own, or earlier ones that it calls."""
         self.names = {code.of(node) for node in nodes if node.type == "identifier"}
 
     def hoist(self) -> Hoisted | None:
@@ -134,16 +137,21 @@ class _Hoister:
             return
         top, text = node.parent == self.code.root, self.code.name(name)
         if top and node.type in DECLARED_FUNCTIONS:
-            end = self.code.end(name)
-            self.edits.append((end, end, HIDDEN))
+            self._insert(self.code.end(name), HIDDEN)
             self.script.functions.append(text)
-            self.script.shifts.append(self._place(end))
-        elif top or node.type in DECLARED_FUNCTIONS:
+        elif top:  # a class, which becomes the value of a variable
+            self._insert(self.code.start(node), f"{text}=")
+            self._insert(self.code.end(node), ";")
+            self.script.variables.append(text)
+        elif node.type in DECLARED_FUNCTIONS:
             self.script.others.append(text)
 
-    def _place(self, offset: int) -> tuple[int, int]:
+    def _insert(self, offset: int, text: str) -> None:
+        """Insert text that shifts what follows in its line."""
         before = self.code.text[:offset]
-        return before.count("\n") + 1, offset - before.rfind("\n") - 1
+        line, column = before.count("\n") + 1, offset - before.rfind("\n") - 1
+        self.edits.append((offset, offset, text))
+        self.script.shifts.append((line, column, len(text)))
 
 
 def in_turn(codes: list[str]) -> list[str]:

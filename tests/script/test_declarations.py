@@ -84,6 +84,8 @@ class Scopes:
         (["const {a, b} = {a: 1, b: 2}; let [c] = [3]; function f() { return a + b + c++; }", "f();"], "c", 4),
         (["for (var {n} = {n: 0}, i = 5; n < 3; n++); for (var {length} of ['ab']); if (n) var [m] = [6]"], "[n, i, length, m]", [3, 5, 2, 6]),
         (["var d = {h: 1}; with (d) { h = 2; g = h + 1; } function f() { with (Math) { three = floor(PI); } } f();"], "[d, g, three]", [{"h": 2}, 3, 3]),
+        (["function sum() { return a + b; }", "let a = 1; const b = 2; var c = sum();"], "c", 3),
+        (["function make() { return new K(); }", "class K { m() { return 1; } }\n(make()).m(); var k = make(); class L extends K {} var l = new L()"], "[k.m(), l.m(), l instanceof K, K.name, L.name]", [1, 1, True, "K", "L"]),
         ([r"var \u0061b = 1; function f\u0061() { return \u{61}b; } l\u{6f}ose = 2; let \u0063 = 3;"], "[ab, fa(), loose, c]", [1, 1, 2, 3]),
     ],
 )  # fmt: skip
@@ -196,9 +198,9 @@ def test_variables_of_a_scope_are_kept_by_its_owner_as_well() -> None:
 def test_what_was_declared_before_an_error_is_there() -> None:
     scopes = Scopes()
     with pytest.raises(ScriptError) as caught:
-        scopes.run("var a = 1; function f() { return 3; }\nfunction g() {}   nope();")
-    assert (caught.value.line, caught.value.column) == (2, 19)
-    assert scopes.value("[a, f()]") == [1, 3]
+        scopes.run("var a = 1; function f() { return 3; }\nfunction g() {} class K {}   nope();")
+    assert (caught.value.line, caught.value.column) == (2, 30)
+    assert scopes.value("[a, f(), typeof K]") == [1, 3, "function"]
 
 
 def test_what_a_pattern_declared_before_an_error_is_there() -> None:  # ECMA-262, 14.3.3
