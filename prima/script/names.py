@@ -119,16 +119,17 @@ def _of_walk(walk: Walk, script: bool) -> Names:
 def _add(
     made: Names, walk: Walk, start: int, name: str, how: str, scope: CodeScope, script: bool
 ) -> None:
-    top = walk.top
     home = scope.home(name, script and how == "write")
-    if home is not None and home is not top:
+    if home not in (None, walk.top):
         return
     if how != "change":  # also read there
         part = walk.parts.get(start)
         made.uses.append(Use(name, start, declares=how == "declare", part=part))
-    if home is None and (how == "read" or (how == "write" and not script)):
+    if home is not None:
+        return
+    if how == "read" or (how == "write" and not script):
         made.read.setdefault(name, start)
-        if scope.function is top:
+        if scope.function is walk.top:
             made.now.setdefault(name, start)
-    if home is None and how in ("write", "change"):
+    if how in ("write", "change"):
         (made.written if how == "write" else made.changed).add(name)
