@@ -407,10 +407,10 @@ def test_e1_of_units_in_units_each_fails_for_the_same_reason() -> None:
 
 def test_e1_what_hangs_fails_though_what_hangs_beside_it_has_ended_with_another() -> None:
     stage = Stage()
-    stage.request("ea", Group([Step(say("One.")), Step(command("move-head"))]))
-    stage.request("fa", command("turn", angle=9))
+    stage.request("fa", Group([Step(say("One.")), Step(command("move-head"))]))
+    stage.request("ea", command("turn", angle=9))
     stage.select()
     stage.at(900_000).mediator.expire()
     stage.select()
     assert stage.running == set()
-    assert stage.told("fa") == ["error.device.locomotion"]
+    assert stage.told("ea") == ["error.device.locomotion"]
