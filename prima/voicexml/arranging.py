@@ -66,8 +66,12 @@ def parts_of(dialog: Node) -> list[Node]:
 
 def holds(item: Node, name: str) -> bool:
     """Whether a form item has a name, or is a unit around the one that has."""
-    inner = item.nodes if is_unit(item) else ()
-    return any(one.get("name") == name for one in (item, *inner))
+    return item.get("name") == name or holds_inside(item, name)
+
+
+def holds_inside(item: Node, name: str) -> bool:
+    """Whether a form item is a unit around the one that has a name."""
+    return is_unit(item) and any(one.get("name") == name for one in item.nodes)
 
 
 def type_of(command: Node) -> str:

@@ -9,7 +9,7 @@ from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, thrown_of
 from prima.markup.tree import Node
 from prima.messages import Command
 from prima.script.evaluation import Scope, ScriptError
-from prima.voicexml.arranging import Queued, holds, is_unit, parts_of
+from prima.voicexml.arranging import Queued, holds_inside, is_unit, parts_of
 from prima.voicexml.choosing import ItemSelection
 from prima.voicexml.content import Content
 from prima.voicexml.document import Page
@@ -215,7 +215,7 @@ class Machine:
         ``wanted`` is the name of the item to begin with.
 
         Raises:
-            GoItem: to an item outside of the unit.
+            GoItem: to an item outside of the unit, or to the unit itself, which begins again.
         """
         unit, more = context.unit, True
         while more:
@@ -230,7 +230,7 @@ class Machine:
                 if self.units.left_by(context, error):
                     raise
                 wanted = yield from self._handled(context, error)
-            if wanted and unit is not None and not holds(unit, wanted):
+            if wanted and unit is not None and not holds_inside(unit, wanted):
                 raise GoItem(wanted)
 
     def _visit_next(self, context: Context, wanted: str) -> Generator[None, Resume, bool]:

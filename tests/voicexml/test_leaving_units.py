@@ -18,6 +18,16 @@ def test_a_goto_to_an_item_outside_leaves_a_unit() -> None:
 
 
 @pytest.mark.parametrize(
+    ("said", "first"), [([], ["request", "cancel"]), (["One."], ["request", "start", "end"])]
+)
+def test_a_goto_to_a_unit_from_inside_begins_it_again(said: list[str], first: list[str]) -> None:
+    again = say(f"{''.join(said)}<goto nextitem='u'/>")
+    call = Call(unit(again + say("Two."), say("Bye."), "name='u'"))
+    assert call.play() == [*said, "Two.", "Bye."]
+    assert units(call) == [*first, "request", "start", "end"]
+
+
+@pytest.mark.parametrize(
     ("leaving", "then"),
     [
         ("<goto next='#b'/>", "Next."),
