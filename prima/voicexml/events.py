@@ -9,23 +9,11 @@ from prima.script.evaluation import Scope, ScriptError
 from prima.voicexml.document import Page
 from prima.voicexml.elements import HANDLERS, handler_names, handler_number
 from prima.voicexml.owner import MachineOwner
+from prima.voicexml.platform import own_words
 from prima.voicexml.state import Context, Flow, HungUp, Unasked
 
 ASKED_AGAIN = ("noinput", "nomatch", "help", "maxspeechtimeout")
 """Events after which the platform's own handlers ask again (5.2.5)."""
-WORDS = {
-    "en": {
-        "help": "There is no help here.",
-        "nomatch": "I did not understand.",
-        "maxspeechtimeout": "That was too long.",
-    },
-    "ja": {
-        "help": "ヘルプはありません。",
-        "nomatch": "わかりませんでした。",
-        "maxspeechtimeout": "長すぎます。",
-    },
-}
-"""The first words of those handlers, by language; nothing in any other language."""
 
 
 class Events:
@@ -150,8 +138,8 @@ class Events:
         if any(takes(one, thrown.name) for one in ASKED_AGAIN):
             context.quiet = False
             lang = context.page.lang
-            words = WORDS.get(lang.partition("-")[0].lower(), {})
-            said = next((text for one, text in words.items() if takes(one, thrown.name)), "")
+            words = own_words(lang).items()
+            said = next((text for one, text in words if takes(one, thrown.name)), "")
             self.owner.say(said, lang, thrown.source)
         elif takes("cancel", thrown.name):
             context.quiet = True

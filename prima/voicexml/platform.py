@@ -1,14 +1,28 @@
-"""What this platform cannot do (VoiceXML 2.0, 2.2.4, 2.3.6, 2.3.7 and appendix E)."""
+"""What this platform says by itself, and cannot do (VoiceXML 2.0, 2.2.4, 2.3.6, 2.3.7, 5.2.5, E)."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import NamedTuple
 
 FORMATS = frozenset(["audio/basic", "audio/x-alaw-basic", "audio/x-wav", "audio/wav"])
 """Formats in which every platform records (appendix E)."""
 TELEPHONE = re.compile(r"tel:\+?[-.() 0-9A-Da-dpw*#]+(;.*)?")
 ADDRESS = re.compile(r"sips?:[^\s@]+(@[^\s@]+)?")
+WORDS = {
+    "en": {
+        "help": "There is no help here.",
+        "nomatch": "I did not understand.",
+        "maxspeechtimeout": "That was too long.",
+    },
+    "ja": {
+        "help": "ヘルプはありません。",
+        "nomatch": "わかりませんでした。",
+        "maxspeechtimeout": "長すぎます。",
+    },
+}
+"""The first words of the platform's own handlers, by language; nothing in any other language."""
 
 
 class Unsupported(NamedTuple):
@@ -19,6 +33,11 @@ class Unsupported(NamedTuple):
 
 
 NO_CHOICES = Unsupported("error.semantic", "there are no choices here to enumerate")
+
+
+def own_words(lang: str) -> Mapping[str, str]:
+    """What the platform's own handlers say in a language, by their events."""
+    return WORDS.get(lang.partition("-")[0].lower(), {})
 
 
 def unrecorded(media_type: str) -> Unsupported | None:

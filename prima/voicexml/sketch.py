@@ -43,6 +43,7 @@ from prima.voicexml.acting import (
 from prima.voicexml.arranging import is_unit, longest_of
 from prima.voicexml.document import Page
 from prima.voicexml.elements import HANDLERS, ITEMS, branches, handler_names, handler_number
+from prima.voicexml.platform import own_words
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 ASKING = ("field", "initial", "record", "menu")
@@ -62,6 +63,7 @@ class Sketch:
         self._wider = [page.root, *([root.root] if root is not None else [])]
         self._units: dict[int, tuple[Form, Unit]] = {}
         handlers = [one for node in self._wider for one in self._handlers(node)]
+        handlers += _platforms_own(page)
         forms = {name: self._form(name, node) for name, node in page.dialogs.items()}
         self.document = Document(
             "", "", page.lang, page.uri, forms, tuple(handlers), (), (), (), {}, page.root
@@ -229,6 +231,13 @@ class Sketch:
                 yield link.get("event") or None
         if any(one.get("name") == "universals" for one in node.all("property")):
             yield from UNIVERSAL
+
+
+def _platforms_own(page: Page) -> Iterator[Handler]:
+    """The platform's own handlers that speak, which take what no other handler does (5.2.5)."""
+    for event, words in own_words(page.lang).items():
+        said = run_of([speak((words,), page.root)])
+        yield Handler((event,), None, 1, None, (said,), page.root)
 
 
 def _filled_in(items: Iterable[Item]) -> Iterator[Filled]:

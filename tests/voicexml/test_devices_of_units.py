@@ -98,6 +98,26 @@ def test_a_unit_that_says_nothing_does_not_own_the_speaker() -> None:
     assert devices_of(vxml(sets + unit("<block><script src='a.js'/></block>"))) == set()
 
 
+HELP = "There is no help here."
+
+
+@pytest.mark.parametrize(
+    ("around", "devices", "said"),
+    [
+        ("", {"speaker"}, [HELP]),
+        ("<help><log>help</log></help>", set(), []),
+        ("<help cond='false'/>", {"speaker"}, [HELP]),
+        ("<help count='2'/>", {"speaker"}, [HELP]),
+    ],
+)
+def test_a_unit_owns_what_the_platforms_own_handlers_need(
+    around: str, devices: set[str], said: list[str]
+) -> None:  # 5.2.5
+    text = vxml(unit("<block><throw event='help'/></block>", "", "", around))
+    assert devices_of(text) == devices
+    assert Call(text).play() == said
+
+
 def test_a_unit_owns_what_a_handler_of_the_application_root_needs() -> None:
     root = vxml(f"<noinput><p:turn {P} angle='9'/><reprompt/></noinput>")
     leaf = (

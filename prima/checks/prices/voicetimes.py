@@ -20,7 +20,7 @@ from prima.voicexml.arranging import UNIT, arguments_of, longest_of, parts_of, t
 from prima.voicexml.calls import CONNECT_MS, kind_of
 from prima.voicexml.document import VoiceDocument
 from prima.voicexml.elements import HANDLERS
-from prima.voicexml.events import WORDS
+from prima.voicexml.platform import own_words
 from prima.voicexml.recorder import BEEP_MS
 from prima.voicexml.sketch import ASKING, Sketch
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
@@ -151,7 +151,7 @@ class VoiceTimes:
         for node in around if self._speaks_first(item) else [dialog, *around]:
             for holder in holders(node):
                 yield from self._spoken(holder)
-        words = WORDS.get(self.page.lang.partition("-")[0].lower(), {})
+        words = own_words(self.page.lang)
         longest = max(words.values(), key=len, default="")
         yield Price(item, "speak", SPEAKER, duration(longest, self.page.lang, self.profile.voices))
 
