@@ -28,7 +28,7 @@ class Channel(Memory):
         serial = record.get("serial")
         if serial is None:
             return
-        if serial in self.serials and record["phase"] != "transferred":
+        if serial in self.serials:
             self.report(15, "C5", f"two events have the number {serial}")
         self.serials[serial] = self.now
 

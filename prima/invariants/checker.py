@@ -30,7 +30,6 @@ class Checker(Starts):
             "fail": self.note_fail,
             "cancel": self.note_cancel,
             "event": self._event,
-            "transferred": self.note_serial,
             "interrupt": self.note_interrupt,
             "held": self.note_held,
             "substitute": self.note_substitute,

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from prima import api
 from prima.invariants import check
 from tests.helpers.rehearsing import rehearse
+from tests.helpers.voice import vxml
 
 ASKS = (
     '<form id="f"><field name="q" type="boolean"><prompt timeout="5s">Well?</prompt>'
@@ -30,3 +32,13 @@ def test_an_application_that_is_loaded_again_is_another_one(tmp_path: Path) -> N
     ends = [one["time"] for one in made.records if one["phase"] == "end"]
     assert len(said) == 2 and said[1] == ends[0] > 0.6, made.table()
     assert check(made.records) == []
+
+
+def test_the_number_of_a_call_is_not_that_of_an_event(tmp_path: Path) -> None:
+    call = '<transfer dest="tel:1" bridge="true"/>'
+    asks = '<field name="f" type="boolean"><prompt>Well?</prompt></field>'
+    (tmp_path / "app.vxml").write_text(vxml(f"<form>{call * 2}{asks}</form>"), encoding="utf-8")
+    made = api.rehearse(api.stage([], [tmp_path / "app.vxml"], says=["yes"]))
+    numbered = [(r["phase"], r["serial"]) for r in made.records if r.get("serial") == 2]
+    assert numbered == [("send", 2), ("transferred", 2), ("event", 2)], made.table()
+    assert check(made.records, calling=["app"]) == []
