@@ -76,6 +76,7 @@ class Algorithm:
         self, frame: Frame, fiber: Fiber, items: Sequence[Item], unit: Unit | None
     ) -> Content:
         while True:
+            fiber.local = None  # conditions, prompts and parameters see no content's variables
             item = self._selected(frame, fiber, items)
             if isinstance(item, Thrown):
                 yield from self.owner.handling.handle_thrown(frame, fiber, unit, item, 0)
@@ -115,7 +116,6 @@ class Algorithm:
         match item:
             case Block():
                 self.owner.engine.set(frame.dialog, item.name, True)
-                fiber.local = None
                 yield from self.owner.execute.run(item.content, fiber)
             case Field():
                 yield from self._collect(frame, fiber, item)

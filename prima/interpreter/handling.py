@@ -48,7 +48,11 @@ class Handling:
         """Run the handler of an event thrown in content, in the same piece of content."""
         event = thrown.event
         self.count_event(frame, item, event.name)
-        handler = self.find_handler(frame, fiber, item, event)
+        candidates = self._candidates(frame, fiber, item, event.name)
+        fiber.local = None  # what the failed content has declared may have filled the memory
+        if candidates:
+            fiber.local = self.event_scope(event)
+        handler = self._select(frame, fiber, item, candidates)
         if handler is None:
             if event.name in REPROMPTED:
                 frame.silent = ""
@@ -57,8 +61,6 @@ class Handling:
                 return
             thrown.sought = True
             raise thrown
-        fiber.local = None  # what the failed content has declared may have filled the memory
-        fiber.local = self.event_scope(event)
         fiber.commands = ()
         if handler.reactive is not None:  # otherwise a throw keeps its own (C5)
             self.allow_reaction(handler, event)
@@ -239,6 +241,7 @@ class Handling:
     def _select(
         self, frame: Frame, fiber: Fiber, item: Item | None, candidates: Taking
     ) -> Handler | None:
+        """The handler that takes an event here (VoiceXML 5.2.4)."""
         if len(candidates) == 1:
             first = candidates[0].handler
             if first.cond is None and first.count <= 1:
@@ -249,13 +252,6 @@ class Handling:
             lambda name: frame.counters.seen(name_of(item), name),
             lambda one: one.cond is None or self.owner.execute.condition(one.cond, fiber),
         )
-
-    def find_handler(
-        self, frame: Frame, fiber: Fiber, item: Item | None, event: Event
-    ) -> Handler | None:
-        """The handler that takes an event here (VoiceXML 5.2.4)."""
-        candidates = self._candidates(frame, fiber, item, event.name)
-        return self._select(frame, fiber, item, candidates)
 
     def watches(self) -> list[Watch]:
         """The watches of the active form and of the document."""

@@ -136,6 +136,26 @@ def test_conditions_loops_and_scopes() -> None:
     assert bench.logs() == ["first 1", "second 4", "last 2", "11 13 object", "undefined"]
 
 
+def test_what_content_declares_is_unknown_to_the_items_after_it() -> None:
+    bench = Bench(
+        """<form id="a">
+          <var name="x" expr="'form'"/>
+          <block><var name="x" expr="'block'"/></block>
+          <block cond="x == 'block'"><log>seen</log></block>
+          <field name="f" type="boolean">
+            <prompt><value expr="x"/></prompt>
+            <filled><var name="x" expr="'filled'"/></filled>
+          </field>
+          <block cond="x == 'filled'"><log>seen</log></block>
+          <block><log expr="x"/></block>
+        </form>"""
+    )
+    bench.listens()
+    bench.hears("yes")
+    assert bench.said() == ["form"]
+    assert bench.logs() == ["form"]
+
+
 def test_par_and_seq_make_one_tree() -> None:
     bench = Bench(
         """<form id="a"><block>

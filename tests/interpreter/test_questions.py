@@ -312,3 +312,22 @@ def test_a_link_of_the_robots_own_application_lets_the_question_listen_on() -> N
     bench.listens()
     bench.hears("light on")
     assert bench.saying() == ["Well?", "move-head"]
+
+
+def test_a_condition_of_a_handler_knows_the_event_and_not_what_threw_it() -> None:
+    bench = Bench(
+        """<form id="a">
+          <var name="x" expr="'form'"/>
+          <field name="f" type="boolean">
+            <prompt>Yes?</prompt>
+            <nomatch cond="event.data.utterance == 'maybe'"><throw event="unsure"/></nomatch>
+            <nomatch count="2"><var name="x" expr="'handler'"/><throw event="lost"/></nomatch>
+          </field>
+          <on event="lost" cond="x == 'handler'"><log>seen</log></on>
+          <on event="lost unsure" cond="event.name != 'found'"><log expr="event.name"/></on>
+        </form>"""
+    )
+    for words in ("maybe", "perhaps"):
+        bench.listens()
+        bench.hears(words)
+    assert bench.logs() == ["unsure", "lost"]
