@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from prima.interpreter.acts import Declare, Expression, Pause, Script, Text
 from prima.interpreter.frame import Fiber
@@ -106,6 +107,20 @@ class Evaluator:
             found[name] = self.plain(value, fiber)
             self.owner.count_value(found[name], node)
         return found
+
+    def passed(
+        self, params: Sequence[tuple[str, str | Expression]], fiber: Fiber, node: Node
+    ) -> dict[str, Json]:
+        """Params of a call, copied, without those that are undefined."""
+        own, defined = Fiber(fiber.frame), list[tuple[str, str | Expression]]()
+        for name, value in params:
+            given = value
+            if isinstance(value, Expression):  # its plain data would not tell undefined from null
+                self.declare(Declare(name, value, node), self.local(own), fiber)
+                given = replace(value, code=name)
+            if given is value or self.engine.defined(own.local, name):
+                defined.append((name, given))
+        return self.named(defined, own, node)
 
     def declare(self, act: Declare, scope: Scope, fiber: Fiber) -> None:
         """Declare a variable in a scope (VoiceXML 5.3.1)."""

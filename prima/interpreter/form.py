@@ -130,8 +130,10 @@ class Algorithm:
             yield from content
             return
         except (Thrown, ScriptError) as error:
-            frame.silent = item.name if isinstance(item, Field) else ""
             thrown = thrown_of(error)
+            if thrown.sought:  # in a subdialog: its caller's handlers are not in force there
+                raise
+            frame.silent = item.name if isinstance(item, Field) else ""
         yield from self.owner.handling.handle_thrown(frame, fiber, item, thrown, 0)
 
     def _collect(self, frame: Frame, fiber: Fiber, field: Field) -> Content:
@@ -207,8 +209,9 @@ class Algorithm:
             depth, outer = depth + 1, outer.caller
         check_depth(depth, item.node)
         form = self.owner.document.forms[item.form]
+        given = self.owner.execute.passed(item.params, fiber, item.node)
         inner = self.owner.frame_for(form, None)
-        inner.caller, inner.called_by = frame, item
+        inner.caller, inner.called_by, inner.given = frame, item, given
         result: Notice | None = None
         pending = self.owner.begin(inner)
         if pending is not None and isinstance(pending[1], GoBack) and pending[0] is inner:

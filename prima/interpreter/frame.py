@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
+from types import MappingProxyType
 
 from prima.interpreter.acts import Handler
 from prima.interpreter.elements import Form, Item, Subdialog, Unit
 from prima.interpreter.selection import Counters
 from prima.interpreter.transfers import Transfer
-from prima.messages import Notice
+from prima.messages import Json, Notice
 from prima.script.evaluation import Scope
 
 Content = Generator[int, Notice, None]
@@ -23,6 +24,8 @@ class Frame:
 
     caller: Frame | None = None
     called_by: Subdialog | None = None
+    given: Mapping[str, Json] = MappingProxyType({})
+    """The params of the call that have a value."""
     item: Item | None = None
     """The item being visited."""
     next_item = ""

@@ -47,6 +47,11 @@ class ContentRunner(Protocol):
     def check(self, notice: Notice, fiber: Fiber) -> None:
         """Check whether to continue after a run's end."""
 
+    def passed(
+        self, params: Sequence[tuple[str, str | Expression]], fiber: Fiber, node: Node
+    ) -> dict[str, Json]:
+        """Params of a call, copied, without those that are undefined."""
+
 
 class Forms(Protocol):
     """Visits the items of forms."""

@@ -250,6 +250,7 @@ class States(App["AnyEngine | PythonEngine"]):
             frame.fresh = True
         elif before.caller is not None:
             frame.caller, frame.called_by = before.caller, before.called_by
+            frame.given = before.given
         return frame
 
     def new_document(self) -> object:
@@ -295,12 +296,10 @@ class States(App["AnyEngine | PythonEngine"]):
     def initialise(self, frame: Frame, fiber: Fiber) -> None:
         """Declare the form's variables and items (the algorithm's initialisation)."""
         call = frame.called_by
-        given: set[str] = set()
-        if call is not None and frame.caller is not None:
-            outer = Fiber(frame.caller)
-            for name, value in self.execute.named(call.params, outer, call.node).items():
-                self.engine.set(frame.dialog, name, value)
-                given.add(name)
+        given = [name for name, _ in call.params] if call is not None else []
+        if given:
+            self.engine.unset(frame.dialog, *given)
+            self.engine.fill(frame.dialog, frame.given)
         setup = [
             act for act in frame.form.setup if not (isinstance(act, Declare) and act.name in given)
         ]

@@ -49,3 +49,50 @@ def test_a_subdialog_may_give_what_is_not_a_number(head: str) -> None:
           <block><var name="q" expr="{{r: 1}}"/><return namelist="p q"/></block></form>"""
     )
     assert bench.logs() == ["NaN 1"]
+
+
+@pytest.mark.parametrize("first", ["", "<speak>Hm.</speak>"])
+@pytest.mark.parametrize(
+    "content", ['<throw event="own"/>', '<log expr="no.value"/>', '<goto next="#more"/>']
+)
+def test_what_a_subdialog_throws_does_not_reach_its_callers_handlers(
+    first: str, content: str
+) -> None:
+    bench = Bench(
+        f"""<var name="no"/>
+        <form id="a"><subdialog name="r" src="#sub">
+          <on event="own error"><log>caller</log></on></subdialog></form>
+        <form id="sub"><block>{first}{content}</block></form>
+        <form id="more"><block><throw event="own"/></block></form>"""
+    )
+    if first:
+        bench.finish("Hm.")
+    assert bench.logs() == []
+    assert len(bench.session.failures) == 1
+
+
+def test_a_param_that_fails_is_an_error_of_the_caller() -> None:
+    bench = Bench(
+        """<var name="no"/>
+        <form id="a"><subdialog name="r" src="#sub"><param name="p" expr="no.value"/>
+          <error><log>caller</log><assign name="r" expr="1"/></error></subdialog></form>
+        <form id="sub"><var name="p"/><error><log>called</log></error></form>"""
+    )
+    assert bench.logs() == ["caller"]
+
+
+@pytest.mark.parametrize("head", ["", "<script>var own = Math.max(1, 2)</script>"])
+def test_a_param_without_a_value_leaves_a_variable_undefined(head: str) -> None:
+    bench = Bench(
+        f"""{head}<var name="no"/>
+        <form id="a"><subdialog name="r" src="#sub"><param name="town" expr="no"/>
+          <param name="day" expr="null"/></subdialog></form>
+        <form id="sub"><var name="town" expr="'Nara'"/><var name="day" expr="'today'"/>
+          <field name="to" expr="town" type="text"><prompt>Where to?</prompt></field>
+          <field name="on" expr="day" type="text"><prompt>When?</prompt></field>
+          <block><log>so</log></block></form>"""
+    )
+    assert bench.saying() == ["Where to?"]
+    bench.listens()
+    bench.hears("Kyoto")
+    assert bench.logs() == ["so"]
