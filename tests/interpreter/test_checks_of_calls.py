@@ -73,3 +73,22 @@ def test_a_misspelt_result() -> None:
 )
 def test_a_result_that_may_be_meant(use: str, then: str, more: str) -> None:
     assert warned(use=use, then=then, more=more) == []
+
+
+@pytest.mark.parametrize(
+    ("goto", "told"),
+    [
+        ("next-expr=\"'#othr'\"", 'There is no form "othr" to go to: this throws error.badfetch.'),
+        ("next-expr=\"r ? '#sub' : 'lost'\"", 'There is no form "lost" to go to: this throws'),
+        ("nextitem-expr=\"'s'\"", 'There is no form item "s" to go to: this throws'),
+        ("next-expr=\"r ? '#other' : 'sub'\"", ""),
+        ("next-expr=\"'#oth' + r\"", ""),
+        ("nextitem-expr=\"'r'\"", ""),
+    ],
+)
+def test_a_goto_by_a_literal_that_names_nothing(goto: str, told: str) -> None:
+    text = APP.format(params="", use=f'<if cond="r"><goto {goto}/></if>', then=RETURN, more=OTHER)
+    _, problems = read_document("app.xml", text.encode())
+    found = [one for one in problems if one.code in ("no-such-form", "no-such-item")]
+    assert [one.severity for one in found] == ["warning"] * bool(told)
+    assert not told or found[0].message.startswith(told)

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
-from prima.errors import Problem, suggestion
+from prima.errors import Diagnosis, Problem, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_FORM, NO_SUCH_ITEM
 from prima.errors.diagnoses.structure import DUPLICATE_NAME
-from prima.interpreter.acts import Clear, Goto
+from prima.interpreter.acts import Clear, Expression, Goto
 from prima.interpreter.checks.facts import Facts, name_of
 from prima.interpreter.elements import Field, Filled, Form, Item, Subdialog
 from prima.markup.spans import instead, value_span
 from prima.markup.tree import Node
+from prima.script.choices import choices
 from prima.script.known import NameScope
 
 UNKNOWN_FORM = NO_SUCH_FORM.says('There is no form "{name}" to go to.')
 UNKNOWN_ITEM = NO_SUCH_ITEM.says('There is no form item "{name}" to go to.')
+COMPUTED_FORM = NO_SUCH_FORM.says(
+    'There is no form "{name}" to go to: this throws error.badfetch.', severity="warning"
+)
+COMPUTED_ITEM = NO_SUCH_ITEM.says(
+    'There is no form item "{name}" to go to: this throws error.badfetch.', severity="warning"
+)
 UNKNOWN_FIELD = NO_SUCH_ITEM.says('There is no field "{name}".')
 TWO_ITEMS = DUPLICATE_NAME.says('The form "{form}" has two items named "{name}".', "Rename one.")
 
@@ -39,6 +46,26 @@ def _goto(facts: Facts, act: Goto, items: set[str]) -> Iterator[Problem]:
         yield from _form(facts, act.form, act.node, "next")
     if isinstance(act.item, str) and act.item not in items:
         yield _item(facts, act, act.item, items)
+    if isinstance(act.form, Expression):
+        named = (name.removeprefix("#") for name in _literals(act.form))
+        yield from _computed(act.form, named, facts.document.forms, COMPUTED_FORM)
+    if isinstance(act.item, Expression):
+        yield from _computed(act.item, _literals(act.item), items, COMPUTED_ITEM)
+
+
+def _literals(expr: Expression) -> Iterator[str]:
+    """The texts that an expression gives if its conditions hold, or do not."""
+    return (one.text for one in choices(expr.code) if one.whole)
+
+
+def _computed(
+    expr: Expression, names: Iterable[str], known: Collection[str], diagnosis: Diagnosis
+) -> Iterator[Problem]:
+    """Names that an expression has as literals, and that nothing has."""
+    for name in names:
+        if name not in known:
+            place = expr.node.place_of(expr.attribute)
+            yield diagnosis.at(place, suggestion(name, known), name=name)
 
 
 def _item_names(facts: Facts) -> dict[str | None, set[str]]:
