@@ -335,6 +335,11 @@ def limits() -> str:
             "the application ends",
         ),
         ("handlers under way at once in a state", f"{handling.MAX_FIBERS}", "the application ends"),
+        (
+            "events that handlers throw in turn, each while the one before is handled",
+            f"{transfers.MAX_DEPTH + 1}",
+            "the application ends",
+        ),
         ("subdialogs inside each other", f"{transfers.MAX_DEPTH}", "`error.semantic`"),
         ("delayed events under way", f"{application.MAX_TIMERS}", "`error.semantic`"),
         (
