@@ -123,13 +123,13 @@ class AsGiven:
             folded = fold(word[0])
             if not heard.said.startswith(folded, at):
                 return  # what follows is known as it is folded
-            if (
-                folded or word[0].strip(AROUND) in CURRENCY_SIGNS
-            ):  # which belongs to the words around it
-                self._starts.setdefault(at, word.start())
-                end = at + len(folded) if folded else end
-                self._ends[end] = word.end()
-                at = heard.after(end) if folded else at
+            if not folded and word[0].strip(AROUND) not in CURRENCY_SIGNS:
+                continue
+            self._starts.setdefault(at, word.start())
+            if folded:
+                end = at + len(folded)
+                at = heard.after(end)
+            self._ends[end] = word.end()  # a sign of currency belongs to the words around it
 
     def text(self, start: int, end: int) -> str:
         """The text of a stretch; folded where it begins or ends inside a word."""

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from prima.errors import Problem, Span, meant, one_of
 from prima.errors.diagnoses.names import NO_SUCH_NAME, UNDECLARED_VARIABLE
+from prima.interpreter.checks.variables import FIELD
 from prima.interpreter.elements import Document
 from prima.interpreter.events import KnownEvents, near
 from prima.markup.spans import value_span
@@ -17,7 +18,7 @@ from prima.sim.devices import Cast
 NAMING = ("next", "src")
 """Attributes of VoiceXML elements that name a service by ``service:NAME``."""
 
-DATA = re.compile(r"\bevent\s*\??\.\s*data\s*\??\.\s*([A-Za-z_$][\w$]*)")
+DATA = re.compile(rf"\bevent\s*\??\.\s*{FIELD.pattern}")
 REPLY = "reply."
 
 NO_SERVICE = NO_SUCH_NAME.says('The scenario has no service "{name}".', severity="warning")
