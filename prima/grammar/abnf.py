@@ -10,10 +10,10 @@ from typing import Any
 
 from lark import Lark, TextSlice, Token, UnexpectedInput
 
-from prima.errors import Hint, Span, suggestion
+from prima.errors import Hint, Span
 from prima.grammar.abnferrors import unexpected
 from prima.grammar.abnfheader import header_end
-from prima.grammar.errors import GrammarError, Problems, Where, refuse
+from prima.grammar.errors import GrammarError, Problems, Where, other_rule, refuse
 from prima.grammar.model import GrammarDocument, Part, Reference, Repeat, Rule, Special, Tag, Words
 from prima.grammar.text import fold, keys
 from prima.grammar.values import (
@@ -145,7 +145,7 @@ class _AbnfReader:
         if problem := name_problem(name):
             self.note(token, "bad-value", problem, "Choose another name.")
         elif name in self.document.rules:
-            self.note(token, "duplicate-id", f'There are two rules "{name}".')
+            self.note(token, "duplicate-id", f'There are two rules "{name}".', "Rename one.")
         return name
 
     def rule(self, found: list[Any]) -> None:
@@ -156,7 +156,7 @@ class _AbnfReader:
     def start(self, found: list[Any]) -> None:
         root, rules = self.document.root, self.document.rules
         if self.root is not None and root not in rules:
-            hint = suggestion(root, rules, self._named(self.root))
+            hint = other_rule(root, rules, self._named(self.root))
             self.note(self.root, "no-such-rule", f'The root rule "{root}" is not there.', hint)
 
     def _named(self, token: Token) -> Span:

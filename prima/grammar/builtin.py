@@ -73,11 +73,7 @@ _URI = re.compile(r"(?:builtin:(?:(?:grammar|voice|dtmf)/)?)?([\w-]+)(?:\?(.*))?
 _EXTENSION = re.compile(r" ?(?:\bextension\b|\bext\b|(?:\b|(?<=\d))x(?=\d|\b)|内線) ?")
 _JOINED = re.compile(r"(?<=\d)[.,:](?=\d)")
 """A sign between digits of a telephone number."""
-_MONEY = re.compile(
-    r"([$€£¥]|[A-Za-z]{3})?\s*([0-9]{1,3}(?:,[0-9]{3})+|[0-9]+)(?:\.([0-9]{1,2})|,([0-9]{1,2}))?"
-    r"\s*([$€£¥]|[A-Za-z]{3})?"
-)
-"""A point or, as in numbers, a comma before the hundredths."""
+_MONEY = re.compile(r"([$€£¥]|[A-Za-z]{3})?\s*([0-9][0-9.,]*)\s*([$€£¥]|[A-Za-z]{3})?")
 _LOST_SIGN = re.compile(r"[$€£¥\u20a0-\u20bf]|(?<!\w)[-\u2212]\s*[0-9]")
 """A currency or a minus that folding removes."""
 _UNIT = re.compile(
@@ -223,12 +219,12 @@ def _currency(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
 
 def _written_money(match: re.Match[str]) -> str | None:
     """``$12.50``, ``EUR 3``."""
-    unit = (match[1] or match[5] or "").lower()
+    unit = (match[1] or match[3] or "").lower()
     code = CURRENCIES.get(unit)
-    if (unit and code is None) or (match[1] and match[5]):
+    main, cents = _amount(match[2])
+    if (unit and code is None) or (match[1] and match[3]) or main is None or cents is None:
         return None
-    whole = _plain(match[2].replace(",", ""))
-    return f"{code or ''}{whole}.{match[3] or match[4] or '':0<2}"
+    return f"{code or ''}{main}.{cents:02d}"
 
 
 def _spoken_money(said: str) -> str | None:

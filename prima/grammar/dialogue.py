@@ -5,11 +5,12 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from prima.errors import Diagnosis, Hint, suggestion
+from prima.errors import Diagnosis, Hint
 from prima.errors.diagnoses.grammars import BAD_TOKEN, EMPTY_ANSWER, NO_SUCH_RULE
 from prima.errors.diagnoses.structure import DUPLICATE_ID, STRAY_TEXT
 from prima.errors.diagnoses.values import BAD_VALUE
 from prima.errors.diagnosis import NO_HINT
+from prima.grammar.errors import other_rule
 from prima.grammar.grammar import Grammar
 from prima.grammar.model import GrammarDocument, Part, Reference, Repeat, Rule, Tag, Words
 from prima.grammar.prefixes import index_choices
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
             """Note a problem, with a remedy."""
 
 
-TWO_RULES = DUPLICATE_ID.says('There are two rules "{name}".')
+TWO_RULES = DUPLICATE_ID.says('There are two rules "{name}".', "Rename one.")
 NO_RULE = NO_SUCH_RULE.says('There is no rule "{name}".')
 TEXT_BESIDE_RULES = STRAY_TEXT.says("This grammar has rules; its own text has no effect.")
 EMPTY_GRAMMAR = EMPTY_ANSWER.says("This grammar has no words.", "Write what it takes.")
@@ -101,7 +102,7 @@ class DialogueGrammarReader:
         if found is not None:
             return found
         if not reported:
-            hint = suggestion(name, self.document.rules, *value_span(node, attribute, name))
+            hint = other_rule(name, self.document.rules, *value_span(node, attribute, name))
             self.note(NO_RULE, node, attribute, hint, name=name)
         return self._define(name, choice([], []))
 

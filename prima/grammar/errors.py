@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from prima.errors import DocumentError, Hint, Place, Problem
+from prima.errors import DocumentError, Hint, Place, Problem, suggestion
+from prima.errors.problems import Span
+from prima.errors.words import one_of
 
 MOST_PROBLEMS = 100
 """Maximum number of problems reported for one grammar."""
+MOST_RULES = 5
+"""Maximum number of rules that a remedy names."""
 
 
 class GrammarError(DocumentError):
@@ -89,3 +93,10 @@ def refuse(
 ) -> GrammarError:
     """An error of one problem."""
     return kind([Problem(place, "error", code, message, remedy)])
+
+
+def other_rule(name: str, known: Iterable[str], *spans: Span) -> Hint:
+    """The remedy for an unknown rule: the nearest known one, or the first few."""
+    rules = list(known)
+    there = Hint(f"Write {one_of(rules, MOST_RULES)}." if rules else "Define it.")
+    return suggestion(name, rules, *spans) or there

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from prima.errors import Problem
 from prima.grammar.chart import MAX_STEPS, Cell, Chart
-from prima.grammar.errors import GrammarError, Where, refuse
+from prima.grammar.errors import GrammarError, Where, other_rule, refuse
 from prima.grammar.model import GrammarDocument, Mode, Part, Reference
 from prima.grammar.ranking import RankedParse, best, frames
 from prima.grammar.semantics import SemanticError, TagFailed, TagInterpreter
@@ -112,7 +112,8 @@ class Grammar:
         """The grammar with another of its rules as root."""
         if name not in self._document.rules:
             message = f'There is no rule "{name}".'
-            raise refuse(GrammarError, self._where(), "no-such-rule", message)
+            hint = other_rule(name, self._document.rules)
+            raise refuse(GrammarError, self._where(), "no-such-rule", message, hint)
         return Grammar(self._document, name, self._where, self._lenient, self._warnings)
 
     def match(

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from urllib.parse import urlsplit
 
-from prima.errors import Hint, PrimaError, Span, meant, suggestion
+from prima.errors import Hint, PrimaError, Span, meant
 from prima.grammar.builtin import built_in, uri_mode
 from prima.grammar.errors import (
     GrammarError,
@@ -15,6 +15,7 @@ from prima.grammar.errors import (
     UnsupportedBuiltIn,
     UnsupportedFormat,
     Where,
+    other_rule,
     refuse,
 )
 from prima.grammar.legacy import FORMATS, settle
@@ -177,7 +178,7 @@ class Library:
     def _local(self, document: GrammarDocument, reference: Reference, name: str) -> Rule | None:
         rule = document.rules.get(name)
         if rule is None:
-            hint = suggestion(name, document.rules, _name_in(reference, name))
+            hint = other_rule(name, document.rules, _name_in(reference, name))
             message = f'There is no rule "{name[:80]}".'
             self.problems.note(reference.where, "no-such-rule", message, hint)
         return rule
@@ -196,7 +197,7 @@ class Library:
             message = f'The grammar "{found.uri}" names no root rule.'
             note(reference.where, "no-root", message, f"Name a rule: {found.uri}#name.")
         elif rule is None:
-            hint = suggestion(name, found.rules, _name_in(reference, name))
+            hint = other_rule(name, found.public(), _name_in(reference, name))
             note(reference.where, "no-such-rule", f'There is no rule "{name[:80]}" there.', hint)
         elif named and not rule.public and found is not document:
             message = f'The rule "{name}" is private to its grammar.'

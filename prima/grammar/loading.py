@@ -7,9 +7,15 @@ from collections.abc import Callable
 from functools import partial
 from urllib.parse import urldefrag
 
-from prima.errors import DocumentError, Place, suggestion
+from prima.errors import DocumentError, Place
 from prima.grammar.builtin import TYPES, Conflict, built_in, uri_mode
-from prima.grammar.errors import GrammarError, UnsupportedBuiltIn, UnsupportedLanguage, refuse
+from prima.grammar.errors import (
+    GrammarError,
+    UnsupportedBuiltIn,
+    UnsupportedLanguage,
+    other_rule,
+    refuse,
+)
 from prima.grammar.grammar import Grammar
 from prima.grammar.linking import Fetch, Library, Refusal, joined
 from prima.grammar.media import ABNF_TYPES, check_form, check_known, check_no_text, media_type
@@ -80,7 +86,8 @@ def load(
     library.problems.check()
     if rule and rule not in document.rules:
         message = f'There is no rule "{rule}".'
-        raise refuse(GrammarError, document.where(), "no-such-rule", message)
+        hint = other_rule(rule, document.rules)
+        raise refuse(GrammarError, document.where(), "no-such-rule", message, hint)
     if lenient and rule and not document.rules[rule].public and rule != document.root:
         message = f'The rule "{rule}" is private: it is for this grammar alone.'
         raise refuse(GrammarError, document.where(), "private-rule", message)
@@ -145,7 +152,7 @@ def _element(
 def _root(document: GrammarDocument) -> None:
     """The root of an element without one: its only rule, or its only public one."""
     if not document.root:
-        public = [rule.name for rule in document.rules.values() if rule.public]
+        public = document.public()
         names = public if len(public) == 1 else list(document.rules)
         document.root = names[0] if len(names) == 1 else ""
 
@@ -166,7 +173,7 @@ def _external(
             raise refuse(GrammarError, where(), "private-rule", message)
     elif name:
         message = f'The grammar "{uri}" has no rule "{name}".'
-        hint = suggestion(name, document.rules, *value_span(node, "src", name))
+        hint = other_rule(name, document.public(), *value_span(node, "src", name))
         raise refuse(GrammarError, where(), "no-such-rule", message, hint)
     elif not document.root:
         message = f'The grammar "{uri}" names no root rule.'

@@ -174,3 +174,7 @@ class GrammarDocument:
     form: Form = "XML"
     merges: bool = False
     """Whether slots filled by referenced rules become slots of the referring rule."""
+
+    def public(self) -> list[str]:
+        """The names of the rules that other documents may refer to."""
+        return [name for name, rule in self.rules.items() if rule.public]

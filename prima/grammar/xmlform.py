@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from prima.errors import suggestion
-from prima.grammar.errors import Problems
+from prima.grammar.errors import Problems, other_rule
 from prima.grammar.model import GrammarDocument, Part, Reference, Repeat, Rule, Special, Tag, Words
 from prima.grammar.text import fold, keys, tokens
 from prima.grammar.values import (
@@ -74,7 +74,7 @@ class _Reader(GrammarChecker):
         document.root = node.get("root").strip()
         self._children(node)
         if "root" in node.attributes and document.root not in document.rules:
-            hint = suggestion(document.root, document.rules, *value_span(node, "root"))
+            hint = other_rule(document.root, document.rules, *value_span(node, "root"))
             message = f'The root rule "{document.root}" is not there.'
             self.note(node, "no-such-rule", message, hint, "root")
 
@@ -144,11 +144,11 @@ class _Reader(GrammarChecker):
     def _rule(self, node: Node) -> None:
         name = node.get("id").strip()
         if not name:
-            self.note(node, "missing-attribute", "A rule needs an id.")
+            self.note(node, "missing-attribute", "A rule needs an id.", 'Write <rule id="name">.')
         elif problem := name_problem(name):
             self.note(node, "bad-value", problem, "Choose another name.", "id")
         elif name in self.document.rules:
-            self.note(node, "duplicate-id", f'There are two rules "{name}".', "", "id")
+            self.note(node, "duplicate-id", f'There are two rules "{name}".', "Rename one.", "id")
         scope = node.get("scope", "private")
         if scope not in ("public", "private"):
             message = f'The scope of a rule is public or private, not "{scope}".'

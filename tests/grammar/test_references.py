@@ -158,6 +158,21 @@ def test_references_that_lead_to_no_rule(uri: str, code: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("uri", "remedy"),
+    [
+        ("cities.grxml#FAR", 'Did you mean "far"?'),
+        ("cities.grxml#gone", "Write far."),
+        ("#gone", "Write r."),
+    ],
+)
+def test_what_to_write_for_an_unknown_rule(uri: str, remedy: str) -> None:
+    """Rules that are private to another document are not named."""
+    with pytest.raises(GrammarError) as error:
+        reaching(f"$r = $<{uri}>;")
+    assert [problem.remedy for problem in error.value.problems] == [remedy]
+
+
+@pytest.mark.parametrize(
     ("header", "uri"),
     [(ABNF, "builtin:dtmf/digits?length=2"), (ABNF + "mode dtmf; ", "builtin:grammar/digits")],
 )
