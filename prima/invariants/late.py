@@ -81,26 +81,24 @@ class Late(Selection):
             return
         self.speech_at, self.speech = self.now, record.get("serial")
         began = self.now - ms((record.get("data") or {}).get("lasted", 0))
-        lapsed, self.late_app = self.lapsed, ""
-        if "x10" not in self.extensions or lapsed is None:
-            late = ""
-        else:
-            app, when = lapsed
-            late = "" if began - when > LATE else app
+        late = [app for app, when in self.lapsed if began - when <= LATE]
+        if "x10" not in self.extensions:
+            late = []
         named = record.get("app") or ""
-        if named and (record.get("rule") != "X10" or named != late):
+        if named and (record.get("rule") != "X10" or named not in late):
             self.report(
                 16, "X10", f"only {named} hears an utterance that answers none of its questions"
             )
-        self.late_app = late
+        self.late_app = late[0] if len(late) == len(self.lapsed) == 1 else ""
 
     def note_lapse(self, record: Record) -> None:
         """X10: a question has timed out or was answered."""
         ab = self.abs.get(record["behavior"])
         if ab is None or not ab.question:
             return
-        if record["outcome"] == "noinput" and record.get("inbound") and not ab.silent:
-            self.lapsed = (ab.app, self.now)
+        if record["outcome"] == "noinput" and record.get("inbound"):
+            before = self.lapsed if ab.silent else []
+            self.lapsed = [*before, (ab.app, self.now)]
             return
         late = self.late_app if self.speech_at == self.now else ""
         if record["outcome"] == "filled" and late not in ("", ab.app):

@@ -56,8 +56,9 @@ class Memory:
         self.abs: dict[str, AB] = {}
         self.waiting: dict[str, AB] = {}
         self.running: dict[str, AB] = {}
-        self.lapsed: tuple[str, int] | None = None
-        """The application whose question was the latest to time out, and when (X10)."""
+        self.lapsed: list[tuple[str, int]] = [("", 0)]
+        """The application whose question was the latest to time out, and when (X10): one, or more
+        that it may be, as records do not show whether an application still hears of an end."""
         self.late_app = ""
         """The application whose question the user has just answered too late (X10)."""
         self.speech: int | None = None

@@ -37,8 +37,7 @@ def whole(path: str | Path) -> Iterator[IO[bytes]]:
     Raises:
         UsageError: it cannot be written.
     """
-    if not str(path) or "\0" in str(path):
-        raise UsageError(f'"{path}" cannot be written: it is not a file name.')
+    _check_name(path)
     try:
         with _opened(os.path.realpath(path)) as stream:
             yield stream
@@ -52,13 +51,22 @@ def make_folder(path: str | Path) -> None:
     Raises:
         UsageError: it cannot be made.
     """
+    _check_name(path)
     try:
         Path(path).mkdir(parents=True, exist_ok=True)
     except FileExistsError:
         raise UsageError(f"{path}: a file is where a folder is needed. Name another.") from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise UsageError(f"{path}: cannot be written: {reason}.") from None
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be written: {error.strerror}.") from None
+
+
+def _check_name(path: str | Path) -> None:
+    try:
+        name = os.fsencode(path)
+    except UnicodeEncodeError:
+        name = b""
+    if not name or b"\0" in name:
+        raise UsageError(f'"{path}" cannot be written: it is not a file name.')
 
 
 def write_whole(path: str | Path, content: str | bytes) -> None:

@@ -42,3 +42,16 @@ def test_the_number_of_a_call_is_not_that_of_an_event(tmp_path: Path) -> None:
     numbered = [(r["phase"], r["serial"]) for r in made.records if r.get("serial") == 2]
     assert numbered == [("send", 2), ("transferred", 2), ("event", 2)], made.table()
     assert check(made.records, calling=["app"]) == []
+
+
+def test_an_end_of_which_records_do_not_show_whether_it_is_heard(tmp_path: Path) -> None:
+    unit = (
+        '<form id="f"><iu><field name="q" type="boolean"><prompt timeout="3s">Well?</prompt>'
+        '<noinput><reprompt/></noinput></field><on event="touch"><stop-moving/>'
+        "<speak>Hello, my friend.</speak></on></iu></form>"
+    )
+    late = '<when at="1s"><touch sensor="head"/></when><when at="4.2s"><say>no</say></when>'
+    made = rehearse(tmp_path, unit, late, policy="prima+x10")
+    (words,) = [one for one in made.records if one.get("event") == "speech"]
+    assert words["rule"] == "X10", made.table()
+    assert check(made.records, "prima+x10") == []

@@ -187,5 +187,11 @@ def test_a_folder_is_made_unless_it_is_there_and_never_where_a_file_is(tmp_path:
         make_folder(tmp_path / "file")
     with pytest.raises(UsageError, match="cannot be written: Not a directory"):
         make_folder(tmp_path / "file" / "c")
-    with pytest.raises(UsageError, match="cannot be written: embedded null byte"):
+    with pytest.raises(UsageError, match="cannot be written: it is not a file name"):
         make_folder("a\0b")
+
+
+@pytest.mark.parametrize("name", ["", "a\0b", "a\ud800b"])
+def test_what_cannot_name_a_file_is_refused(name: str) -> None:
+    with pytest.raises(UsageError, match="cannot be written: it is not a file name"):
+        write_whole(name, b"")
