@@ -99,20 +99,6 @@ def longest_of(unit: Node) -> int:
     return milliseconds(unit.get("longest"), LONGEST_UNIT_MS)
 
 
-def said_last(queue: Sequence[Queued]) -> Command | None:
-    """The last speech of a queue; None if something else follows it."""
-    last = queue[-1] if queue else None
-    return last if isinstance(last, Command) and last.type == "speak" else None
-
-
-def take_last_said(queue: list[Queued]) -> Command | None:
-    """Take the last speech off a queue, if nothing else follows it."""
-    last = said_last(queue)
-    if last is not None:
-        queue.pop()
-    return last
-
-
 def steps_of(queue: Sequence[Queued]) -> list[Step]:
     """The queue as one tree: each piece waits for all of the one before it (U3)."""
     made: list[Step] = []

@@ -10,11 +10,9 @@ from prima.interpreter.transfers import GoOut, Thrown
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json, Transferred
-from prima.voicexml.arranging import take_last_said
 from prima.voicexml.fetching import gathered
 from prima.voicexml.owner import MachineOwner
 from prima.voicexml.platform import uncalled
-from prima.voicexml.questions import open_to_answers
 from prima.voicexml.results import marked_and_recorded
 from prima.voicexml.state import Context, Flow, HungUp, Resume, TakenUtterance, thrown_outside
 
@@ -98,19 +96,19 @@ class Calls:
 
     def _announce(self, context: Context, call: Call) -> Flow:
         """Play what is queued; an utterance that a grammar takes meanwhile prevents the call."""
-        queue = self.owner.unqueue()
+        queue = self.owner.queue
         if not queue:
             return
         opened: list[Command] = []
-        last = take_last_said(queue) if call.listens else None
+        last = queue.take_last_said() if call.listens else None
         if last is not None:
-            last.cues = self.owner.content.question_cues(last, queue)
+            last.cues = queue.question_cues(last)
             question = self._question(context, call, "1ms", last)
             question.args["bargein"] = bool(last.hook)
-            opened = open_to_answers(queue, question)
-            queue.append(question)
+            opened = queue.open_to_answers(question)
+            queue.put(question)
         self.app.heard = None
-        resume = yield from self.app.waits.wait(queue, opened)
+        resume = yield from self.app.waits.wait(queue.take(), opened)
         self._note(call, resume)
 
     def _question(

@@ -140,7 +140,7 @@ class Events:
             lang = context.page.lang
             words = own_words(lang).items()
             said = next((text for one, text in words if takes(one, thrown.name)), "")
-            self.owner.say(said, lang, thrown.source)
+            self.owner.content.say(said, lang, thrown.source)
         elif takes("cancel", thrown.name):
             context.quiet = True
         elif isinstance(thrown, Unasked):

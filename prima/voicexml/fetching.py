@@ -122,7 +122,7 @@ def _asked(
     audio = "" if node.tag in WITHOUT_AUDIO else _setting(owner, node, "fetchaudio")
     if audio and not owner.gone:
         said = Command("speak", text=f"[{audio.rpartition('/')[2]}]", source=source(node))
-        queued = owner.unqueue()
+        queued = owner.queue.take()
         yield from owner.app.waits.pass_time(queued, [said])
     return (yield from owner.app.waits.fetched())
 

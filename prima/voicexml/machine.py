@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Sequence
 
 from prima.interpreter.selection import Counters
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, thrown_of
@@ -20,8 +20,8 @@ from prima.voicexml.items import Items
 from prima.voicexml.owner import VoiceApplication
 from prima.voicexml.platform import NO_CHOICES
 from prima.voicexml.questions import Questions
+from prima.voicexml.queue import PromptQueue
 from prima.voicexml.scopes import Documents
-from prima.voicexml.settings import answering
 from prima.voicexml.speech import Speech
 from prima.voicexml.state import (
     Context,
@@ -53,10 +53,7 @@ class Machine:
         """Resources of grammars that are not files, once they have been fetched."""
         self.hosted: dict[str, str] = {}
         """Names and URIs that a real host, not a service, has answered, and where it did."""
-        self.queue: list[Queued] = []
-        """Prompts and Commands that are played when a wait is reached (4.1.8)."""
-        self.asking: Mapping[str, str] | None = None
-        """How the last prompt queued may be answered: its timeout and bargein count."""
+        self.queue = PromptQueue()
         self.reprompted = False
         self.gone = ""
         """The event by which the user left: nothing is waited for any more (1.5.4)."""
@@ -73,19 +70,6 @@ class Machine:
         """The dialog that is active, by its name."""
 
     # For content --------------------------------------------------------------------
-
-    def say(self, text: str, lang: str, place: str, prompt: Node | None = None) -> None:
-        """Queue something to be said."""
-        if self.context is not None and (prompt is not None or text):
-            self.asking = answering(self.context, prompt)
-        if text:
-            self.app.count_output(len(text), self.document.node)
-            self.queue.append(Command("speak", text=text, lang=lang, source=place))
-
-    def unqueue(self) -> list[Queued]:
-        """The queue, to be played in a wait without a question."""
-        queue, self.queue, self.asking = self.queue, [], None
-        return queue
 
     def local(self) -> Scope:
         """A new anonymous scope."""
@@ -316,7 +300,7 @@ class Machine:
 
     def play(self) -> Flow:
         """Play what is queued and wait until it has been said."""
-        resume = yield from self.wait(self.unqueue())
+        resume = yield from self.wait(self.queue.take())
         if resume.event is not None:
             raise thrown_outside(resume)
 
@@ -324,7 +308,6 @@ class Machine:
         self, commands: Sequence[Queued], open_to_answers: Sequence[Command] = ()
     ) -> Generator[None, Resume, Resume]:
         """Wait for the end of Commands; without a user the application ends (1.5.4)."""
-        self.queue = []
         if self.gone:
             raise GoOut(self.gone)
         return (yield from self.app.waits.wait(commands, open_to_answers))

@@ -8,17 +8,18 @@ machine, and the application that owns it by what is here alone.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Sequence
 from typing import Protocol
 
 from prima.interpreter.protocol import App
 from prima.interpreter.transfers import Thrown
 from prima.markup.tree import Node
-from prima.messages import Command, Cue, Data, Event, Json
+from prima.messages import Command, Data, Event, Json
 from prima.script.evaluation import Scope
 from prima.script.isolated import AnyEngine
 from prima.voicexml.arranging import Queued
 from prima.voicexml.document import Page, VoiceDocument
+from prima.voicexml.queue import PromptQueue
 from prima.voicexml.speech import Speech
 from prima.voicexml.state import Context, Flow, Resume, TakenUtterance, UriRequest
 from prima.voicexml.waits import Waits
@@ -76,8 +77,8 @@ class VoiceContentRunner(Protocol):
     def data(self, node: Node, scope: Scope, context: Context, local: Scope) -> Flow:
         """Fetch data (VoiceXML 2.1, 5)."""
 
-    def question_cues(self, asked: Command | None, before: Sequence[Queued]) -> tuple[Cue, ...]:
-        """The cues of a question."""
+    def say(self, text: str, lang: str, place: str) -> None:
+        """Queue something to be said."""
 
 
 class ListeningGrammars(Protocol):
@@ -186,10 +187,8 @@ class MachineOwner(Protocol):
     """Resources of grammars that are not files, once they have been fetched."""
     hosted: dict[str, str]
     """Names and URIs that a real host, not a service, has answered, and where it did."""
-    queue: list[Queued]
+    queue: PromptQueue
     """Prompts and Commands that are played when a wait is reached (4.1.8)."""
-    asking: Mapping[str, str] | None
-    """How the last prompt queued may be answered."""
     reprompted: bool
     gone: str
     """The event by which the user left."""
@@ -234,12 +233,6 @@ class MachineOwner(Protocol):
         """Handles its events."""
 
     # What is queued and waited for:
-
-    def say(self, text: str, lang: str, place: str, prompt: Node | None = None) -> None:
-        """Queue something to be said."""
-
-    def unqueue(self) -> list[Queued]:
-        """The queue, to be played in a wait without a question."""
 
     def enumeration(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
         """Read an enumerate (2.2.4)."""

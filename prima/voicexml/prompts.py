@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from urllib.parse import urldefrag
 
 from prima.interpreter.acts import arrange
@@ -11,13 +11,13 @@ from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Step
 from prima.script.evaluation import Scope
-from prima.voicexml.arranging import ARRANGING, Arranged, Queued, longest_of, said_last, type_of
-from prima.voicexml.cues import MAX_CUES, MAX_NAME, later
+from prima.voicexml.arranging import ARRANGING, Arranged, longest_of, type_of
+from prima.voicexml.cues import MAX_NAME
 from prima.voicexml.document import FetchError, Page, of_web
 from prima.voicexml.elements import SILENT
 from prima.voicexml.evaluating import WORD, VoiceEvaluator
 from prima.voicexml.owner import MachineOwner
-from prima.voicexml.settings import setting
+from prima.voicexml.settings import answering, setting
 from prima.voicexml.speech import Speech, language_of, read_markup
 from prima.voicexml.state import Context
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
@@ -39,8 +39,6 @@ class Speaker(VoiceEvaluator):
         super().__init__(owner)
         self.mark: str | None = None
         """The last mark queued, for devices that report none (VoiceXML 2.1, 4)."""
-        self.ahead: tuple[Cue, ...] = ()
-        """Pauses and marks not yet followed by speech."""
         self._known: dict[str, int | None] = {}
 
     def prompt(self, node: Node, context: Context, local: Scope) -> None:
@@ -50,44 +48,15 @@ class Speaker(VoiceEvaluator):
 
     def utter(self, node: Node, context: Context, local: Scope) -> None:
         """Queue a prompt's speech without checking its condition."""
-        speech = self.read_whole(node, context, local)
-        text, cues = speech.take()
-        self.owner.say(text, speech.lang, speech.place, node)
-        self.add(text, cues)
+        self.flush(self.read_whole(node, context, local), node)
         self.note_bargein(context, node.get("bargein"))
 
     def note_bargein(self, context: Context, own: str = "") -> None:
         """Note whether the user may break in on what has just been queued (4.1.5, 6.3.2).
 
-        A Command is not a prompt: it is always carried out. ``own`` is the prompt's attribute.
+        ``own`` is the prompt's attribute.
         """
-        for command in self.owner.queue:
-            if command.hook is None:
-                said = command.type == "speak"
-                command.hook = said and (own or setting(context, "bargein")) != "false"
-
-    def add(self, text: str, cues: tuple[Cue, ...]) -> None:
-        """Give a text that has just been queued its cues.
-
-        Where there was none, pauses and marks go behind what is said before, or ahead of what
-        will be said next.
-        """
-        queue = self.owner.queue
-        last = said_last(queue)
-        if last is not None and text:
-            cue_up(last, (*self.ahead, *cues))
-            self.ahead = ()
-        elif last is not None and cues and len(last.cues) < MAX_CUES:
-            cue_up(last, (*last.cues, *later(cues, len(last.text or ""))))
-        elif last is None and len(self.ahead) < MAX_CUES:
-            self.ahead += later(cues, 0)
-
-    def question_cues(self, asked: Command | None, before: Sequence[Queued]) -> tuple[Cue, ...]:
-        """The cues of a question: those of its prompt, and those of its own."""
-        marked = any(cue.kind == "mark" for one in before for cue in one.cues)
-        earlier = (Cue(0, "earlier"),) if marked else ()
-        own, self.ahead = (asked.cues if asked is not None else self.ahead), ()
-        return (*earlier, *own)
+        self.owner.queue.note_bargein((own or setting(context, "bargein")) != "false")
 
     @staticmethod
     def lang(node: Node, context: Context) -> str:
@@ -108,11 +77,25 @@ class Speaker(VoiceEvaluator):
             self.read(item, context, local, speech)
         return speech
 
-    def flush(self, speech: Speech) -> None:
-        """Queue what has been read."""
+    def flush(self, speech: Speech, prompt: Node | None = None) -> None:
+        """Queue what has been read, of a prompt or between prompts."""
         text, cues = speech.take()
-        self.owner.say(text, speech.lang, speech.place)
-        self.add(text, cues)
+        self.owner.app.count_output(len(text), self.owner.document.node)
+        self.say(text, speech.lang, speech.place, cues, prompt)
+
+    def say(
+        self,
+        text: str,
+        lang: str,
+        place: str,
+        cues: tuple[Cue, ...] = (),
+        prompt: Node | None = None,
+    ) -> None:
+        """Queue speech, and how it may be answered."""
+        context, queue = self.owner.context, self.owner.queue
+        if context is not None and (prompt is not None or text):
+            queue.answering = answering(context, prompt)
+        queue.say(text, lang, place, cues)
 
     def read_all(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
         """Read an element's content."""
@@ -226,11 +209,11 @@ class Speaker(VoiceEvaluator):
     def enqueue(self, node: Node, context: Context, local: Scope, lang: str = "") -> None:
         """Queue a Command of PRIMA's namespace, or several that are arranged."""
         if node.tag not in ARRANGING:
-            self.owner.queue.append(self.command(node, context, local, lang))
+            self.owner.queue.put(self.command(node, context, local, lang))
             return
         steps = self.steps([node], lambda one: self.command(one, context, local, lang))
         if steps:
-            self.owner.queue.append(Arranged(steps))
+            self.owner.queue.put(Arranged(steps))
 
     def steps(self, nodes: list[Node], make: Maker) -> list[Step]:
         """Commands and units of them, one after another but for branches (U3)."""
@@ -267,13 +250,4 @@ class Speaker(VoiceEvaluator):
         self.owner.app.count_output(len(said), node)
         made = Command(name, args, said or None, lang=speech.lang)
         made.source = source(node)
-        if said:
-            cue_up(made, (*self.ahead, *cues))
-            self.ahead = ()
-        return made
-
-
-def cue_up(command: Command, cues: tuple[Cue, ...]) -> None:
-    """Give a Command its cues. By marks the author says from where it can go on (X2)."""
-    command.cues = cues
-    command.restartable = command.type == "speak" and any(cue.kind == "mark" for cue in cues)
+        return self.owner.queue.cued(made, cues) if said else made

@@ -10,7 +10,6 @@ from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json
 from prima.messages import Heard as Spoken
-from prima.voicexml.arranging import Arranged, Queued, take_last_said
 from prima.voicexml.fetching import gathered
 from prima.voicexml.owner import MachineOwner
 from prima.voicexml.settings import answering, setting
@@ -29,21 +28,21 @@ class Questions:
         # A grammar that cannot be used is reported before anything is said.
         yield from gathered(owner, lambda: owner.inputs.activate(context))
         owner.items_of.recorder.check(context, item)
-        asked = take_last_said(owner.queue)
+        asked = owner.queue.take_last_said()
         question = self._question(context, item, asked)
         if item.tag == "record":
             owner.items_of.recorder.prepare(item, question)
         owner.app.heard = None
         owner.items_of.forget_results(context)
-        opened = [] if item.tag == "record" else open_to_answers(owner.queue, question)
-        resume = yield from owner.wait([*owner.queue, question], opened)
+        opened = [] if item.tag == "record" else owner.queue.open_to_answers(question)
+        resume = yield from owner.wait([*owner.queue.take(), question], opened)
         yield from self._answered(context, item, resume)
 
     def _question(self, context: Context, item: Node, asked: Command | None) -> Command:
         """The question made of an item's last prompt (4.1.5, 4.1.7)."""
-        wanted, self.owner.asking = self.owner.asking or answering(context), None
+        wanted = self.owner.queue.answering or answering(context)
         timeout, bargein = milliseconds(wanted["timeout"], 5000), wanted["bargein"] != "false"
-        cues = self.owner.content.question_cues(asked, self.owner.queue)
+        cues = self.owner.queue.question_cues(asked)
         cues = (*self._cues(context, item, bargein and wanted["bargeintype"] == "hotword"), *cues)
         own = item.get("xml:lang") if item.tag != "menu" else ""
         lang = asked.lang if asked and asked.lang else own or context.page.lang
@@ -101,22 +100,3 @@ class Questions:
         heard.mark = self.owner.app.marked
         heard.take_mark(data)
         self.owner.items_of.remember(context, heard)
-
-
-def open_to_answers(queue: list[Queued], question: Command) -> list[Command]:
-    """The part of the queue before a question during which it may be answered (4.1.5).
-
-    Those are the last prompts: an answer ends the wait, and what may not be broken in on is
-    to be said before. They get the cues that an answer needs.
-    """
-    found: list[Command] = []
-    longest = tuple(cue for cue in question.cues if cue.kind == "longest")
-    for index in reversed(range(len(queue) if question.args["bargein"] else 0)):
-        command = queue[index]
-        if isinstance(command, Arranged) or not command.hook:
-            break
-        marked = any(cue.kind == "mark" for one in queue[:index] for cue in one.cues)
-        earlier = (Cue(0, "earlier"),) if marked else ()
-        command.cues = (*longest, *earlier, *command.cues)
-        found.append(command)
-    return found

@@ -149,7 +149,7 @@ INSIDE = {
             *("variablenames", "vocabulary"),
         },
         {"arranging", "speech"},
-        {"acting", "checks"},
+        {"acting", "checks", "queue"},
         {"document"},
         {"access", "listening", "matching", "sketch", "state", "variables"},
         {"results", "settings", "sketched", "waits"},
