@@ -26,7 +26,7 @@ demo: $(VENV)/.runtime
 test: $(VENV)/.dev
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
-# Drivers against the second parties of tests/parties, each in an environment of its own. They mostly
+# Drivers against the second parties of tests/parties, and the oldest libraries, each in an environment of its own. They mostly
 # wait, so each file has a worker.
 test-live: $(VENV)/.dev
 	$(BIN)/python -m tools.environments

@@ -1,4 +1,4 @@
-"""Environments of the second parties that drivers are tried against: ``python -m tools.environments NAME...``.
+"""Environments of tests: second parties of drivers, the oldest libraries: ``python -m tools.environments NAME...``.
 
 Each folder of ``tests/parties`` with a ``requirements.txt`` has one, in ``.environments``: Python
 with PRIMA's own requirements and those, and the Debian packages that its ``apt.txt`` names. An
