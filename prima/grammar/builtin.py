@@ -24,10 +24,10 @@ YES = {  # by language; without one, all count
     "|of course|ok|okay|correct|right|thats right|thats correct|that is right|that is correct"
     "|true|affirmative|absolutely|definitely|certainly|uh huh|i do|it is",
     "ja": "はい|ええ|うん|そうです|お願いします|はいお願いします|もちろん",
-    "fr": "oui|ouais|daccord|bien sûr",
-    "de": "ja|jawohl|genau|natürlich|richtig",
-    "es": "sí|si|claro|por supuesto",
-    "it": "sì|si|certo",
+    "fr": "oui|ouais|oui merci|oui sil vous plaît|oui sil te plaît|volontiers|avec plaisir|daccord|bien sûr",
+    "de": "ja|ja bitte|ja gern|ja gerne|gern|gerne|jawohl|klar|ja klar|genau|natürlich|richtig|stimmt",
+    "es": "sí|si|sí por favor|si por favor|sí gracias|si gracias|claro|por supuesto",
+    "it": "sì|si|sì grazie|si grazie|sì per favore|si per favore|certo|volentieri",
 }
 NO = {
     "en": "no|nope|nah|no thanks|no thank you|no i dont|no i do not|no it isnt|no it is not|no sir"
