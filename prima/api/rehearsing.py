@@ -122,15 +122,17 @@ def _unfinished(rehearsal: Rehearsal) -> list[str]:
     there = [name for name, app in rehearsal.session.apps.items() if not app.over]
     refused = rehearsal.session.hearing.refused
     return [
-        f"{name} is {_doing(memory.apps[name], name in owed)}{_refusing(refused.get(name, ''))}"
+        f"{name} is {_doing(memory.apps[name], name in owed)}"
+        f"{_refusing(memory.apps[name], *refused.get(name, ('', '')))}"
         for name in there
         if name in memory.apps
     ]
 
 
-def _refusing(words: str) -> str:
-    """The remark that an application's question does not take an answer."""
-    return f', and does not take the answer "{words}"' if words else ""
+def _refusing(app: Application, place: str, words: str) -> str:
+    """The remark that the question at this place, if it is asked now, does not take an answer."""
+    asked = {ab.command.source for ab in app.members.values() if ab.command is not None}
+    return f', and does not take the answer "{words}"' if words and place in asked else ""
 
 
 def _doing(app: Application, owed: bool) -> str:

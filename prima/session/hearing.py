@@ -22,8 +22,9 @@ class Hearing:
         self.wiring = wiring
         self.unheard = ""
         """The user's latest words that nobody took."""
-        self.refused: dict[str, str] = {}
-        """The latest answer that each application's question did not take, until it takes one."""
+        self.refused: dict[str, tuple[str, str]] = {}
+        """The latest answer that each application's question did not take, until one is taken: the
+        question's place in the document, and the words."""
         self._late_answers = late_answers
         self._lapsed: tuple[str, int] | None = None
         """The application whose question was the latest to time out, and when it did (X10)."""
@@ -111,11 +112,12 @@ class Hearing:
     def _refuse(self, question: Behavior, value: Heard) -> None:
         """Words that nobody has taken are the question's nomatch; with a hotword it listens on."""
         cues = question.command.cues if question.command is not None else ()
+        place = question.command.source if question.command is not None else ""
         hotword = next((cue for cue in cues if cue.kind == "hotword"), None)
         if hotword is None or (
             hotword.value and self.wiring.apps.named[question.app.name].heeds(value.text)
         ):
-            self.refused[question.app.name] = value.text
+            self.refused[question.app.name] = place, value.text
             data = {"outcome": "nomatch", "utterance": value.text, **value.data}
             self._conclude(question.id, data)
 

@@ -56,3 +56,20 @@ def test_a_question_that_does_not_take_an_answer_is_reported(
     done = prima("run", tmp_path / "s.xml")
     stopped = 'The run was stopped at 20 s, the scenario\'s until: ask is asking "Tea or coffee?"'
     assert f"{stopped}{told}\n" in done.stderr
+
+
+def test_an_answer_that_another_question_did_not_take_is_not_reported(tmp_path: Path) -> None:
+    (tmp_path / "ask.xml").write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="ask"><form id="f">'
+        '<field name="drink"><prompt>Tea or coffee?</prompt><option>tea</option>'
+        '<nomatch><assign name="drink" expr="0"/></nomatch></field>\n'
+        '<field name="food"><prompt>Cake or pie?</prompt><option>pie</option></field>'
+        "</form></prima>"
+    )
+    (tmp_path / "s.xml").write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" until="20s"'
+        f' world="{DOCUMENTS}/worlds/museum.xml" robot="{DOCUMENTS}/robots/papero.xml">'
+        '<robot at="entrance"/><application src="ask.xml"/><answer to="Tea">juice</answer></scenario>'
+    )
+    done = prima("run", tmp_path / "s.xml")
+    assert done.stderr.endswith('ask is asking "Cake or pie?".\n')
