@@ -323,8 +323,11 @@ class Observer:
 
 
 def _speaks(request: Entry) -> bool:
-    """Whether an AB speaks: a unit has the speaker from its start, but its parts speak."""
-    return "speaker" in request.devices and request.command != "iu"
+    """Whether an AB says something.
+
+    A unit has the speaker from its start, but its parts speak; a question may only listen.
+    """
+    return bool(request.text) and "speaker" in request.devices and request.command != "iu"
 
 
 def _reacts(tree: PerceivedStream, request: Entry) -> bool:

@@ -113,6 +113,21 @@ def test_a_unit_speaks_only_where_something_in_it_does(
     assert seen(with_unit(*inside)).wordless == count
 
 
+@pytest.mark.parametrize(("words", "count"), [("Tea?", 1), (None, 0)])
+def test_a_question_that_only_listens_says_nothing(words: str | None, count: int) -> None:
+    """As after a nomatch whose handler does not ask again."""
+    stage = Stage("fair")
+    stage.request("ea", say("One."), say("Two."))
+    stage.select()
+    stage.request("fa", Command("q-and-a", text=words))
+    stage.at(100).end("ea#1")
+    assert stage.select() == ["fa#1"]
+    stage.at(200).end("fa#1", outcome="noinput")
+    assert stage.select() == ["ea#2"]
+    found = seen(stage)
+    assert (found.wordless, found.broken) == (count, 1)
+
+
 def test_a_unit_that_reacts_takes_up_no_topic() -> None:
     """Its Commands carry no cause, as the whole unit is the reaction."""
     stage = with_unit(say("Hello."))
