@@ -72,6 +72,8 @@ def _news(news: News) -> News | None:
         case Narrated():
             _check_actor(news.actor, NARRATED)
             return Narrated(news.actor, _short(news.text))
+    if not isinstance(news, News):
+        raise TypeError(f"a driver reports {one_of(kind.__name__ for kind in get_args(News))}")
     return news
 
 
