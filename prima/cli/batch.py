@@ -12,10 +12,10 @@ import click
 from click.exceptions import Exit
 
 from prima.cli import common
-from prima.cli.common import clean, coloured, put, tell
+from prima.cli.common import coloured, put, tell, tell_line
 from prima.cli.progress import ProgressBar
 from prima.errors import UsageError, counted
-from prima.errors.visible import escaped
+from prima.errors.visible import escaped, visible
 from prima.experiments.batch import run_batch
 from prima.experiments.plan import BatchPlan, BatchRow, Options
 from prima.experiments.rows import format_counts, format_head, format_row, row_data
@@ -108,8 +108,10 @@ class _Table:
             text = text.encode(errors="replace").decode()  # of names that are not UTF-8
             click.echo(escaped(text))
         else:
-            text = clean(format_row(row, self.wide))
+            text = visible(format_row(row, self.wide))
             click.echo(f"\033[31m{text}\033[0m" if row.exit and coloured() else text)
         run = f"{row.scenario}, {row.policy}" if row.policy else row.scenario
         for message in row.messages:
-            tell(f"prima: {message if message.startswith(row.scenario) else f'{run}: {message}'}")
+            tell_line(
+                f"prima: {message if message.startswith(row.scenario) else f'{run}: {message}'}"
+            )

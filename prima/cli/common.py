@@ -217,12 +217,17 @@ def tell(text: str) -> None:
         click.echo(clean(text), err=True)
 
 
+def tell_line(text: str) -> None:
+    """Print a message to stderr as one line, though a name that it quotes may have several."""
+    tell(visible(text))
+
+
 def tell_problems(problems: list[Problem]) -> None:
     """Print the errors and warnings of a run's documents."""
     from prima.markup.limits import LIMITS
 
     for problem in listed([one for one in problems if one.severity != "note"], LIMITS.problems):
-        tell(str(problem))
+        tell_line(str(problem))
 
 
 def tell_cut(*transcripts: Transcript) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from prima.cli.common import tell
+from prima.cli.common import tell, tell_line
 from prima.errors import DocumentError, MissingFile, RunError, UsageError, brief, listed
 
 FINE, PROBLEMS, USAGE, RUN, INTERRUPTED = 0, 1, 2, 3, 130
@@ -40,7 +40,7 @@ def _message(code: int, text: str = "") -> Callable[[Any], int]:
     """A handler that prints a text, by default that of the exception."""
 
     def handle(error: BaseException) -> int:
-        tell(f"prima: {brief(text or str(error), LONGEST)}")
+        tell_line(f"prima: {brief(text or str(error), LONGEST)}")
         return code
 
     return handle
@@ -59,7 +59,7 @@ def in_words(error: UsageError) -> str:
 
 
 def _usage_error(error: UsageError) -> int:
-    tell(f"prima: {brief(in_words(error), LONGEST)}")
+    tell_line(f"prima: {brief(in_words(error), LONGEST)}")
     return USAGE
 
 

@@ -29,6 +29,7 @@ from prima.cli.common import (
     policy_option,
     raise_limits,
     tell,
+    tell_line,
     tell_problems,
     why_option,
     write_for_programs,
@@ -165,7 +166,7 @@ def _run(visit: Visit, why: bool, as_json: bool) -> None:
     visit.run(sink, lambda text: tell(f"prima: {text}"))
     session = visit.loop.session
     for failure in session.failures:
-        tell(f"prima: {failure}")
+        tell_line(f"prima: {failure}")
     if visit.stopped:
         journal = visit.journal
         if journal is not None and os.path.exists(journal.path) and not visit.settings.redact:

@@ -30,6 +30,7 @@ from prima.cli.common import (
     put,
     raise_limits,
     tell,
+    tell_line,
     tell_problems,
     why_option,
     workers_option,
@@ -246,7 +247,7 @@ def _report_end(transcript: Transcript) -> None:
         from prima.experiments.batch import told_failure
 
         for failure in transcript.failures:
-            tell(f"prima: {told_failure(failure)}")
+            tell_line(f"prima: {told_failure(failure)}")
     if transcript.outcome == "limit":
         raise RunError(TOO_MUCH)
     if transcript.failures:

@@ -22,9 +22,11 @@ from prima.cli.common import (
     put,
     raise_limits,
     tell,
+    tell_line,
 )
 from prima.cli.failures import in_words, whoever_reads
 from prima.errors import Problem, UsageError, listed, one_of
+from prima.errors.visible import visible
 from prima.markup.limits import LIMITS
 
 WATCH_SECONDS = 0.3
@@ -121,7 +123,7 @@ def _check(
     with whoever_reads():
         _show([one for one in problems if notes or one.severity != "note"], form)
     for message in unread:
-        tell(f"prima: {message}")
+        tell_line(f"prima: {message}")
     counts = Counter(problem.severity for problem in problems)
     if form in ("text", "short") and not unread:
         tell(f"files: {len(names)}; {_counts(counts['error'], counts['warning'])}")
@@ -187,7 +189,7 @@ def _show(every: list[Problem], form: str) -> None:
             click.echo(render(problem, lines, coloured()), color=coloured())
     else:
         for problem in problems:
-            put(str(problem))
+            put(visible(str(problem)))
 
 
 def _watch(files: tuple[str, ...], form: str, notes: bool, maps: tuple[str, ...]) -> None:

@@ -28,7 +28,7 @@ def render(problem: Problem, lines: Lines, colour: bool = False) -> str:
     def paint(text: str, style: str) -> str:
         return f"\033[{style}m{text}\033[0m" if colour else text
 
-    sentence = visible(f"{message} {remedy}" if remedy else message, "\n")
+    sentence = visible(f"{message} {remedy}" if remedy else message)
     head = (
         f"{paint(visible(str(place)), '1')}: {paint(severity, '1;' + COLOURS[severity])}: {sentence}"
         f" {paint(f'[{code}]', '2')}"

@@ -238,7 +238,7 @@ class Server(LanguageServer):
         problem = one.problem
         return lsp.Diagnostic(
             self.range(lines, one.start, one.end),
-            visible(f"{problem.message} {problem.remedy}".strip(), "\n"),
+            visible(f"{problem.message} {problem.remedy}".strip()),
             SEVERITIES[problem.severity],
             problem.code,
             source="prima",

@@ -240,3 +240,25 @@ def test_no_text_in_the_data_of_a_page_turns_others() -> None:
 
     data = {"runs": [["a", {"by\u2066": "x\u202ey\x1b"}, 1.5, None, True]]}
     assert json_text(data) == '{"runs":[["a",{"by\ufffd":"x\ufffdy\ufffd"},1.5,null,true]]}'
+
+
+def test_no_name_or_message_begins_a_line_of_its_own(tmp_path: Path) -> None:
+    """A program that reads a line for each problem finds no problem that PRIMA has not told."""
+    fake = "evil.xml:1:1: error: fake"
+    head = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="x"><form id="a"><block>'
+    end = "</block></form></prima>"
+    wrong, thrown = tmp_path / "wrong.xml", tmp_path / f"a\n{fake}.xml"
+    wrong.write_text(f'{head}<goto next="#b&#10;{fake}"/>{end}', encoding="utf-8")
+    thrown.write_text(f'{head}<throw event="x" message="b&#10;{fake}"/>{end}', encoding="utf-8")
+    told = [
+        prima("validate", wrong, "--format", "short"),
+        prima("validate", wrong, thrown, tmp_path / f"gone\n{fake}.xml"),
+        prima("run", "--ea", wrong),
+        prima("show", thrown),
+        prima("run", thrown, thrown, "-o", tmp_path / "runs"),
+    ]
+    thrown.rename(tmp_path / "thrown.xml")
+    told.append(prima("run", "--ea", tmp_path / "thrown.xml"))
+    for done in told:
+        assert fake in done.stdout + done.stderr
+        assert not [one for one in (done.stdout + done.stderr).splitlines() if one.startswith(fake)]
