@@ -53,3 +53,37 @@ TO_B = '<goto next="#b"/>'
 )
 def test_a_question_that_nothing_asks_the_first_time_is_told(body: str, told: int) -> None:
     assert warned(body, "nothing-to-say") == told
+
+
+OPTIONS = '<option value="tea">some tea</option><option>Coffee</option>'
+GRAMMAR = (
+    "<grammar><one-of><item>green tea <tag>green</tag></item><item>coffee</item></one-of></grammar>"
+)
+
+
+@pytest.mark.parametrize(
+    ("answers", "cond", "told"),
+    [
+        (OPTIONS, "x == 'tea' || x != 'Coffee'", 0),
+        (OPTIONS, "x == 'some tea'", 1),
+        (OPTIONS, "'coffee' !== x", 1),
+        (OPTIONS, "x == '' || x == '1' || x == y || x$.utterance == 'tee' || x == '\\x41'", 0),
+        (GRAMMAR, "x == 'green' || x == 'Coffee'", 0),
+        (GRAMMAR, "x == 'green tea'", 1),
+        ('type="boolean"', "x == 'yes'", 1),
+        ('type="boolean"', "x === 'true' &amp;&amp; x != 'no'", 2),
+        ('type="boolean"', "x == true || x == '1'", 0),
+        ('type="number"', "x == 'one'", 0),
+        ('type="text"', "x == 'one'", 0),
+        (f"{OPTIONS}<nomatch><assign name='x' expr='1'/></nomatch>", "x == 'none'", 0),
+        (f"{OPTIONS}<filled><script>x = 'none'</script></filled>", "x == 'none'", 0),
+        (f'expr="null">{OPTIONS}', "x == 'none'", 0),
+    ],
+)
+def test_a_comparison_with_what_no_answer_gives_is_told(answers: str, cond: str, told: int) -> None:
+    start = answers if answers[:1] != "<" else f">{answers}"
+    start += "" if ">" in start else ">"
+    field = f'<field name="x" {start}<prompt>Tea?</prompt><noinput><exit/></noinput></field>'
+    content = '<block><var name="y"/></block>{}<block><exit/></block>'
+    asked = f'<block cond="{cond}"><speak>Good.</speak></block>'
+    assert warned(form("a", field + content.format(asked)), "never-equal") == told
