@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from time import monotonic
 from types import FrameType
+from typing import Any
 
 BLOCKED_S = 1.0
 """How long the event loop may take to handle a signal; after that the next one aborts it."""
@@ -46,8 +47,15 @@ def heeding_signals(stop: Callable[[], object]) -> Iterator[None]:
             stops = True
             raise KeyboardInterrupt(_told(frame))
 
+    running.set_exception_handler(_tell_defects)
     with handling_signals(hear):
         yield
+
+
+def _tell_defects(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """Report what a task failed with that nobody awaits, but not that the loop was aborted."""
+    if not isinstance(context.get("exception"), KeyboardInterrupt):
+        loop.default_exception_handler(context)
 
 
 @contextmanager

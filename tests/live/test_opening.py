@@ -162,6 +162,7 @@ def test_a_second_signal_ends_a_run_that_a_driver_blocks(check: list[str], stage
     assert run.returncode == 130, told
     assert f"drivers.py:{line}. Drivers must wait with await." in told
     assert "well is safe" in told
+    assert "Traceback" not in told
     assert "Go on with" not in told
     assert not (stage / "visit.jsonl").exists()
 
