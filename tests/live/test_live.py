@@ -264,6 +264,11 @@ def test_wrong_usage_is_told_with_exit_code_2(words: list[str], told: str) -> No
             "from prima.live.driver import TaskDriver\nclass Mine(TaskDriver): kind = 5",
             "d.py: it defines no Driver with a kind.",
         ),
+        (
+            "from prima.live.driver import TaskDriver\nclass Mine(TaskDriver):\n kind = 'mine'\n"
+            " async def hears(self, takes): pass",
+            "d.py: nobody awaits Mine.hears: write def hears, without async.",
+        ),
         (None, "d.py: cannot be read: it is not a file."),
     ],
 )

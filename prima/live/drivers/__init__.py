@@ -12,7 +12,7 @@ from pathlib import Path
 from types import ModuleType
 
 from prima.errors import UsageError, did_you_mean, one_of
-from prima.live.driver import Driver
+from prima.live.driver import Driver, TaskDriver
 
 GROUP = "prima.drivers"
 """The entry points by which other packages offer drivers: the kind, and the class."""
@@ -65,7 +65,20 @@ def drivers_in(file: str) -> list[type[Driver]]:
     found = [one for one in drivers if isinstance(one.kind, str) and one.kind]
     if not found:
         raise UsageError(f"{file}: it defines no Driver with a kind.")
+    for one in found:
+        if name := _unawaited(one):
+            raise UsageError(
+                f"{file}: nobody awaits {one.__name__}.{name}: write def {name}, without async."
+            )
     return found
+
+
+def _unawaited(driver: type[Driver]) -> str:
+    """The name of a coroutine in the place of a plain method of all drivers, if there is one."""
+    plain = [name for name, _ in inspect.getmembers(TaskDriver, inspect.isfunction)]
+    plain = [one for one in plain if not inspect.iscoroutinefunction(getattr(TaskDriver, one))]
+    wrong = (one for one in plain if inspect.iscoroutinefunction(getattr(driver, one, None)))
+    return next(wrong, "")
 
 
 def _imported(path: Path, file: str) -> ModuleType:
