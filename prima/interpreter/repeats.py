@@ -37,6 +37,7 @@ OWN = (
     "emergency",
 )
 """Prefixes of events that the application causes itself, or that end everything."""
+LOST = "human.lost"
 MOST_FOUND = 5_000
 """Maximum number of repetitions searched for: a list of problems ends long before."""
 STEPS_OF_AN_ITEM = 20
@@ -74,7 +75,8 @@ def told_twice(sources: Sequence[EnteredDocument], remedy: str = REMEDY) -> Iter
     """Warn of handlers that leave a state and come back to what it says or asks.
 
     An event may come while that is being said. Where the user has been asked something else on
-    the way back, or the state waits for another event, the repetition is intended.
+    the way back, or the state waits for another event, the repetition is intended. So is a question
+    asked anew because its user has gone.
 
     Args:
         sources: the documents of an application.
@@ -82,7 +84,8 @@ def told_twice(sources: Sequence[EnteredDocument], remedy: str = REMEDY) -> Iter
     """
     ways = Ways(sources)
     backs = chain.from_iterable(_Leavings(source, ways).back() for source in sources)
-    found = [*islice(backs, MOST_FOUND)]  # as many handlers may lead to each of as many forms
+    told = (one for one in backs if not (one.asks and one.event == LOST))
+    found = [*islice(told, MOST_FOUND)]  # as many handlers may lead to each of as many forms
     reported: set[int] = set()
     for one in sorted(found, key=lambda one: not one.certain):
         if one.certain or id(one.way.node) not in reported:  # one example of a guess will do

@@ -27,8 +27,9 @@ BACK = '<block><goto next="#a"/></block>'
         (ASKS.format('<on event="touch"><speak>Oh.</speak><goto next="#a"/></on>', ""), ""),
         ('<form id="a"><block><speak>Hi.</speak></block><on event="touch"><if cond="true"><goto next="#a"/></if></on></form>', ""),
         (ASKS.format("", ""), '<on event="message"><goto next="#b"/></on>' + THEN.format(BACK)),
+        ('<form id="a"><block><speak>Hi.</speak></block><on event="human.lost"><goto next="#a"/></on></form>', ""),
     ],
-    ids=["at once", "by way of another", "behind a Command", "a sentence", "of the document"],
+    ids=["at once", "by way of another", "behind a Command", "a sentence", "of the document", "to nobody"],
 )  # fmt: skip
 def test_what_an_event_makes_it_tell_twice_is_warned_of(first: str, then: str) -> None:
     (problem,) = told_twice_in(first + then)
@@ -42,6 +43,7 @@ def test_what_an_event_makes_it_tell_twice_is_warned_of(first: str, then: str) -
         (ASKS.format("", '<on event="touch"><gesture name="bow"/></on>'), ""),
         (ASKS.format("", '<on event="touch"><goto next="#b"/></on>'), THEN.format("")),
         (ASKS.format("<noinput><goto next='#a'/></noinput>", ""), ""),
+        (ASKS.format("", '<on event="human.lost"><goto next="#b"/></on>'), THEN.format(BACK)),
         (ASKS.format("", '<on event="touch"><goto next="#b"/></on>'),
          THEN.format('<field name="y" type="boolean"><prompt>So?</prompt></field>' + BACK)),
         (ASKS.replace("<prompt>", '<prompt cond="first">').format("", '<on event="touch"><goto next="#a"/></on>'), ""),
@@ -50,7 +52,7 @@ def test_what_an_event_makes_it_tell_twice_is_warned_of(first: str, then: str) -
         ('<form id="a"><block><send event="late" delay="9s"/><speak>Hi.</speak></block><on event="late"><goto next="#a"/></on></form>', ""),
         ('<form id="a"><block><move-head pan="9"/></block><on event="touch"><goto next="#a"/></on></form>', ""),
     ],
-    ids=["stays", "goes and waits", "own event", "asks between", "cond", "news", "asked for", "timer", "silent"],
+    ids=["stays", "goes and waits", "own event", "user gone", "asks between", "cond", "news", "asked for", "timer", "silent"],
 )  # fmt: skip
 def test_what_is_meant_to_be_told_again_is_not_warned_of(first: str, then: str) -> None:
     assert told_twice_in(first + then) == []
