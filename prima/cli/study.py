@@ -32,8 +32,9 @@ def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> N
     from prima.testing.finding import find
 
     chosen, results = find(scenarios) or [*map(str, situations())], []
-    total = len(chosen) * len(policies or ALL)
-    for result in run_study(chosen, policies or ALL):
+    each = list(dict.fromkeys(policies or ALL))
+    total = len(chosen) * len(each)
+    for result in run_study(chosen, each):
         results.append(result)
         if sys.stderr.isatty():
             click.echo(f"\r{len(results)} of {total} runs", err=True, nl=len(results) == total)

@@ -75,9 +75,20 @@ class Sweep:
         if not question.scenarios:
             raise UsageError("Name a scenario to run.")
         try:
+            self._check_scenarios(question)
             self._plan(question)
         except UsageError as error:
             raise question.placed(error) from None
+
+    def _check_scenarios(self, question: SweepQuestion) -> None:
+        """Refuse a scenario that is named twice: each of its runs would count twice."""
+        seen: dict[Path, str] = {}
+        for name in question.scenarios:
+            path = Path(name).resolve()
+            if path in seen:
+                also = f', as "{seen[path]}"' if seen[path] != name else ""
+                raise UsageError(f'The scenario "{name}" is there twice{also}.')
+            seen[path] = name
 
     def _plan(self, question: SweepQuestion) -> None:
         settings = ExperimentSettings(question.bound, question.patience, question.isolate)

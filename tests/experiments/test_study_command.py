@@ -42,7 +42,8 @@ def test_a_failed_application_is_marked_and_determines_the_exit_code(tmp_path: P
 def test_a_folder_stands_for_its_scenarios(tmp_path: Path) -> None:
     path = tmp_path / "app.xml"
     path.write_text(app('<form id="f"><block><exit/></block></form>'))
-    done = prima("study", tmp_path, scenario_of(path, tmp_path), "--policy", "fifo")
+    twice = ("--policy", "fifo", "--policy", "fifo")
+    done = prima("study", tmp_path, scenario_of(path, tmp_path), *twice)
     told = [line.split()[:2] for line in done.stdout.splitlines() if line]
     assert (done.returncode, told[1:]) == (0, [["s", "fifo"]])
     (tmp_path / "s.xml").unlink()

@@ -278,6 +278,14 @@ def test_the_function_of_python_gives_the_same_table() -> None:
         package.sweep([])
 
 
+def test_a_scenario_is_named_once() -> None:
+    """Its runs would count twice, in every mean and test."""
+    for again, also in (("visit.xml", ""), ("./visit.xml", ', as "visit.xml"')):
+        done = prima("sweep", "visit.xml", again, "-o", "t.csv")
+        told = f'prima: The scenario "{again}" is there twice{also}.\n'
+        assert (done.returncode, done.stderr) == (2, told)
+
+
 @pytest.mark.parametrize(
     ("given", "why"),
     [
