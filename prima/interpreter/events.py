@@ -28,6 +28,10 @@ from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
 NEVER_RAISED = UNKNOWN_EVENT.says("{wrong}", "Remove the handler.")
+NO_HELP = UNKNOWN_EVENT.says(
+    'Nothing raises an event "help" here: a user who says it is not understood.',
+    'Write <link event="help"><grammar>help</grammar></link>.',
+)
 NOT_ITS_OWN = UNKNOWN_EVENT.says(
     'A handler in a Command takes only its own events, not "{name}".',
     "Remove it, or write it in the form.",
@@ -208,6 +212,7 @@ class KnownEvents:
         """Whether a service or an event is named by an expression."""
         self.services = {name for _, name in self.asked}
         self._own = {one.name for one in self.raised}
+        self._helped = any("help" in beginnings(one) for one in self._own)
         self._known = {name for one in (*STANDARD, *self._own) for name in beginnings(one)}
         self._guesses = 0
         self._told: dict[str, tuple[str, str] | None] = {}
@@ -227,6 +232,8 @@ class KnownEvents:
                     place = event_place(handler.node, name)
                     hint = meant(nearest, Span.of(place, name))
                     found.append(NEVER_RAISED.at(place, hint, wrong=message))
+                elif name == "help" and not (self._helped or self.dynamic):
+                    found.append(NO_HELP.at(event_place(handler.node, name)))
         for handler, name, diagnosis in self._never_taken:
             if self._unraised(name) is None:
                 found.append(diagnosis.at(event_place(handler.node, name), name=name))

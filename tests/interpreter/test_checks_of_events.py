@@ -202,3 +202,19 @@ def test_a_misspelt_part_of_what_an_event_brings_is_told(
     )
     found = problems(tmp_path, text, "undeclared-variable")
     assert [one["severity"] for one in found] == ["warning"] * told
+
+
+@pytest.mark.parametrize(
+    ("raises", "told"),
+    [
+        ("", 1),
+        ('<link event="help"><grammar>help</grammar></link>', 0),
+        ('<link event="help.rooms"><grammar>rooms</grammar></link>', 0),
+        ('<on event="touch"><throw event="help"/></on>', 0),
+        ("""<on event="touch"><throw event-expr="'help'"/></on>""", 0),
+    ],
+)
+def test_help_that_nothing_raises_is_told(raises: str, told: int, tmp_path: Path) -> None:
+    """Other than in VoiceXML, where all applications may understand the word."""
+    text = app(f'<form id="f"><block><exit/></block></form><help><exit/></help>{raises}')
+    assert len(problems(tmp_path, text, "unknown-event")) == told
