@@ -18,14 +18,15 @@ from prima.markup.tree import Node
 MANY_STEPS = 200
 """Maximum number of steps of a run whose branches are compared."""
 BRACES = re.compile(r"\$?\{\{?\s*((\w+)(?:[.(\[][^{}]*?)?)\s*\}\}?")
+DOLLAR = re.compile(r"\$(([^\W\d]\w*))")
 OWN = ("event.", "session.", "sensor.")
 """Beginnings of values that the language itself gives."""
 
 LITERAL_VALUE = Diagnosis(
     "literal-value",
     "Variable's name said as text",
-    "A text holds a variable's name in braces, as other languages write a value. The robot says it"
-    ' as it is written; a value is written <value expr="..."/>.',
+    "A text holds a variable's name in braces or behind a dollar sign, as other languages write a"
+    ' value. The robot says it as it is written; a value is written <value expr="..."/>.',
     severity="warning",
     message='"{text}" is said as it is written.',
     remedy='Write <value expr="{name}"/>.',
@@ -40,7 +41,7 @@ ONE_AFTER_THE_OTHER = SHARED_DEVICE.says(
 
 
 def check_texts(facts: Facts) -> Iterator[Problem]:
-    """Warn of text with a variable in braces, the notation of other languages."""
+    """Warn of text with a variable in braces or behind "$", the notations of other languages."""
     for form, run in facts.acts.of(CommandRun):
         for command in run_commands(run.steps):
             yield from _literal(facts, command.node, command.text, form)
@@ -61,7 +62,9 @@ def _silent(prompt: Prompt) -> Iterator[Problem]:
 def _literal(facts: Facts, node: Node, text: Text | None, form: Form | None) -> Iterator[Problem]:
     known = facts.known_in(form) if form else facts.shared
     for part in text or ():
-        found = BRACES.search(part) if isinstance(part, str) and "{" in part else None
+        found = None
+        if isinstance(part, str) and ("{" in part or "$" in part):
+            found = BRACES.search(part) or DOLLAR.search(part)
         if found and (found[2] in known or found[1].startswith(OWN)):
             yield LITERAL_VALUE.at(node.place, text=found[0], name=found[1].replace('"', "'"))
 
