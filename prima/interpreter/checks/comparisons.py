@@ -46,10 +46,13 @@ MOST_CHECKED = 100
 
 def check_comparisons(facts: Facts) -> Iterator[Problem]:
     """Warn of conditions that compare a field's variable with what it never is."""
+    values: dict[int, set[str]] = {}  # by field, as a grammar may have very many
     for expr, start, field, text in islice(_compared(facts), MOST_CHECKED):
-        if not _possible(field, text):
+        if id(field) not in values:
+            values[id(field)] = _values(field)
+        if not _possible(field, text, values[id(field)]):
             span = Span.of(place_in(expr, start + 1), text)
-            hint = _remedy(field, text, span)
+            hint = _remedy(field, text, values[id(field)], span)
             yield NEVER_EQUAL.at(place_in(expr, start), hint, field=field.name, text=text)
 
 
@@ -128,9 +131,9 @@ def _sides(node: Node) -> tuple[Node, Node] | None:
     return (left, right) if (left.type, right.type) == ("identifier", "string") else None
 
 
-def _possible(field: Field, text: str) -> bool:
+def _possible(field: Field, text: str, values: set[str]) -> bool:
     """Whether some answer may give this value; where no grammar has a tag it is what is said."""
-    if "\\" in text or NUMERIC.fullmatch(text) or len(text) > LONGEST or text in _values(field):
+    if "\\" in text or NUMERIC.fullmatch(text) or len(text) > LONGEST or text in values:
         return True
     said = Answers(grammars=field.answers.grammars).match(text)
     return said is not None and fold(str(said)) == fold(text)
@@ -144,9 +147,8 @@ def _values(field: Field) -> set[str]:
     }
 
 
-def _remedy(field: Field, text: str, span: Span) -> Hint:
+def _remedy(field: Field, text: str, values: set[str], span: Span) -> Hint:
     if field.answers.type:
         return Hint(TRUE_OR_FALSE.format(field=field.name))
-    values = _values(field)
     plain = filter(PLAIN.fullmatch, values) if PLAIN.fullmatch(text) else ()
     return suggestion(text, plain, span) or Hint(f"It is {one_of(values, MOST)}.")
