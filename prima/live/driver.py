@@ -261,7 +261,7 @@ class TaskDriver(Driver):
             Refused: the robot does not do it.
             Unreachable: the robot cannot be reached any more.
         """
-        raise NotImplementedError
+        raise NotImplementedError(f"{type(self).__name__} has no method perform")
 
     def has_said(self, goal: Begin, characters: int) -> None:
         """Note how much of a goal's text has been said, to report if it is cancelled (X2)."""

@@ -6,6 +6,7 @@ import re
 import shlex
 from html import escape
 from pathlib import Path
+from unicodedata import combining, normalize
 
 from prima.devices.vocabulary.robot import ROBOT
 from prima.errors import DocumentError, UsageError, has_errors
@@ -54,7 +55,8 @@ def write(kind: str, name: str) -> list[Path]:
 
 def identifier(name: str, kind: str) -> str:
     """An id derived from a file's name, or the kind if no character of the name is allowed."""
-    made = re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-_") or kind
+    plain = "".join(one for one in normalize("NFKD", name) if not combining(one))
+    made = re.sub(r"[^A-Za-z0-9_-]+", "-", plain).strip("-_") or kind
     return f"{kind}-{made}" if made[:1].isdigit() else made
 
 

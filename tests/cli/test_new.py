@@ -50,6 +50,10 @@ def test_every_question_of_a_new_scenario_is_answered_once(tmp_path: Path) -> No
     assert table.count('"Tea."') == 2 and "ends bar: exit" in table
 
 
+def test_an_id_keeps_letters_without_their_accents() -> None:
+    assert identifier("café crème", "ea") == "cafe-creme"
+
+
 def test_nothing_is_overwritten(tmp_path: Path) -> None:
     (tmp_path / "guide.xml").write_text("mine")
     for kind in ("ea", "scenario"):

@@ -182,6 +182,9 @@ class Wrong(TaskDriver):
     kind = "wrong"
     async def perform(self, goal): raise Refused("the motor is hot")
 
+class Bare(TaskDriver):
+    kind = "bare"
+
 class Flood(TaskDriver):
     kind = "flood"
     async def perform(self, goal):
@@ -202,11 +205,12 @@ class Broken(Driver):
     ("driver", "code", "told"),
     [
         ('<driver kind="sims"/>', 2, 'robot.xml:20:3: There is no driver of the kind "sims". Did'),
-        ('<driver kind="zz"/>', 2, "The kinds are away, broken, console, flood"),
+        ('<driver kind="zz"/>', 2, "The kinds are away, bare, broken, console, flood"),
         ('<driver kind="never" open="300ms"/>', 3, "robot.xml:20:3: never: no answer within 0.3 s"),
         ('<driver kind="away" address="here:1"/>', 3, "away at here:1: nobody listens there"),
         ('<driver kind="silent" accept="300ms"/>', 3, "the device does not accept it"),
         ('<driver kind="wrong"/>', 3, "the motor is hot"),
+        ('<driver kind="bare"/>', 3, "Bare has no method perform"),
         ('<driver kind="broken"/>', 3, "the driver broken has failed: division by zero"),
         ('<driver kind="flood" heartbeat="2s"/>', 0, ""),
         ('<driver kind="flood" heartbeat="50s"/>', 3, "reports more than 10,000 things at once"),
