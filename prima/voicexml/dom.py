@@ -32,7 +32,7 @@ DOM = r"""(function () {
   function Node() { throw new TypeError('nodes are made by data alone'); }
   Object.assign(Node, KINDS);
   function no() { throw new DOMException('the document cannot be changed', 7); }
-  function item(i) { return i >= 0 && i < this.length ? this[i] : null; }
+  function item(i) { return this[i >>> 0] || null; }
   function named(name) { return this.find(function (one) { return one.name === name; }) || null; }
   function namedNS(uri, name) {
     return this.find(function (one) {
@@ -173,6 +173,8 @@ class _DomBuilder:
         parser = expat.ParserCreate(encoding="utf-8", namespace_separator=" ")
         parser.namespace_prefixes = True
         parser.buffer_text = True
+        data = text.encode()
+        parser.buffer_size = max(len(data), 1)  # the text between two tags is one node
         parser.StartNamespaceDeclHandler = self._declare
         parser.StartElementHandler = self._start
         parser.EndElementHandler = lambda _name: self._open.pop()
@@ -181,7 +183,7 @@ class _DomBuilder:
         parser.ProcessingInstructionHandler = self._instruct
         parser.StartCdataSectionHandler = lambda: self._section(True)
         parser.EndCdataSectionHandler = lambda: self._section(False)
-        parser.Parse(text.encode(), True)
+        parser.Parse(data, True)
         return self.top
 
     def _add(self, kind: int, value: str, **more: Json) -> None:

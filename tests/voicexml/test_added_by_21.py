@@ -139,6 +139,8 @@ NEWS = (
         ("d.getElementsByTagNameNS('urn:x', 'item').item(0).textContent", "two"),
         ("d.getElementsByTagName('*').length", "4"),
         ("d.getElementsByTagName('item').item(9) === null", "true"),
+        ("d.getElementsByTagName('item').item(-1) === null", "true"),
+        ("d.getElementsByTagName('item').item(0.7).textContent", "one"),
         ("d.getElementById('b').textContent", "two"),
         ("d.documentElement.lastChild.namespaceURI === null", "true"),
         ("(d.documentElement.nodeName = 'x', d.documentElement.nodeName)", "news"),
@@ -147,6 +149,16 @@ NEWS = (
 def test_data_gives_a_dom(code: str, value: str) -> None:  # 2.1, 5 and D
     call = Call(block(f'<data name="d" src="d.xml"/><log expr="{code}"/>'), **{"d.xml": NEWS})
     assert call.logs() == [value]
+
+
+@pytest.mark.parametrize("held", ["{}", "<![CDATA[{}]]>"])
+def test_the_text_between_two_tags_is_one_node(held: str) -> None:  # DOM 2, interface Text
+    code = "[d.documentElement.childNodes.length, d.documentElement.firstChild.length].join()"
+    text = held.format("a few words\n" * 2000)
+    call = Call(
+        block(f'<data name="d" src="d.xml"/><log expr="{code}"/>'), **{"d.xml": f"<r>{text}</r>"}
+    )
+    assert call.logs() == ["1,24000"]
 
 
 def test_the_dom_cannot_be_changed() -> None:  # 2.1, D
