@@ -26,7 +26,7 @@ def join(base: str, uri: str) -> str:
     path, query, asked = path.partition("?")
     folder = posixpath.dirname(base.partition("#")[0].partition("?")[0])
     whole = posixpath.normpath(posixpath.join(folder, path))
-    end = "/" if path.endswith("/") else ""
+    end = "/" if path.rpartition("/")[2] in ("", ".", "..") else ""
     return f"{whole}{end}{query}{asked}{mark}{rest}"
 
 

@@ -138,6 +138,9 @@ def test_an_application_ends_where_no_dialog_follows() -> None:  # 1.5.1
     assert Call(block("<log>one</log>")).ended == "exit"
 
 
+GO_B = '<goto next="b.vxml"/>'
+
+
 def test_relative_uris_are_relative_to_the_document_that_holds_them() -> None:  # 1.5.1
     call = Call(
         block('<goto next="sub/a.vxml"/>'),
@@ -157,6 +160,13 @@ def test_xml_base_is_what_uris_are_relative_to() -> None:  # 1.5.1
     assert call.logs() == ["sub b"]
 
 
+@pytest.mark.parametrize(("base", "where"), [("..", "s/b.vxml"), (".", "s/t/b.vxml")])
+def test_dots_at_the_end_of_a_base_mean_a_folder(base: str, where: str) -> None:  # 1.5.1
+    inner = f'{HEAD[:-1]} xml:base="{base}">{block(GO_B)}</vxml>'
+    files = {"s/t/a.vxml": inner, where: vxml(block("<log>found</log>"))}
+    assert Call(block('<goto next="s/t/a.vxml"/>'), **files).logs() == ["found"]
+
+
 @pytest.mark.parametrize(
     ("base", "uri", "whole"),
     [
@@ -166,6 +176,9 @@ def test_xml_base_is_what_uris_are_relative_to() -> None:  # 1.5.1
         ("s/a.vxml", "../../b.vxml", "../b.vxml"),
         ("s/a.vxml", "#x", "s/a.vxml#x"),
         ("s/a.vxml", "b.vxml?a=1/2", "s/b.vxml?a=1/2"),
+        ("s/t/a.vxml", "..", "s/"),  # a folder, also without its slash (RFC 3986, 5.2.4)
+        ("s/a.vxml", ".", "s/"),
+        ("s/a.vxml", "t/..?q#f", "s/?q#f"),
         ("a.vxml", "http://x.y/z", "http://x.y/z"),
         ("http://x.y/s/a", "b", "http://x.y/s/b"),
     ],
