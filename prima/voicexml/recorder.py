@@ -78,13 +78,12 @@ class RecordItems:
         said, key = divided(heard, listens and item.get("dtmfterm") != "false")
         if key and not heard.recognised:
             heard = replace(heard, utterance=key, interpretation=key, confidence=1.0, mode="dtmf")
-        taken = bool(key) or heard.recognised
-        if taken:
+        if key or heard.recognised:
             items.remember(context, heard)
         if not said:
             return
         more: dict[str, Json] = {"maxtime": bool(data.get("maxtime"))}
-        more |= marked_and_recorded(heard) if taken else {}
+        more |= marked_and_recorded(heard)
         more["termchar"] = key or None
         if not key and heard.recognised:
             more |= {"utterance": heard.utterance, "confidence": heard.confidence}

@@ -86,6 +86,13 @@ def test_what_ends_a_recording_tells_the_mark(played: Played, said: str) -> None
     assert logs(made) == ["one 400 one 400"]
 
 
+def test_a_recording_that_nothing_ends_tells_the_mark_as_well(played: Played) -> None:  # 2.1, 4
+    prompt = f'<prompt>{SECOND} <mark name="one"/> {SECOND}</prompt>'
+    filled = '<filled><log expr="[f$.markname, f$.marktime, typeof lastresult$].join()"/></filled>'
+    made = played(f'<form><record name="f">{prompt}{filled}</record></form>', (1400, "hello"))
+    assert logs(made) == ["one,400,undefined"]
+
+
 def test_by_a_device_that_tells_of_no_marks_the_last_one_counts() -> None:
     call = Call(f"<form>{ASKED}</form>")
     call.answer("yes")
