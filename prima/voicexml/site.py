@@ -23,7 +23,7 @@ class Site:
 
     def whole(self, uri: str) -> str:
         """The URI of a name in the folder; any other name unchanged."""
-        return uri if urlsplit(legal(uri)).scheme else f"{self.root}{uri}"
+        return uri if urlsplit(legal(uri)).scheme else self.root + uri.removeprefix("./")
 
     def name(self, uri: str) -> str:
         """The name in the folder of a URI's file; a URI outside it unchanged."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from urllib.parse import urljoin
 
 import pytest
 from click.testing import CliRunner
@@ -60,6 +61,7 @@ def logged(transcript: api.Transcript) -> list[str]:
     return [one["message"] for one in transcript.records if one["phase"] == "log"]
 
 
+SITE = "https://example.org/app/voice/"
 URI = 'uri="https://example.org/app/voice/main.vxml" folder="site"'
 
 
@@ -136,13 +138,14 @@ def test_what_a_copy_lacks_is_not_found_there(tmp_path: Path, leads: str, event:
     assert logged(api.rehearse(served(tmp_path, URI))) == ["the shop", event]
 
 
-def test_a_service_answers_what_a_copy_lacks(tmp_path: Path) -> None:
-    copied(tmp_path, "order.cgi")
+@pytest.mark.parametrize("leads", ["order.cgi", "/app/order:new"])
+def test_a_service_answers_what_a_copy_lacks(tmp_path: Path, leads: str) -> None:
+    copied(tmp_path, leads)
     (tmp_path / "answer.vxml").write_text(
         vxml("<form><block><log>ordered</log></block></form>"), encoding="utf-8"
     )
     more = (
-        '<service name="shop" uri="https://example.org/app/"><reply after="1s"'
+        f'<service name="shop" uri="{urljoin(SITE, leads)}"><reply after="1s"'
         ' src="answer.vxml"/></service>'
     )
     assert logged(api.rehearse(served(tmp_path, URI, more))) == ["the shop", "ordered"]
