@@ -11,6 +11,9 @@ from prima.messages import Command, Cue, Json, Order
 ABOUT_ALL = ("earlier", "hotword", "record", "finalsilence", "longest")
 """Cues that belong to a question as a whole, not to a place in its text."""
 
+MOST_MARKS = 1000
+"""How many marks passed before what is being said are known; a user may begin to speak then."""
+
 
 @dataclass(slots=True)
 class Utterance:
@@ -76,6 +79,14 @@ class Utterance:
         time, name = self.timeline.marks[count - 1]
         return count, name, round(played - time)
 
+    def marks_passed(self, now: int) -> list[tuple[int, str]]:
+        """The marks passed, each with its time; of a resumed text from where it resumes on."""
+        passed = self.passed(now)
+        if self.timeline is None or passed is None:
+            return []
+        marks = self.timeline.marks[max(self.marks - 1, 0) : passed[0]]
+        return [(self.began - self.skipped + round(time), name) for time, name in marks]
+
     def share(self, said: int) -> float:
         """How much of the text has been said (0 to 1) after so many characters of its rest."""
         return min((self.since + said) / max(len(self.command.text or ""), 1), 1.0)
@@ -126,16 +137,19 @@ def closed(cues: Iterable[Cue]) -> Iterator[Cue]:
 
 
 class SpeechMarks:
-    """The last mark that each application's speech has passed."""
+    """The marks that each application's speech has passed, with their times."""
 
     def __init__(self) -> None:
-        self._passed: dict[str, tuple[str, int]] = {}
+        self._passed: dict[str, list[tuple[int, str]]] = {}
 
     def end(self, now: int, app: str, said: Utterance | None) -> None:
         """Note that something has been said to its end."""
-        passed = said.passed(now) if said is not None else None
-        if passed is not None:
-            self._passed[app] = (passed[1], now - passed[2])
+        passed = said.marks_passed(now) if said is not None else []
+        if said is None or not passed:
+            return
+        goes_on = bool(said.marks) or said.command.cued("earlier")
+        before = self._passed.get(app, []) if goes_on else []
+        self._passed[app] = [*before, *passed][-MOST_MARKS:]
 
     def heard(self, began: int, app: str, said: Utterance | None) -> dict[str, Json]:
         """The last mark passed when the user began to speak (VoiceXML 2.1, 4).
@@ -151,7 +165,6 @@ class SpeechMarks:
         passed = said.passed(until)
         if passed is not None:
             return {"markname": passed[1], "marktime": passed[2]}
-        name, time = self._passed.get(app, ("", until + 1))
-        if not said.command.cued("earlier") or time > until:
-            return {"markname": None}
-        return {"markname": name, "marktime": until - time}
+        known = self._passed.get(app, []) if said.command.cued("earlier") else []
+        time, name = next((one for one in reversed(known) if one[0] <= until), (until, None))
+        return {"markname": None} if name is None else {"markname": name, "marktime": until - time}

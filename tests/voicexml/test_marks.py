@@ -161,3 +161,18 @@ def test_the_last_mark_is_that_passed_when_an_answer_comes_before_the_question( 
     played: Played, at: int, mark: str
 ) -> None:
     assert logs(played(MARKED, (at, "red"))) == [mark]
+
+
+LONG = f"""<form><block><prompt>{SECOND} <mark name="one"/></prompt>
+<prompt><mark name="two"/>{SECOND} <break time="1500ms"/><mark name="three"/></prompt></block>
+<field name="f"><prompt>{SECOND} <mark name="four"/></prompt><option>yes</option>
+<filled><log expr="f$.markname + ' ' + f$.marktime"/></filled></field></form>"""
+
+
+@pytest.mark.parametrize(
+    ("at", "told"), [(1100, "one 100"), (3700, "two 2400"), (3900, "three 100")]
+)
+def test_the_last_mark_is_that_passed_when_an_answer_begins_before_what_it_ends_in(  # 2.1, 4
+    played: Played, at: int, told: str
+) -> None:
+    assert logs(played(LONG, (at, "yes"))) == [told]
