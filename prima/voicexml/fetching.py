@@ -48,7 +48,7 @@ def load_page(
         Thrown: ``error.badfetch``, with what is wrong with the document; ``error.semantic``
             for an application root that names a root itself (1.5.2).
     """
-    asks = request is not None and bool(owner.document.outside(uri))
+    asks = node.tag != "vxml" and bool(owner.document.outside(uri))  # a root is kept (6.1.2)
     page = None if asks else owner.pages.get(uri)
     if page is not None:
         _check_reach(page.root.source.file, uri, node)

@@ -6,7 +6,7 @@ import pytest
 
 from prima.voicexml.reading import read_page
 from tests.helpers.dialogs import CITIES, FAIL, PAGE, PASS, YES, Case, Cases, block, logged, run
-from tests.helpers.voice import Call, vxml
+from tests.helpers.voice import HEAD, Call, Online, vxml
 
 case = Cases()
 
@@ -297,6 +297,25 @@ def test_a_goto_to_no_item_is_handled_in_the_dialogs_scope() -> None:  # 5.3.7
         "yes",
     )
     assert call.logs() == ["pass"]
+
+
+@pytest.mark.parametrize(
+    "lead",
+    [
+        '<block><goto next="http://x/a"/></block>',
+        '<subdialog src="http://x/a"><filled><goto next="#again"/></filled></subdialog>',
+    ],
+)
+def test_a_document_from_outside_is_requested_each_time_and_its_root_once(lead: str) -> None:
+    answered = f"""{HEAD[:-1]} application="http://x/root"><form><field name="f">
+    <prompt>Again?</prompt>{YES}<filled><goto next="http://x/a"/></filled></field></form></vxml>"""
+    root = vxml('<var name="r"/>')  # 6.1.2: nothing says how long an answer may be kept
+    call = Online(
+        {"http://x/a": answered, "http://x/root": root}, f'<form id="again">{lead}</form>'
+    )
+    call.answer("yes", "yes")
+    asked = [order.data["to"] for order in call.orders if order.verb == "send"]
+    assert asked == ["http://x/a", "http://x/root", "http://x/a", "http://x/a"]
 
 
 def test_exit_gives_its_values_to_the_transcript() -> None:  # 5.3.9
