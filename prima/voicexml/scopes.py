@@ -143,7 +143,8 @@ class Documents:
                 page = root  # it is loaded, even if it is what a submit was answered with
             else:
                 page = yield from load_page(self.owner, whole, node, request)
-        if (page or context.page).dialog(fragment) is None:
+        nameless = fragment.startswith("#")  # so are the keys of dialogs without an id
+        if nameless or (page or context.page).dialog(fragment) is None:
             name = f' "{fragment}"' if fragment else ""
             where = f" in {page.uri}" if page else ""
             raise Thrown.at(node, "error.badfetch", f"there is no dialog{name}{where}")

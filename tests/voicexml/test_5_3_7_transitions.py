@@ -318,6 +318,12 @@ def test_a_document_from_outside_is_requested_each_time_and_its_root_once(lead: 
     assert asked == ["http://x/a", "http://x/root", "http://x/a", "http://x/a"]
 
 
+@pytest.mark.parametrize("uri", ["##1", "#%231", "app.vxml##1"])
+def test_a_dialog_without_an_id_has_no_uri(uri: str) -> None:
+    lead = logged("error.badfetch", f'<block><goto next="{uri}"/></block>')
+    assert Call(lead, **{"app.vxml": vxml(lead)}).logs() == ["error.badfetch"]
+
+
 def test_exit_gives_its_values_to_the_transcript() -> None:  # 5.3.9
     assert Call(block("<exit expr=\"'done'\"/>")).logs() == ['exit: "done"']
     call = Call(block('<var name="a" expr="[1]"/><exit namelist="a"/>'))
