@@ -75,7 +75,7 @@ def read_markup(node: Node, speech: Speech, inner: Callable[[], None]) -> None:
     """Read an element that needs nothing but the document (SSML 1.0); ``inner`` reads its content."""
     match node.tag:
         case "sub":
-            speech.parts.append(f" {node.get('alias', node.text)} ")
+            speech.parts.append(node.get("alias", node.text))
         case "break":
             ms = break_ms(node.get("time"), node.get("strength"), node.get("size"))
             speech.parts += [" ", Cue(0, "pause", ms), " "] if ms else [" "]

@@ -402,6 +402,7 @@ def test_half_a_surrogate_pair_is_shown_as_a_letter_that_is_none() -> None:
         ("Hear <audio src='a.wav'><desc>a bell</desc>a ring</audio>.", "Hear a ring ."),
         ("It is <sub alias=''>gone</sub> here.", "It is here."),
         ("It is <sub alias='away'>gone</sub> here.", "It is away here."),
+        ("(<sub alias='Doctor'>Dr</sub>): <sub alias='come'>c</sub>.", "(Doctor): come."),
     ],
 )
 def test_a_description_and_what_has_an_alias_are_not_said(content: str, said: str) -> None:
