@@ -21,10 +21,11 @@ def x8(mediation: Mediation) -> None:
     waiting = mediation.memory.waiting
     stale = [ab for ab in waiting.values() if _is_stale(ab, mediation.now)]
     for ab in stale:
-        if ab.stale == mediation.now and _may_start(mediation, ab):
+        free = _may_start(mediation, ab)
+        if free and ab.stale == mediation.now:
             ab.stale = mediation.now + 1  # the selection of this very instant may start it
         elif ab.name in waiting:
-            _give_up(mediation, ab)
+            _give_up(mediation, ab, whole=free)
 
 
 def _may_start(mediation: Mediation, ab: Behavior) -> bool:
@@ -38,9 +39,12 @@ def _is_stale(ab: Behavior, now: int) -> bool:
     return ab.stale is not None and ab.stale <= now
 
 
-def _give_up(mediation: Mediation, root: Behavior) -> None:
-    """Delete a reaction, except ABs that need only free devices."""
-    kept = mediation.policy.refusal(root, mediation.memory) is None
+def _give_up(mediation: Mediation, root: Behavior, whole: bool) -> None:
+    """Delete a reaction, except ABs that need only free devices where devices kept it waiting.
+
+    An emergency stop keeps a reaction waiting, too; then it is given up ``whole``.
+    """
+    kept = not whole and mediation.policy.refusal(root, mediation.memory) is None
     lost = [root]
     for ab in followers(root)[1:]:
         if not kept or mediation.memory.conflict(ab) is not None:

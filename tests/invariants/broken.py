@@ -361,7 +361,9 @@ def nothing_joins(patch: pytest.MonkeyPatch) -> None:
 
 def never_too_late(patch: pytest.MonkeyPatch) -> None:
     """X8: a reaction waits as long as it takes."""
-    rebind(patch, freshness, "_give_up", lambda mediation, root: setattr(root, "stale", None))
+    rebind(
+        patch, freshness, "_give_up", lambda mediation, root, whole: setattr(root, "stale", None)
+    )
 
 
 def resumed_silently(patch: pytest.MonkeyPatch) -> None:

@@ -199,6 +199,14 @@ def test_x8_nothing_is_given_up_while_the_robot_is_stopped() -> None:
     assert late(stage, 4000) == ["ea#1"] and stage.told("fa") == ["expired.speak"]
 
 
+def test_x8_what_an_emergency_kept_waiting_is_given_up_whole() -> None:
+    stage = busy(say("Oh!"), say("Who was that?"))
+    stage.at(2000).mediator.emergency(True, True, 8)
+    stage.at(4000).mediator.emergency(False, True, 9)
+    assert late(stage, 4000) == ["ea#1"], "its second half alone says nothing"
+    assert stage.told("fa") == ["expired.speak", "expired.speak"]
+
+
 def test_x8_nor_when_something_else_is_over_meanwhile() -> None:
     stage = Stage("prima+x3+x8")
     stage.request("ea", say(), cause=TOUCH - 1, hold=2500)
