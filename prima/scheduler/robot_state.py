@@ -70,15 +70,18 @@ class Effects:
 
     def missing(self, own: frozenset[str], body: RobotState) -> list[Command]:
         """The Commands that restore the state that a Command with the effects ``own`` needs."""
-        if "position" in own or "follow" in own:
-            return []
+        made = [] if {"position", "follow"} & own else self._missing_pose(own, body)
+        if "head" not in own and self.head is not None and _apart(self.head, body.head):
+            made.append(Command("move-head", {"pan": self.head[0], "tilt": self.head[1]}))
+        return made
+
+    def _missing_pose(self, own: frozenset[str], body: RobotState) -> list[Command]:
+        """The way back and the turns that a Command needs which goes nowhere by itself."""
         turns = not {"direction", "human"} & own
         made = self._missing_place(turns, body.pose)
         away = bool(made) and made[0].type != "set-direction"
         if turns and self.human and (away or self._turned_since(body)):
             made.append(Command("face-human"))
-        if "head" not in own and self.head is not None and _apart(self.head, body.head):
-            made.append(Command("move-head", {"pan": self.head[0], "tilt": self.head[1]}))
         return made
 
     def _missing_place(self, turns: bool, pose: Pose | None) -> list[Command]:

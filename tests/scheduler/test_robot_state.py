@@ -95,6 +95,14 @@ def test_x1_the_head_turns_back_if_pan_or_tilt_is_elsewhere() -> None:
     assert restored(effects, {}, frozenset({"head"}), head=(-20, -10)) == []
 
 
+def test_x1_before_a_move_only_the_head_turns_back() -> None:
+    effects = Effects(position=(1.0, 2.0), heading=30.0, head=(20.0, 0.0))
+    back = [("move-head", {"pan": 20.0, "tilt": 0.0})]
+    for own in ("position", "follow"):
+        assert restored(effects, pose(9, 9, 90), frozenset({own}), head=(-60, 0)) == back
+        assert restored(effects, pose(9, 9, 90), frozenset({own}), head=(20, 0)) == []
+
+
 @pytest.mark.parametrize(
     ("angle", "other", "between"),
     [(10, 350, 20), (350, 10, -20), (90, 0, 90), (0, 90, -90), (180, 0, -180), (5, 5, 0)],
