@@ -53,7 +53,7 @@ def s4(mediation: Mediation) -> bool:
             _hold(mediation, ab, refusal)
         elif _start(mediation, rank, ab, ranked[index + 1 :], held):
             return True
-    return len(mediation.started) > before and _reactions_wait(memory)
+    return len(mediation.started) > before and (_reactions_wait(memory) or _waits_anew(memory))
 
 
 # Devices ------------------------------------------------------------------------------------------
@@ -160,6 +160,11 @@ def _reranks(memory: WorkingMemory, active: Application | None) -> bool:
 
 def _reactions_wait(memory: WorkingMemory) -> bool:
     return any(ab.reaction is not None for ab in memory.waiting.values())
+
+
+def _waits_anew(memory: WorkingMemory) -> bool:
+    """X2: whether an AB that has just been interrupted waits, and nothing has told why."""
+    return any(ab.restarting and not ab.wait.blocked[0] for ab in memory.waiting.values())
 
 
 def _outdone(

@@ -288,3 +288,15 @@ def test_x2_only_the_loop_that_was_interrupted_starts_again() -> None:
     assert stage.select() == ["ea#1.3"]
     resumed = [(r["behavior"], r.get("resumed")) for r in stage.phases("start")]
     assert resumed == [("ea#1.1", None), ("fa#1", None), ("ea#1.2", True), ("ea#1.3", None)]
+
+
+def test_x2_why_what_was_interrupted_waits_is_told_at_once() -> None:
+    """Its application learns at the same time that its stream is suspended (C2)."""
+    stage = Stage("prima+x2")
+    stage.request("ea", restartable(say("A long story.")))
+    stage.select()
+    branches = [Step(command("pause", time="1s")), Step(say("Oh!"))]
+    stage.at(500).request("fa", steps=branches, cause=EVENT)
+    assert stage.select() == ["fa#1", "fa#2"]
+    assert [(r["time"], r["rule"]) for r in stage.phases("hold")] == [(500, "F2")]
+    assert check(stage.records, "prima+x2") == []
