@@ -215,6 +215,8 @@ class Checker(Starts):
             engages=bool(record.get("engages")),
             feedback=bool(record.get("feedback")),
             restartable=bool(record.get("restartable")),
+            says="speaker" in record["devices"]
+            and (record["command"] == "iu" or bool(record.get("text"))),
             spans=bool(record.get("spans")),
             connect=bool(record.get("connect")),
         )

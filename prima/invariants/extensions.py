@@ -90,7 +90,7 @@ class Extensions(FloorRules):
 
     def note_words(self, ab: AB) -> None:
         """X9: after a start: note which streams' pauses it speaks into."""
-        if "speaker" in ab.devices:
+        if ab.says:
             for tree in self.trees.values():
                 if tree.app != ab.app and tree.suspended and tree.spoken:
                     tree.words_due = True

@@ -49,6 +49,8 @@ class AB:
     motion: str = ""
     fresh_until: int | None = None
     """Until when (ms) the reaction is worth starting (X8)."""
+    says: bool = False
+    """Whether the robot speaks meanwhile, for F6 and X9."""
     spans: bool = False
     """Whether it is a unit that spans questions and states (U5), for X7."""
     connect: bool = False

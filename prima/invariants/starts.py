@@ -77,7 +77,7 @@ class Starts(Telling):
         self.running[ab.name] = ab
         self.driven = self.driven or ab.drives
         ab.tree.started = self.place
-        ab.tree.spoken = ab.tree.spoken or ("speaker" in ab.devices and ab.command != "iu")
+        ab.tree.spoken = ab.tree.spoken or (ab.says and ab.command != "iu")
         ab.tree.engaged = ab.tree.engaged or ab.engages
 
     def _may_run(self, ab: AB, record: Record) -> None:

@@ -270,6 +270,12 @@ class Behavior:
         """Whether the AB gives way to a reaction and starts again (X2)."""
         return self.what.restartable and not self.silent
 
+    @property
+    def says(self) -> bool:
+        """Whether the robot speaks meanwhile; a unit that owns the speaker counts (F6, X9)."""
+        wordless = self.command is not None and not self.command.text
+        return "speaker" in self.devices and not wordless
+
     def next_loop(self) -> None:
         """U2: begin another loop of a feedback Command: an AB with a name of its own."""
         if self.loop:

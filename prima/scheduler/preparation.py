@@ -52,7 +52,7 @@ def x9(mediation: Mediation, ab: Behavior) -> bool:
 
 def note_words(mediation: Mediation, ab: Behavior) -> None:
     """X9: a starting AB speaks into the pause of every suspended topic, or resumes one."""
-    if "speaker" in ab.devices:
+    if ab.says:
         for stream in mediation.memory.streams.values():
             if stream.app is not ab.app and stream.suspended and stream.spoken:
                 stream.words_due = True

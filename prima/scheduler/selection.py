@@ -219,7 +219,7 @@ def _note_start(mediation: Mediation, ab: Behavior, resumes: bool) -> None:
     """F6, K1, C2, X4: what an AB's start changes for itself and its stream."""
     stream = ab.stream
     ab.connect = False  # its first word is said, though X7 may have let it start before the turn
-    if ab.command is not None and "speaker" in ab.devices:
+    if ab.command is not None and ab.says:
         stream.spoken = True
     if ab.engages:
         mediation.memory.engage(stream)

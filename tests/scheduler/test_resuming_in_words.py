@@ -62,6 +62,33 @@ def test_x9_a_break_in_which_nobody_spoke_needs_no_words() -> None:
     assert check(stage.records, POLICY) == []
 
 
+def test_x9_a_question_that_only_listens_says_nothing() -> None:
+    stage = Stage(POLICY)
+    stage.request("ea", say("One."), say("Two."), words=words())
+    stage.select()
+    stage.at(500).request("fa", Command("q-and-a"), cause=TOUCH)
+    stage.select()
+    stage.at(1000).end("ea#1")
+    assert stage.select() == ["fa#1"]
+    stage.at(2000).end("fa#1")
+    assert stage.select() == ["ea#2"]
+    assert check(stage.records, POLICY) == []
+
+
+def test_x9_a_turn_to_the_user_is_no_word() -> None:
+    both = "prima+x4+x9"
+    stage = Stage(both)
+    stage.request("ea", say("One."), words=words(), connect=True)
+    assert stage.select() == ["ea#2"] and inserted(stage) == [("X4", "face-human")]
+    stage.at(500).request("fa", say("Oh!"), cause=TOUCH)
+    stage.select()
+    stage.at(1000).end("ea#2", x=0.0, y=0.0, heading=90.0)
+    assert stage.select() == ["fa#1"]
+    stage.at(2000).end("fa#1")
+    assert stage.select() == ["ea#1"], "nothing has been said yet"
+    assert check(stage.records, both) == []
+
+
 def test_x9_who_has_said_nothing_yet_resumes_no_topic() -> None:
     stage = Stage(POLICY)
     stage.request("ea", command("turn", angle=10), say("One."), words=words())

@@ -326,11 +326,7 @@ MUTANTS: list[tuple[str, str, Patch]] = [
     ("x10", "links alone", put(Mediator, "coming_question", nothing)),
     ("x9", "dropped", put(preparation, "x9", lambda *given: False)),
     ("x9", "whoever resumes", reworded(preparation, "note_words", " and stream.spoken", "")),
-    (
-        "x9",
-        "what is not speech",
-        reworded(preparation, "note_words", '"speaker" in ab.devices', "True"),
-    ),
+    ("x9", "what is not speech", reworded(preparation, "note_words", "if ab.says", "if True")),
     ("x9", "for ever", reworded(preparation, "note_words", "ab.stream.words_due = False", "pass")),
     ("x9", "another topic, too", reworded(preparation, "x9", " or wanted_now(ab)", "")),
     ("x9", "nobody waits for it", put(preparation, "join_first", nothing)),
