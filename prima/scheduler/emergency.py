@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from prima.scheduler.behavior import RUNNING, Behavior, Inside
-from prima.scheduler.endings import delete, remove, settle, tell_cancelled
+from prima.scheduler.endings import delete, last_first, remove, settle, tell_cancelled
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.starvation import forget_waits
 from prima.scheduler.streams import let_go
@@ -43,7 +43,7 @@ def _give_up(mediation: Mediation) -> None:
         let_go(mediation, memory.streams[name], "left")
     for stream in memory.streams.values():
         stream.hold = None
-    for ab in reversed(list(memory.behaviors.values())):
+    for ab in last_first(memory.behaviors.values()):
         if not ab.in_group:
             delete(mediation, ab, "E5")
             if not ab.silent:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from prima.messages import Data, Notice
 from prima.scheduler.admission import link
 from prima.scheduler.behavior import (
@@ -124,9 +126,15 @@ def settle(mediation: Mediation, unit: Behavior) -> None:
 # Before their end ---------------------------------------------------------------------------------
 
 
+def last_first(behaviors: Iterable[Behavior]) -> list[Behavior]:
+    """ABs as they are deleted: what follows others before them (X1, X4 and X9 insert later)."""
+    latest = [*behaviors][::-1]
+    return [ab for ab in latest if not ab.inserted] + [ab for ab in latest if ab.inserted]
+
+
 def cancel(mediation: Mediation, behaviors: list[Behavior], devices: frozenset[str]) -> None:
     """O2: delete ABs; one that runs on the devices is cut short, others finish."""
-    for ab in reversed(behaviors):
+    for ab in last_first(behaviors):
         if ab.state is GONE or ab.in_group:
             continue
         heard = not ab.silent
@@ -148,7 +156,7 @@ def tell_cancelled(mediation: Mediation, ab: Behavior) -> None:
 
 def withdraw(mediation: Mediation, behaviors: list[Behavior], rule: str) -> None:
     """O3, E2: delete ABs that have not started; running ones finish, and nobody is notified."""
-    for ab in reversed(behaviors):
+    for ab in last_first(behaviors):
         if ab.in_group:
             continue
         if ab.state is RUNNING:
@@ -187,7 +195,7 @@ def delete_rest(
 
     Other runs in it are cancelled.
     """
-    for other in reversed(list(tree.values())):
+    for other in last_first(tree.values()):
         if other.in_group:
             continue
         if other.state in (LINKED, WAITING):

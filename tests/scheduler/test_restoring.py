@@ -428,3 +428,31 @@ def test_x1_of_a_way_back_a_robot_does_what_it_can() -> None:
     stage.at(1000).end("ea#3")
     stage.select()
     assert inserted(stage) == [("X1", "move-head")]
+
+
+def on_the_way_back() -> Stage:
+    """The EA has gone somewhere and turned the head; the FA has changed both, and it goes back."""
+    stage = Stage("prima+x1")
+    stage.request("ea", move(), command("move-head", pan=40), say("First."), say("Second."))
+    stage.select()
+    stage.at(500).end("ea#1.1", x=4.0, y=1.0, heading=90.0)
+    stage.select()
+    stage.at(600).end("ea#2")
+    stage.select()
+    stage.request("fa", command("turn", angle=3), command("move-head"), cause=EVENT)
+    stage.select()
+    stage.at(1000).end("fa#1", x=0.0, y=0.0, heading=0.0)
+    stage.select()
+    stage.at(1100).end("ea#3")
+    stage.end("fa#2")
+    assert stage.select() == ["ea#5.1"]
+    return stage
+
+
+def test_x1_what_waits_for_its_way_back_is_told_as_linked_when_it_is_left() -> None:
+    stage = on_the_way_back()
+    stage.at(1200).leave("ea")
+    stage.select()
+    cancelled = [(r["behavior"], r["outcome"]) for r in stage.phases("cancel")]
+    assert cancelled == [("ea#4", "linked"), ("ea#6", "linked")]
+    assert check(stage.records, "prima+x1") == []
