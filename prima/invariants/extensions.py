@@ -30,7 +30,7 @@ class Extensions(FloorRules):
         rule, shown = ab.inserted, f"{ab.name} is put in"
         if rule not in ("X1", "X4", "X9") or rule.lower() not in self.extensions:
             self.report(11, rule, f"{shown} by a rule that is not on")
-        if before is None or before.tree is not ab.tree or before.inserted or before.unit:
+        if before is None or not self._may_precede(ab, before):
             self.report(11, rule, f"{shown} before something that it cannot precede")
             return
         self._takes_place(ab, before)
@@ -45,6 +45,11 @@ class Extensions(FloorRules):
         self.waiting.pop(before.name, None)
         if rule != "X4":
             self._goes_first(ab.tree)
+
+    def _may_precede(self, ab: AB, before: AB) -> bool:
+        """A way back comes also before the rest of one that was broken, and before words."""
+        again = ab.inserted == "X1" and before.inserted in ("X1", "X9")
+        return before.tree is ab.tree and before.unit is None and (again or not before.inserted)
 
     def _goes_first(self, tree: Tree) -> None:
         """X1, X9: all ABs that wait in a stream wait for the inserted one."""

@@ -14,16 +14,23 @@ from prima.scheduler.rules import third_turn
 
 def prepare(mediation: Mediation, ab: Behavior) -> bool:
     """X1, X4, X9: insert what has to come first; whether anything was inserted."""
-    if ab.inserted or third_turn(ab, mediation.memory):
+    if third_turn(ab, mediation.memory):
         return False
+    if ab.inserted:
+        return ab.inserted != "X4" and x1(mediation, ab)
     return x1(mediation, ab) or x9(mediation, ab) or x4(mediation, ab)
 
 
 def x1(mediation: Mediation, ab: Behavior) -> bool:
-    """X1: restore the robot's state on which a suspended stream relies."""
-    if not ab.stream.suspended or first_of(ab.stream) is not None:
+    """X1: restore the robot's state on which a suspended stream relies.
+
+    If the way back was itself broken, what has been undone of it is done again.
+    """
+    if not ab.stream.suspended or first_of(ab.stream) not in (None, ab):
         return False
-    made = ab.stream.effects.missing(sets(ab.type, ab.command), mediation.robot)
+    coming = [one for one in ab.stream.members.values() if one.inserted == "X1"]
+    own = [sets(one.type, one.command) for one in (*ab.meant(), *coming)]
+    made = ab.stream.effects.missing(frozenset().union(*own), mediation.robot)
     return insert(mediation, ab, made, "X1")
 
 

@@ -449,6 +449,36 @@ def on_the_way_back() -> Stage:
     return stage
 
 
+def test_x1_a_way_back_that_was_broken_itself_is_gone_again() -> None:
+    """After the way, and before the head has turned back, the robot is taken away once more."""
+    stage = on_the_way_back()
+    assert inserted(stage) == [("X1", "set-position"), ("X1", "move-head")]
+    stage.at(1500).request("fa", command("turn", angle=3), cause=EVENT + 1)
+    stage.select()
+    stage.at(2000).end("ea#5.1", x=4.0, y=1.0, heading=0.0)
+    assert stage.select() == ["fa#3"]
+    stage.at(3000).end("fa#3", x=1.0, y=0.0, heading=0.0)
+    assert stage.select() == ["ea#7.1"]
+    assert inserted(stage)[2:] == [("X1", "set-position")], "the head has still to turn"
+    stage.at(4000).end("ea#7.1", x=4.0, y=1.0, heading=0.0)
+    assert stage.select() == ["ea#6"]
+    stage.at(4500).end("ea#6")
+    assert stage.select() == ["ea#4"]
+    assert check(stage.records, "prima+x1") == []
+
+
+def test_x1_a_way_back_that_was_not_undone_is_not_gone_again() -> None:
+    stage = turned_away(say("Second."), 4.0, 1.0, 0.0)
+    assert inserted(stage) == [("X1", "set-position-and-direction")]
+    stage.at(2000).request("fa", say("Oh!"), cause=EVENT + 1)
+    stage.select()
+    stage.at(2500).end("ea#5.1", goal=False, x=2.0, y=1.0, heading=0.0)
+    stage.select()
+    stage.at(3000).end("fa#2")
+    stage.select()
+    assert len(inserted(stage)) == 1
+
+
 def test_x1_what_waits_for_its_way_back_is_told_as_linked_when_it_is_left() -> None:
     stage = on_the_way_back()
     stage.at(1200).leave("ea")
