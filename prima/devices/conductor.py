@@ -217,7 +217,8 @@ class Conductor:
 
     def _tell_halted(self, task: Task) -> None:
         if task.halting:
-            self._inbound.append(task.halted(self._now))
+            pose = self._pose() if "locomotion" in task.order.devices else {}
+            self._inbound.append(task.halted(self._now, pose))
 
     # Time ---------------------------------------------------------------------------
 

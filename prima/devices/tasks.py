@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from prima.devices.ear import bounds_of
@@ -122,8 +122,8 @@ class Task:
         elif goal.kind == SAY and isinstance(report, Stopped):
             self.heard = report.said
 
-    def halted(self, now: int) -> Halted:
-        """X2: how much of it had been done when it was interrupted."""
+    def halted(self, now: int, pose: Mapping[str, Json]) -> Halted:
+        """X2: how much of it had been done when it was interrupted, and where the robot is."""
         said = self.said
         timed = self.timed if said is None or self.heard is None else said.share(self.heard)
         shares = [*self.shares, *([] if timed is None else [timed])]
@@ -132,7 +132,7 @@ class Task:
             data |= said.heard(now, self.heard)
         elif self.command.text:
             data["heard"] = self.command.text.strip()
-        return Halted(self.id, data)
+        return Halted(self.id, {**data, **pose})
 
 
 def searches(tasks: Iterable[Task]) -> bool:

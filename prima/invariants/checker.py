@@ -31,6 +31,7 @@ class Checker(Starts):
             "cancel": self.note_cancel,
             "event": self._event,
             "interrupt": self.note_interrupt,
+            "halted": self.note_halted,
             "held": self.note_held,
             "substitute": self.note_substitute,
             "hold": self._hold,

@@ -119,6 +119,12 @@ class Extensions(FloorRules):
         if place is not None and robot is not None and math.dist(place, robot) > FAR:
             self.report(11, "X1", f"{ab.shown} resumes at {robot}, but its stream was at {place}")
 
+    def note_halted(self, record: Record) -> None:
+        """X1, X2: note where an interrupted motion has left the robot."""
+        data = record.get("data") or {}
+        if {"x", "y", "heading"} <= data.keys():
+            self.robot = (data["x"], data["y"])
+
     def moved(self, ab: AB, record: Record) -> None:
         """Note where a Command's end, or a loop's, has brought the robot."""
         data = record.get("data") or {}

@@ -7,6 +7,7 @@ from prima.scheduler.admission import commands_of
 from prima.scheduler.behavior import GONE, RUNNING, Behavior
 from prima.scheduler.mediation import HaltedUnit, Mediation
 from prima.scheduler.memory import WorkingMemory
+from prima.scheduler.robot_state import pose_of
 from prima.scheduler.rules import third_turn
 
 Held = dict[str, Behavior]
@@ -114,6 +115,7 @@ def interrupted(mediation: Mediation, behavior: str, data: Data) -> None:
         data=dict(data) or None,
         inbound=True,
     )
+    mediation.robot.pose = pose_of(data) or mediation.robot.pose
     if halted is not None:
         _tell(mediation, halted.unit, whole(data, halted))
     elif ab is not None:

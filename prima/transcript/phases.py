@@ -85,8 +85,8 @@ PHASES = {
     ),
     "halted": Phase(
         "the device reports how much of it was done",
-        "`behavior`, `data`: `done` (0 to 1), `heard`; of what has marks, `mark` and how many "
-        "were `passed`",
+        "`behavior`, `data`: `done` (0 to 1), `heard`; of a motion, the pose; of what has marks, "
+        "`mark` and how many were `passed`",
         ("behavior",),
     ),
     "delayed": Phase(

@@ -342,14 +342,18 @@ def test_x2_a_text_goes_on_behind_its_mark_and_is_counted_from_its_beginning() -
     assert (halted.data["heard"], halted.data["passed"]) == ("One two. Three", 2)
 
 
-def test_x2_what_was_said_to_its_end_before_it_could_stop_was_heard() -> None:
+HEARD, POSE = {"done": 1.0, "heard": "Hello there."}, {"x": 1.0, "y": 2.0, "heading": 0.0}
+
+
+@pytest.mark.parametrize(("what", "told"), [(SPEAK, HEARD), (TURN, {"done": 0.0, **POSE})])
+def test_x2_what_is_told_of_what_ended_before_it_could_stop(what: Command, told: Data) -> None:
     desk = Desk()
-    (first,) = desk.order("start", "a#1", SPEAK)
+    (first,) = desk.order("start", "a#1", what)
     desk.order("interrupt", "a#1")
     desk.report(Done(first.key))  # type: ignore[union-attr]
     (halted,) = desk.at(400)
     assert isinstance(halted, Halted)
-    assert halted.data == {"done": 1.0, "heard": "Hello there."}
+    assert halted.data == told
 
 
 RECORDED = (Cue(0, "record", 8000), Cue(0, "finalsilence", 1500))

@@ -12,7 +12,7 @@ from prima.messages import (
     Step,
 )
 from tests.helpers.generated.world import TABLE
-from tests.helpers.stage import TRACK, Stage, ask, chain, command, move, restartable, say
+from tests.helpers.stage import TRACK, Stage, ask, chain, command, inserted, move, restartable, say
 
 EVENT = 7
 
@@ -300,3 +300,23 @@ def test_x2_why_what_was_interrupted_waits_is_told_at_once() -> None:
     assert stage.select() == ["fa#1", "fa#2"]
     assert [(r["time"], r["rule"]) for r in stage.phases("hold")] == [(500, "F2")]
     assert check(stage.records, "prima+x2") == []
+
+
+def test_x2_with_x1_a_motion_starts_again_from_where_it_began() -> None:
+    both = "prima+x1+x2"
+    stage = Stage(both)
+    turn = restartable(command("turn", angle=60))
+    stage.request("ea", command("set-direction", heading=90), say("Look!"), turn)
+    stage.select()
+    stage.at(100).end("ea#1", x=0.0, y=0.0, heading=90.0)
+    stage.select()
+    stage.at(200).end("ea#2")
+    assert stage.select() == ["ea#3"]
+    stage.at(500).request("fa", command("face-human"), cause=EVENT)
+    assert stage.select() == ["fa#1"]
+    stage.at(501).mediator.interrupted("ea#3", {"done": 0.5, "x": 0.0, "y": 0.0, "heading": 120.0})
+    stage.select()
+    stage.at(600).end("fa#1")
+    assert stage.select() == ["ea#4"]
+    assert inserted(stage) == [("X1", "set-direction")], "it has turned half of its way"
+    assert check(stage.records, both) == []
