@@ -128,7 +128,7 @@ class FloorRules(Turn):
             tree.suspended = False
             self.resumed.append(tree)
             if tree.waits:
-                self.turns[tree.name] = self.now
+                self.turns[tree.name].append(self.now)
             tree.waits = False
             named = self.resumptions.pop(tree.name, None)
             if named != ab.shown:
@@ -142,7 +142,7 @@ class FloorRules(Turn):
         other = by.replace("#", ":").partition(":")[0]
         if ab.tree.suspended and not ab.tree.waits and other not in ("", ab.app):
             ab.tree.waits = True
-            self.turns[ab.tree.name] = self.now
+            self.turns[ab.tree.name].append(self.now)
 
     # What the records say -----------------------------------------------------------
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Sequence
 
 from prima.invariants.model import (
@@ -97,7 +97,7 @@ class Memory:
         """The numbers of events, with their times."""
         self.numbered = any(one.get("serial") is not None for one in self.records)
         """Whether events are recorded: some drivers request Commands without any."""
-        self.turns: dict[str, int] = {}
+        self.turns: dict[str, list[int]] = defaultdict(list)
         """When streams began to wait suspended, or resumed: their applications may be notified."""
         self.recorded_floor: list[str] = []
         """The floor according to ``floor`` records."""

@@ -32,13 +32,14 @@ class Streams(Extensions):
             self.report(15, "C3", f"a window of {tree.name} opens within another")
         if self.owed[tree.name]:
             self.owed[tree.name] -= 1
-        turned = self.turns.get(tree.name, -1000)
+        turned = [at for at in self.turns[tree.name] if self.now - at <= A_MOMENT_LATER]
         if self.heard[tree.name] > 0:
             self.heard[tree.name] -= 1
-        elif self.now - turned > A_MOMENT_LATER:
+        elif not turned:
             self.report(15, "O3", f"a window of {tree.name} opens, but no end is heard")
         else:
-            del self.turns[tree.name]
+            turned.pop()
+        self.turns[tree.name] = turned
         tree.windows += 1
         self.windows.append(tree)
 

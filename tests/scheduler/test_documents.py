@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from prima.interpreter.bounds import MOST_BRIEF
+from prima.invariants import check
 from prima.messages import (
     ApplicationLoaded,
     ApplicationUnloaded,
@@ -218,6 +219,27 @@ def test_c2_a_stream_that_is_suspended_again_hears_it_again() -> None:
         bench.finish("Hello.")
         bench.step(at=bench.now + 1)
     assert bench.logs() == ["suspended", "resumed"] * 2
+
+
+def test_c2_a_stream_may_resume_and_be_suspended_again_in_one_instant() -> None:
+    story = STORY.replace("<block>", "<block><speak>Zero.</speak><par>")
+    story = story.replace("</block>", "</par></block>").replace(
+        "</form>", '<on event="door"><topological-move to="lab"/></on></form>'
+    )
+    turning = '<form id="t"><on event="ring" reactive="false"><turn angle="3"/></on></form>'
+    others = (document(HELLO, "fa", "fa"), document(turning, "ea", "xa"))
+    bench = Bench(document(story, "ea", "ea"), *others)
+    for name in ("door", "touch", "ring"):
+        bench.event(name)
+    bench.finish("Zero.")
+    bench.step(at=bench.now + 1)
+    bench.finish("topological-move", goal=False)
+    bench.step(at=bench.now + 1)
+    bench.finish("Hello.")
+    assert bench.saying() == ["One.", "turn"], "which takes the floor (F3)"
+    bench.step(at=bench.now + 1)
+    assert bench.logs() == ["suspended"] * 2 + ["resumed", "suspended"], "the move waits, too"
+    assert check(bench.records, declared=("ea", "fa", "xa")) == []
 
 
 def test_c2_a_topic_that_was_broken_off_before_its_next_command_hears_nothing() -> None:
