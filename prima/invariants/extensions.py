@@ -242,6 +242,8 @@ class Extensions(FloorRules):
         until = ms(record["data"]["until"])
         if tree.open or tree.hold is None or tree.app in self.gone_apps:
             self.report(10, "X3", f"{tree.name} is held, but nobody asks for it")
+        elif tree.started < 0:
+            self.report(10, "X3", f"{tree.name} is held, but has not begun")
         elif until - self.now != tree.hold:
             self.report(10, "X3", f"{tree.name} is held until {until} ms, not for {tree.hold} ms")
         tree.until, tree.held = until, self.place
@@ -261,7 +263,8 @@ class Extensions(FloorRules):
 
     def _ends_rightly(self, tree: Tree) -> None:
         """X3: a stream ends only if it need not be held."""
-        if tree.hold is not None and "x3" in self.extensions and tree.app not in self.gone_apps:
+        wanted = tree.hold is not None and "x3" in self.extensions and tree.started >= 0
+        if wanted and tree.app not in self.gone_apps:
             self.report(10, "X3", f"{tree.name} ends, but was to be held for {tree.hold} ms")
 
     def note_substitute(self, record: Record) -> None:

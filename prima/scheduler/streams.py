@@ -118,12 +118,13 @@ def note_turns(mediation: Mediation) -> None:
 def c1(mediation: Mediation) -> None:
     """C1, F3: end the streams that nothing keeps open; they give up the floor.
 
-    The latest of the held streams takes it if nobody else has it (X3).
+    Only a stream that has begun is held. The latest of the held ones takes the floor if nobody
+    else has it (X3).
     """
     touched, mediation.touched = mediation.touched, {}
     for stream in touched.values():
         if not stream.open:
-            (keep_open if stream.hold else _end)(mediation, stream)
+            (keep_open if stream.hold and stream.turn else _end)(mediation, stream)
     if mediation.holds and not mediation.memory.floor:
         take_floor(mediation, mediation.memory.streams[next(reversed(mediation.holds))], "X3")
 

@@ -69,6 +69,21 @@ def test_x3_it_ends_after_its_longest_time_which_runs_on_while_suspended() -> No
     assert outcomes == ["begun", "over"]
 
 
+def test_x3_a_stream_of_which_nothing_has_started_is_not_held() -> None:
+    stage = Stage("prima+x3+x8")
+    stage.request("ea", say("Welcome."), say("This way."))
+    stage.select()
+    stage.request("fa", say("Oh!"), cause=EVENT, hold=5000, fresh=500)
+    stage.select()
+    stage.at(500).mediator.expire()
+    assert stage.select() == []
+    assert [r["rule"] for r in stage.phases("cancel")] == ["X8"]
+    stage.at(1000).end("ea#1")
+    assert stage.select() == ["ea#2"]
+    assert stage.phases("held") == []
+    assert check(stage.records, "prima+x3+x8") == []
+
+
 def test_x3_it_ends_when_its_state_is_left() -> None:
     stage = held("prima+x3")
     stage.select()
