@@ -47,9 +47,9 @@ class Extensions(FloorRules):
             self._goes_first(ab.tree)
 
     def _may_precede(self, ab: AB, before: AB) -> bool:
-        """A way back comes also before the rest of one that was broken, and before words."""
-        again = ab.inserted == "X1" and before.inserted in ("X1", "X9")
-        return before.tree is ab.tree and before.unit is None and (again or not before.inserted)
+        """A way back comes also before what has been put in already."""
+        first = ab.inserted == "X1" or not before.inserted
+        return before.tree is ab.tree and before.unit is None and first
 
     def _goes_first(self, tree: Tree) -> None:
         """X1, X9: all ABs that wait in a stream wait for the inserted one."""

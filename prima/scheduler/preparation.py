@@ -16,9 +16,7 @@ def prepare(mediation: Mediation, ab: Behavior) -> bool:
     """X1, X4, X9: insert what has to come first; whether anything was inserted."""
     if third_turn(ab, mediation.memory):
         return False
-    if ab.inserted:
-        return ab.inserted != "X4" and x1(mediation, ab)
-    return x1(mediation, ab) or x9(mediation, ab) or x4(mediation, ab)
+    return x1(mediation, ab) or (not ab.inserted and (x9(mediation, ab) or x4(mediation, ab)))
 
 
 def x1(mediation: Mediation, ab: Behavior) -> bool:
@@ -26,7 +24,7 @@ def x1(mediation: Mediation, ab: Behavior) -> bool:
 
     If the way back was itself broken, what has been undone of it is done again.
     """
-    if not ab.stream.suspended or first_of(ab.stream) not in (None, ab):
+    if not ab.stream.suspended:
         return False
     coming = [one for one in ab.stream.members.values() if one.inserted == "X1"]
     own = [sets(one.type, one.command) for one in (*ab.meant(), *coming)]

@@ -254,6 +254,31 @@ def test_x1_whatever_waits_in_the_stream_waits_for_the_way_back() -> None:
     assert stage.select() == ["ea#2", "ea#3"]
 
 
+def test_x1_the_robot_goes_back_before_it_turns_to_the_user() -> None:
+    """X4: the turn waited for the wheels when another drove the robot away."""
+    stage = Stage("prima+x1+x4")
+    stage.request("ea", move(), say("One."))
+    stage.select()
+    stage.at(500).end("ea#1.1", x=4.0, y=1.0, heading=90.0)
+    stage.select()
+    stage.at(600).request("fa", command("turn", angle=10))
+    stage.select()
+    stage.at(700).end("ea#2", then=lambda: stage.request("ea", say("Two."), connect=True))
+    assert stage.select() == [] and inserted(stage) == [("X4", "face-human")]
+    stage.at(750).request("fa", command("turn", angle=20), cause=EVENT)
+    assert stage.select() == []
+    stage.at(800).end("fa#1", x=4.0, y=1.0, heading=100.0)
+    assert stage.select() == ["fa#2"]
+    stage.at(900).end("fa#2", x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == ["ea#5.1"]
+    assert inserted(stage)[1:] == [("X1", "set-position")]
+    stage.at(1500).end("ea#5.1", x=4.0, y=1.0, heading=0.0)
+    assert stage.select() == ["ea#4"], "the turn to the user, once"
+    stage.at(1700).end("ea#4", x=4.0, y=1.0, heading=0.0)
+    assert stage.select() == ["ea#3"]
+    assert check(stage.records, "prima+x1+x4") == []
+
+
 def way_back_that_waits(policy: str, *steps: Step) -> Stage:
     """The EA's stream is to resume, but another turns the robot: the way back waits for that."""
     stage = Stage(policy, {"fa": "fa", "ea": "ea", "xa": "ea"})
