@@ -116,8 +116,10 @@ class Endings(Late):
         was, rule = ab.phase, record["rule"]
         # ABs of a tree or unit removed together may be recorded with their former state.
         lately = was == WAITING and self.now in (ab.followed_at, ab.freed_at)
-        behind = rule in ("E1", "X2") and lately
-        if record["outcome"] not in ((was, LINKED) if behind else (was,)):
+        told = {was, LINKED} if rule in ("E1", "X2") and lately else {was}
+        if was == LINKED and ab.joined_at == self.now:
+            told.add(WAITING)  # until the selection it does not wait for the way back
+        if record["outcome"] not in told:
             self.report(13, rule, f"{ab.shown} is {was} when cancelled, not {record['outcome']}")
         self.cuts.append(Cut(ab, was, rule, self.place, self._wanted(ab.tree)))
         if was == RUNNING:

@@ -185,7 +185,7 @@ class Memory:
         ways = ab.tree.put_first()
         if ways and not (ab.inserted or ab.urgent or ab.unit):
             ab.parents |= {way.name for way in ways}
-            ab.phase = LINKED
+            ab.phase, ab.joined_at = LINKED, self.now
             self.waiting.pop(ab.name)
 
     def remove(self, ab: AB, ended: bool = True) -> None:

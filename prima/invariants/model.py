@@ -70,6 +70,8 @@ class AB:
     """When one of its parents or its loop ended, or a window requested it (S2c)."""
     freed_at: int = -1
     """When its last parent ended or was cancelled."""
+    joined_at: int = -1
+    """When it began to wait for what was inserted for its stream (X1, X9)."""
     interrupted: bool = False
     """Whether it has to start again from its beginning (X2)."""
     content: list[Record] = field(default_factory=list)

@@ -89,21 +89,17 @@ class Effects:
         where, heading = self.position, self.heading if turns else None
         if pose is None:
             return []
-        if where is not None and math.dist(where, pose[:2]) > FAR:
+        if where is not None and _far(where, pose[:2]):
             return [_go(where, heading)]
-        if heading is not None and abs(difference(heading, pose[2])) > TURNED:
+        if heading is not None and _turned(heading, pose[2]):
             return [Command("set-direction", {"heading": _rounded(heading, 1)})]
         return []
 
     def _turned_since(self, body: RobotState) -> bool:
         before, now = self.body.pose, body.pose
-        return (
-            before is not None
-            and now is not None
-            and (
-                math.dist(before[:2], now[:2]) > FAR or abs(difference(before[2], now[2])) > TURNED
-            )
-        )
+        if before is None or now is None:
+            return False
+        return _far(before[:2], now[:2]) or _turned(before[2], now[2])
 
 
 def _rounded(number: float, digits: int) -> float:
@@ -116,6 +112,14 @@ def _go(position: tuple[float, float], heading: float | None) -> Command:
     if heading is None:
         return Command("set-position", args)
     return Command("set-position-and-direction", {**args, "heading": _rounded(heading, 1)})
+
+
+def _far(place: tuple[float, float], other: tuple[float, float]) -> bool:
+    return math.dist(place, other) > FAR
+
+
+def _turned(heading: float, other: float) -> bool:
+    return abs(difference(heading, other)) > TURNED
 
 
 def _apart(head: Head, other: Head) -> bool:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from prima.messages import Order
 from prima.scheduler import rules
-from prima.scheduler.behavior import WAITING, Application, Behavior, Wait
+from prima.scheduler.behavior import WAITING, Behavior, Wait
 from prima.scheduler.interruption import Held, x2
 from prima.scheduler.mediation import Mediation
-from prima.scheduler.memory import WorkingMemory
 from prima.scheduler.policy import Ranked
 from prima.scheduler.preparation import join_first, note_words, prepare
 from prima.scheduler.rules import Rank, Refusal
@@ -53,7 +52,7 @@ def s4(mediation: Mediation) -> bool:
             _hold(mediation, ab, refusal)
         elif _start(mediation, rank, ab, ranked[index + 1 :], held):
             return True
-    return len(mediation.started) > before and (_reactions_wait(memory) or _waits_anew(memory))
+    return len(mediation.started) > before
 
 
 # Devices ------------------------------------------------------------------------------------------
@@ -150,21 +149,8 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     mediation.recorder.decision(ab, rule, [loser.id for _, loser in losers])
     mediation.recorder.start(ab, rule, reaction)
     advance(mediation, ab)
-    return e4(mediation, ab) or changed or policy.turning or _reranks(memory, active)
-
-
-def _reranks(memory: WorkingMemory, active: Application | None) -> bool:
-    """S2b: whether another's stream is active now, which may rank reactions to one event anew."""
-    return memory.active is not active and _reactions_wait(memory)
-
-
-def _reactions_wait(memory: WorkingMemory) -> bool:
-    return any(ab.reaction is not None for ab in memory.waiting.values())
-
-
-def _waits_anew(memory: WorkingMemory) -> bool:
-    """X2: whether an AB that has just been interrupted waits, and nothing has told why."""
-    return any(ab.restarting and not ab.wait.blocked[0] for ab in memory.waiting.values())
+    changed = changed or memory.active is not active  # which ranks reactions to one event (S2b)
+    return e4(mediation, ab) or changed or policy.turning
 
 
 def _outdone(

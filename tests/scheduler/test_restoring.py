@@ -511,3 +511,14 @@ def test_x1_what_waits_for_its_way_back_is_told_as_linked_when_it_is_left() -> N
     cancelled = [(r["behavior"], r["outcome"]) for r in stage.phases("cancel")]
     assert cancelled == [("ea#4", "linked"), ("ea#6", "linked")]
     assert check(stage.records, "prima+x1") == []
+
+
+def test_x1_what_is_cancelled_at_once_has_not_waited_for_the_way_back() -> None:
+    stage = on_the_way_back()
+    now = [replace(say(text), now=True) for text in ("Stop.", "Wait.")]
+    stage.at(1500).request("ea", steps=[Step(now[0]), Step(NOD)])
+    stage.request("ea", now[1])
+    stage.select()
+    cancelled = [(r["behavior"], r["outcome"]) for r in stage.phases("cancel")]
+    assert cancelled[-2:] == [("ea#8", "waiting"), ("ea#7", "waiting")]
+    assert check(stage.records, "prima+x1") == []
