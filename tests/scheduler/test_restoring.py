@@ -455,43 +455,6 @@ def test_x1_of_a_way_back_a_robot_does_what_it_can() -> None:
     assert inserted(stage) == [("X1", "move-head")]
 
 
-def on_the_way_back() -> Stage:
-    """The EA has gone somewhere and turned the head; the FA has changed both, and it goes back."""
-    stage = Stage("prima+x1")
-    stage.request("ea", move(), command("move-head", pan=40), say("First."), say("Second."))
-    stage.select()
-    stage.at(500).end("ea#1.1", x=4.0, y=1.0, heading=90.0)
-    stage.select()
-    stage.at(600).end("ea#2")
-    stage.select()
-    stage.request("fa", command("turn", angle=3), command("move-head"), cause=EVENT)
-    stage.select()
-    stage.at(1000).end("fa#1", x=0.0, y=0.0, heading=0.0)
-    stage.select()
-    stage.at(1100).end("ea#3")
-    stage.end("fa#2")
-    assert stage.select() == ["ea#5.1"]
-    return stage
-
-
-def test_x1_a_way_back_that_was_broken_itself_is_gone_again() -> None:
-    """After the way, and before the head has turned back, the robot is taken away once more."""
-    stage = on_the_way_back()
-    assert inserted(stage) == [("X1", "set-position"), ("X1", "move-head")]
-    stage.at(1500).request("fa", command("turn", angle=3), cause=EVENT + 1)
-    stage.select()
-    stage.at(2000).end("ea#5.1", x=4.0, y=1.0, heading=0.0)
-    assert stage.select() == ["fa#3"]
-    stage.at(3000).end("fa#3", x=1.0, y=0.0, heading=0.0)
-    assert stage.select() == ["ea#7.1"]
-    assert inserted(stage)[2:] == [("X1", "set-position")], "the head has still to turn"
-    stage.at(4000).end("ea#7.1", x=4.0, y=1.0, heading=0.0)
-    assert stage.select() == ["ea#6"]
-    stage.at(4500).end("ea#6")
-    assert stage.select() == ["ea#4"]
-    assert check(stage.records, "prima+x1") == []
-
-
 def test_x1_a_way_back_that_was_not_undone_is_not_gone_again() -> None:
     stage = turned_away(say("Second."), 4.0, 1.0, 0.0)
     assert inserted(stage) == [("X1", "set-position-and-direction")]
@@ -502,23 +465,3 @@ def test_x1_a_way_back_that_was_not_undone_is_not_gone_again() -> None:
     stage.at(3000).end("fa#2")
     stage.select()
     assert len(inserted(stage)) == 1
-
-
-def test_x1_what_waits_for_its_way_back_is_told_as_linked_when_it_is_left() -> None:
-    stage = on_the_way_back()
-    stage.at(1200).leave("ea")
-    stage.select()
-    cancelled = [(r["behavior"], r["outcome"]) for r in stage.phases("cancel")]
-    assert cancelled == [("ea#4", "linked"), ("ea#6", "linked")]
-    assert check(stage.records, "prima+x1") == []
-
-
-def test_x1_what_is_cancelled_at_once_has_not_waited_for_the_way_back() -> None:
-    stage = on_the_way_back()
-    now = [replace(say(text), now=True) for text in ("Stop.", "Wait.")]
-    stage.at(1500).request("ea", steps=[Step(now[0]), Step(NOD)])
-    stage.request("ea", now[1])
-    stage.select()
-    cancelled = [(r["behavior"], r["outcome"]) for r in stage.phases("cancel")]
-    assert cancelled[-2:] == [("ea#8", "waiting"), ("ea#7", "waiting")]
-    assert check(stage.records, "prima+x1") == []
