@@ -57,6 +57,8 @@ STANDARD = frozenset(
     ]
 )
 """Events of the language itself, besides those with the name of a sensor, Command or service."""
+STANDARD_NAMES = frozenset(name for one in STANDARD for name in beginnings(one))
+"""These events, and the beginnings of their names by which handlers take them."""
 HABITS = {
     "timeout": "noinput",
     "silence": "noinput",
@@ -212,8 +214,8 @@ class KnownEvents:
         """Whether a service or an event is named by an expression."""
         self.services = {name for _, name in self.asked}
         self._own = {one.name for one in self.raised}
-        self._helped = any("help" in beginnings(one) for one in self._own)
-        self._known = {name for one in (*STANDARD, *self._own) for name in beginnings(one)}
+        self._begun = {name for one in self._own for name in beginnings(one)}
+        self._known = STANDARD_NAMES | self._begun
         self._guesses = 0
         self._told: dict[str, tuple[str, str] | None] = {}
         self._near: dict[str, str] = {}
@@ -232,7 +234,7 @@ class KnownEvents:
                     place = event_place(handler.node, name)
                     hint = meant(nearest, Span.of(place, name))
                     found.append(NEVER_RAISED.at(place, hint, wrong=message))
-                elif name == "help" and not (self._helped or self.dynamic):
+                elif name == "help" and not (name in self._begun or self.dynamic):
                     found.append(NO_HELP.at(event_place(handler.node, name)))
         for handler, name, diagnosis in self._never_taken:
             if self._unraised(name) is None:

@@ -323,10 +323,7 @@ class Observer:
 
 
 def _speaks(request: Entry) -> bool:
-    """Whether an AB says something.
-
-    A unit has the speaker from its start, but its parts speak; a question may only listen.
-    """
+    """Whether an AB says something: a question may only listen, and of a unit its parts speak."""
     return bool(request.text) and "speaker" in request.devices and request.command != "iu"
 
 

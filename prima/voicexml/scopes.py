@@ -143,9 +143,17 @@ class Documents:
                 page = root  # it is loaded, even if it is what a submit was answered with
             else:
                 page = yield from load_page(self.owner, whole, node, request)
-        nameless = fragment.startswith("#")  # so are the keys of dialogs without an id
-        if nameless or (page or context.page).dialog(fragment) is None:
-            name = f' "{fragment}"' if fragment else ""
-            where = f" in {page.uri}" if page else ""
-            raise Thrown.at(node, "error.badfetch", f"there is no dialog{name}{where}")
+        _check_dialog(page or context.page, fragment, node, f" in {page.uri}" if page else "")
         return page, fragment
+
+
+def _check_dialog(page: Page, fragment: str, node: Node, where: str) -> None:
+    """Refuse a fragment that names no dialog.
+
+    Raises:
+        Thrown: ``error.badfetch``.
+    """
+    nameless = fragment.startswith("#")  # so are the keys of dialogs without an id
+    if nameless or page.dialog(fragment) is None:
+        name = f' "{fragment}"' if fragment else ""
+        raise Thrown.at(node, "error.badfetch", f"there is no dialog{name}{where}")
