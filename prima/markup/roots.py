@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from shlex import quote
 
 from prima.errors import DocumentError, Hint, Problem, one_of, suggestion
 from prima.errors.diagnoses.structure import WRONG_NAMESPACE, WRONG_ROOT
@@ -91,8 +92,8 @@ def _use(root: Node, own: str, wanted: str) -> str:
         return 'An application names it by <grammar src="..."/>.'
     if wanted != "a scenario" or own not in (APPLICATION, VOICEXML):
         return ""
-    option = f"--{root.get('kind', 'ea')} {root.source.file}"
+    option = f"--{root.get('kind', 'ea')} {quote(root.source.file)}"
     return (
-        f"prima run and prima talk take it by {option}."
+        f"prima run, talk and live take it by {option}."
         ' A scenario names it by <application src="..."/>.'
     )

@@ -59,7 +59,7 @@ USAGES: list[Any] = [
     (["validate", "ap.xml"], 2, 'Did you mean "app.xml"?'),
     (["show", "god.jsonl"], 2, 'Did you mean "good.jsonl"?'),
     (["run", "."], 0, "runs: 1; fine: 1"),
-    (["run", "app.xml"], 1, "a scenario is needed here. prima run and prima talk take it by --fa app.xml."),
+    (["run", "app.xml"], 1, "a scenario is needed here. prima run, talk and live take it by --fa app.xml."),
     (["run", "good.jsonl"], 1, "prima show prints it"),
     (["run", "s.xml", "-o", "."], 2, "Is a directory"),
     (["run", "s.xml", "-o", ""], 2, '"" cannot be written: it is not a file name.'),

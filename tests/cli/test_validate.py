@@ -144,7 +144,7 @@ def test_who_runs_an_application_is_told_how(tmp_path: Path, verb: str, namespac
     done = prima(verb, "main.vxml", cwd=tmp_path)
     assert done.returncode == 1
     assert "This is a VoiceXML document; a scenario is needed here." in done.stderr
-    assert "prima run and prima talk take it by --ea main.vxml." in done.stderr
+    assert "prima run, talk and live take it by --ea main.vxml." in done.stderr
 
 
 def test_sarif_is_complete(tmp_path: Path) -> None:
