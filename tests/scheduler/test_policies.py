@@ -53,6 +53,19 @@ def test_fair_gives_the_other_its_turn_in_the_same_instant() -> None:
     assert stage.select() == ["fa#1", "ea#1"], "fa has had its turn: it holds nothing back from ea"
 
 
+def test_fair_asks_anew_whose_turn_it_is_after_each_start() -> None:
+    stage = Stage("fair")
+    nod = command("move-head", pan=0, tilt=20)
+    stage.request("fa", say())
+    stage.request("ea", nod)
+    assert stage.select() == ["fa#1", "ea#1"]
+    stage.at(500).end("ea#1")
+    stage.select()
+    stage.request("fa", steps=[Step(command("turn", angle=3)), Step(nod)], cause=EVENT)
+    stage.request("ea", nod)
+    assert stage.select() == ["fa#2", "ea#2"]
+
+
 @pytest.mark.parametrize(("policy", "first"), [("fixed", "fa#1"), ("fixed:ea", "ea#1")])
 def test_fixed_lets_one_application_always_go_first(policy: str, first: str) -> None:
     stage = Stage(policy)
