@@ -142,14 +142,14 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     aside = rules.aside(ab, memory)
     beside = composed or aside or not rules.f3(ab, memory)
     run(mediation, ab, not aside)
-    f1(mediation, ab, reaction, beside)
+    changed = f1(mediation, ab, reaction, beside)
     note_words(mediation, ab)
     losers = _outdone(mediation, rivals, ab, lower, held)
     rule = policy.decided(rank, losers[0][0]) if losers else why
     mediation.recorder.decision(ab, rule, [loser.id for _, loser in losers])
     mediation.recorder.start(ab, rule, reaction)
     advance(mediation, ab)
-    changed = memory.active is not active  # which ranks reactions to one event (S2b)
+    changed = changed or memory.active is not active  # which ranks reactions to one event (S2b)
     return e4(mediation, ab) or changed or policy.turning
 
 

@@ -54,17 +54,18 @@ def close_window(mediation: Mediation, delivery: Delivery) -> None:
 # Floors (F1, F3) and suspension (C2) -----------------------------------------------------------
 
 
-def f1(mediation: Mediation, ab: Behavior, reaction: int | None, beside: bool) -> None:
-    """F1, F3: a reaction, or an AB that starts by F2, takes the floor."""
+def f1(mediation: Mediation, ab: Behavior, reaction: int | None, beside: bool) -> bool:
+    """F1, F3: a reaction, or an AB that starts by F2, takes the floor; whether it did."""
     stream, memory = ab.stream, mediation.memory
     if reaction is not None:
         stream.causes.add(reaction)
     stays = (reaction is None and beside) or stream is memory.holder
     if not mediation.policy.floor or stays:
-        return
+        return False
     if stream in memory.floor:
         memory.floor.remove(stream)
     take_floor(mediation, stream, "F1" if reaction is not None else "F3")
+    return True
 
 
 def take_floor(mediation: Mediation, stream: Stream, rule: str) -> None:

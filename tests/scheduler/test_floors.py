@@ -387,3 +387,17 @@ def test_f5_stops_a_search_that_now_cuts_short_without_moving_the_robot() -> Non
     body = f'<form id="f1">{SEARCH}<on event="touch"><speak order="now">Wait.</speak></on></form>'
     run = perform(play(body, (10, Occurred("touch", "user"))))
     assert check(run.records, declared=IN_ORDER) == []
+
+
+def test_f2_whom_the_floor_lets_in_when_it_changes_hands_goes_before_those_that_rank_below() -> (
+    None
+):
+    stage = Stage(apps={"fa": "fa", "ea": "ea", "xa": "ea"})
+    stage.request("fa", say("Hello."), cause=EVENT + 2)
+    stage.select()
+    nod = command("gesture", name="nod")
+    stage.request("ea", nod, cause=EVENT + 2)
+    stage.request("fa", command("turn", angle=3), cause=EVENT + 1)
+    stage.request("xa", nod, cause=EVENT)
+    assert stage.select() == ["fa#2", "ea#1"]
+    assert check(stage.records) == []
