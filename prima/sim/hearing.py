@@ -73,7 +73,8 @@ def check_hearing(cast: Cast) -> list[Problem]:
     problems = [*_not_there(cast), *_late(nodes, cast.scenario.until)]
     problems += [*_outside(nodes, world), *_nobody(nodes), *_unable(nodes, cast.robot)]
     problems += [*check_values(cast.scenario, cast.robot), *check_sensors(nodes, documents)]
-    problems += world.plan.narrow(room_beside(cast.robot)) if world.plan is not None else ()
+    if world.plan is not None:
+        problems += world.plan.narrow(room_beside(cast.robot), cast.robot.radius)
     corners = [*_corners(nodes, events, pages, world)]
     problems += [*corners, *_words(nodes, cast)]
     problems += [*check_services(cast, events), *check_replies(cast)]

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import copysign
+from math import copysign, radians
 
 from prima.devices.profile import Motion, Profile
 from prima.messages import Command, Json
 from prima.sim.map import Point, distance
 from prima.sim.plan import off_line
 from prima.sim.routes import Routes
-from prima.sim.world import STANDING, World, bearing, difference
+from prima.sim.world import STANDING, STEP_MS, World, bearing, difference
 
 ARRIVED = 0.1
 """A goal is reached at this distance (m)."""
@@ -25,6 +25,10 @@ TOO_NEAR = 0.1
 """The distance (m) that its body keeps from a person in front."""
 PASSING = 70.0
 """How many degrees off the person's direction it passes them."""
+TURNED = 30.0
+"""The robot begins to drive when it is turned to its goal within this many degrees."""
+DRIFT = 0.11
+"""How far (m) it may drift off its line until it is."""
 ALIGNED = 1.5
 """The robot counts as turned in a direction within this many degrees."""
 REACTING_S = 0.2
@@ -86,7 +90,9 @@ class Locomotion:
         """Whether a move has been stuck for too long; another attempt may find another way."""
         position, heading = self.world.position, self.world.heading
         before = plan.last or (position, heading)
-        moved = distance(position, before[0]) > 0.02
+        # A wall pushes the body back by up to a step of its drive, again and again.
+        pushed = 2 * self.profile.speed * STEP_MS / 1000
+        moved = distance(position, before[0]) > max(0.02, pushed)
         turned = abs(difference(heading, before[1])) > 2.0
         if plan.last is None or moved or turned:
             plan.last, plan.stuck = (position, heading), 0
@@ -135,11 +141,16 @@ class Locomotion:
         return False
 
     def face(self, plan: LocomotionMemory) -> bool:
-        """Turn to the user, searching all round for them."""
+        """Turn to where the user was last seen, searching all round for them.
+
+        A camera that points aside with the head loses them while the body turns.
+        """
         world = self.world
         plan.scanned += abs(self._turned(plan))
-        if world.sees_person() and world.person is not None:
-            off = difference(bearing(world.position, world.person), world.heading)
+        if world.sees_person():
+            plan.sought = world.person
+        if plan.sought is not None:
+            off = difference(bearing(world.position, plan.sought), world.heading)
             if abs(off) <= 5.0:
                 self.stand()
                 return True
@@ -164,7 +175,9 @@ class Locomotion:
             turning = copysign(profile.turn_speed, turning)
         if near * 1.5 < fastest:
             fastest = min(fastest, max(near * 1.5, 0.1))
-        world.drive = (0.0 if abs(off) > 30.0 else fastest, turning)
+        if abs(off) > ALIGNED:
+            fastest = min(fastest, DRIFT / radians(TURNED) * abs(turning / off))
+        world.drive = (0.0 if abs(off) > TURNED else fastest, turning)
 
     def _round_person(self, heading: float, goal: Point) -> tuple[float, float]:
         """The direction and speed that pass a person who is in the way, if anyone is."""

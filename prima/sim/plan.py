@@ -110,23 +110,45 @@ class FloorPlan:
                 remedy = "Lead it round the wall, by a <place> beside it."
                 yield Problem(node.place, "warning", "blocked-way", message, remedy)
 
-    def narrow(self, room: float) -> Iterator[Problem]:
-        """Warnings about ways that are too close (m) to a wall for the robot to go along them."""
-        if len(self._ways) * len(self._walls) > MOST:
+    def narrow(self, room: float, radius: float) -> Iterator[Problem]:
+        """Warnings about ways and places that are too close (m) to a wall for a robot.
+
+        Along a way it needs some room beside it, and at a place that of its body.
+        """
+        if (len(self._ways) + len(self._places)) * len(self._walls) > MOST:
             return
+        told: set[str] = set()
         for begin, end, node in self._ways:
             line = self._places[begin], self._places[end]
             if any(crosses(line, segment) for segment, _ in self._walls):
-                continue  # already reported
+                told |= {begin, end}  # already reported
+                continue
             near = [(apart(line, segment), wall) for segment, wall in self._walls]
             metres, wall = min(near, key=lambda one: one[0], default=(room, node))
             if metres < room:
+                told |= {begin, end}
                 message = (
                     f'The way from "{begin}" to "{end}" is too narrow for the robot:'
                     f" the wall in line {wall.place.line} is {metres:.2f} m beside it."
                 )
                 remedy = f"Lead it {room:.2f} m or more away from walls."
                 yield Problem(node.place, "warning", "blocked-way", message, remedy)
+        for name in [one for one in self._nodes if one not in told]:
+            yield from self._tight(name, radius)
+
+    def _tight(self, name: str, radius: float) -> Iterator[Problem]:
+        """A warning if a wall is closer (m) to a place than the robot's body allows."""
+        near = [(off_line(self._places[name], *segment), wall) for segment, wall in self._walls]
+        for metres, wall in near:
+            if metres < radius:
+                place = self._nodes[name].attribute_place("x")
+                message = (
+                    f'The place "{name}" is too close to the wall in line {wall.place.line}:'
+                    f" {metres:.2f} m. The robot may not reach it."
+                )
+                remedy = f"Put it {radius:.2f} m or more away from walls."
+                yield Problem(place, "warning", "blocked-way", message, remedy)
+                return
 
     def _unreachable(self) -> Iterator[Problem]:
         """Places to which no way leads and that some place does not see.

@@ -155,6 +155,23 @@ def test_a_way_that_is_too_narrow_for_the_robot_is_told(tmp_path: Path, y: str) 
     assert told == [right] * blocked
 
 
+@pytest.mark.parametrize(("metres", "told"), [("0.19", True), ("0.21", False)])
+def test_a_place_that_is_too_close_to_a_wall_is_told(
+    tmp_path: Path, metres: str, told: bool
+) -> None:
+    x = 4 + float(metres)
+    (tmp_path / "w.xml").write_text(WORLD.format(f'<wall x1="{x}" y1="-2" x2="{x}" y2="2"/>'))
+    (tmp_path / "a.xml").write_text(WALKS)
+    (tmp_path / "s.xml").write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="w.xml"'
+        f' robot="{ROOT}/documents/robots/papero.xml"><robot at="a"/>'
+        '<application src="a.xml"/></scenario>'
+    )
+    right = 'The place "b" is too close to the wall in line 4: 0.19 m. The robot may not reach it.'
+    assert [one.message for one in loading.validate([tmp_path / "s.xml"])] == [right] * told
+    assert bool(api.rehearse(api.load_scenario(tmp_path / "s.xml")).failures) == told
+
+
 # What a scenario waits for ----------------------------------------------------------------
 ASKING = (
     '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><form id="f">'

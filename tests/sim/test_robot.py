@@ -55,6 +55,14 @@ def test_every_command_of_table_4_2_can_be_done(tmp_path: Path) -> None:
     assert transcript.outcome == "over"
 
 
+def test_a_robot_faces_whom_its_camera_loses_while_it_turns(tmp_path: Path) -> None:
+    """The head looks aside: the camera turns away from the user as the body turns to them."""
+    body = '<form id="a"><block><move-head pan="-60"/><face-human/><exit/></block></form>'
+    transcript = rehearse(tmp_path, body, '<person x="0.7" y="-0.7"/>')
+    ended = [one for one in transcript.records if one["phase"] == "end"]
+    assert ended[-1]["data"]["heading"] == pytest.approx(315, abs=5)
+
+
 def test_the_search_turns_the_camera_when_patience_has_run_out(tmp_path: Path) -> None:
     body = """<form id="a"><block><active-sensing-human patience="5s">Where are you?</active-sensing-human>
       <speak>There you are.</speak><exit/></block></form>"""

@@ -249,6 +249,23 @@ def test_who_is_slow_is_not_blocked(tmp_path: Path, robot: str) -> None:
     assert told(moved(tmp_path, world, robot))[-1] == "ends mv: exit"
 
 
+def test_who_is_fast_and_turns_slowly_does_not_drift_into_a_wall(tmp_path: Path) -> None:
+    world = """<place id="a" x="4.3" y="-1.5" heading="180"/><place id="d" x="-1.4" y="2.4"/>
+      <wall x1="2.2" y1="-2.4" x2="3" y2="-1"/>"""
+    assert told(moved(tmp_path, world, ' speed="1" turn-speed="30"'))[-1] == "ends mv: exit"
+
+
+def test_who_slides_along_a_wall_is_blocked(tmp_path: Path) -> None:
+    """The wall pushes the body back, the wheels drive it on: no progress."""
+    world = """<place id="a" x="-5" y="6"/><place id="b" x="0.3" y="-0.8"/><place id="d" x="3" y="-1"/>
+      <way from="a" to="b"/><way from="b" to="d"/>
+      <wall x1="0.1" y1="-3.5" x2="0" y2="0.9"/><wall x1="-2" y1="3" x2="-1" y2="2"/>"""
+    assert told(moved(tmp_path, world, ' radius="0.4" speed="1"'))[-2:] == [
+        "Topological Move fails: the way is blocked",
+        "ends mv: error.device.locomotion: app.xml:1:103: the way is blocked",
+    ]
+
+
 @pytest.mark.parametrize(("given", "heading"), [("", 90), (' heading="0"', 0)])
 def test_a_robot_begins_in_the_direction_of_its_place(
     tmp_path: Path, given: str, heading: int

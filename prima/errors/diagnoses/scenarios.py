@@ -9,7 +9,7 @@ BLOCKED_WAY = Diagnosis(
     "Blocked way",
     (
         "A way of a world goes through a wall, so that the robot stops in front of it. Given "
-        "a scenario, also a way that is too close to a wall for its robot."
+        "a scenario, also a way or place that is too close to a wall for its robot."
     ),
     severity="warning",
 )
