@@ -20,24 +20,24 @@ if TYPE_CHECKING:
     from prima.messages import Json
 
 YES = {  # by language; without one, all count
-    "en": "yes|yeah|yep|yup|yes please|yes i do|yes you may|yes it is|yes sir|yes maam|yes thats right|sure"
+    "en": "yes|yeah|yep|yup|yes i do|yes you may|yes it is|yes sir|yes maam|yes thats right|sure"
     "|of course|ok|okay|correct|right|thats right|thats correct|that is right|that is correct"
     "|true|affirmative|absolutely|definitely|certainly|uh huh|i do|it is",
-    "ja": "はい|ええ|うん|そうです|お願いします|はいお願いします|もちろん",
-    "fr": "oui|ouais|oui merci|oui sil vous plaît|oui sil te plaît|volontiers|avec plaisir|daccord|bien sûr",
-    "de": "ja|ja bitte|ja gern|ja gerne|gern|gerne|jawohl|klar|ja klar|genau|natürlich|richtig|stimmt",
-    "es": "sí|si|sí por favor|si por favor|sí gracias|si gracias|claro|por supuesto",
-    "it": "sì|si|sì grazie|si grazie|sì per favore|si per favore|certo|volentieri",
+    "ja": "はい|ええ|うん|そうです|はいそうです|お願いします|もちろん|いいよ|いいですよ|オーケー",
+    "fr": "oui|ouais|volontiers|avec plaisir|daccord|bien sûr",
+    "de": "ja|ja gern|ja gerne|gern|gerne|jawohl|klar|ja klar|genau|natürlich|richtig|stimmt",
+    "es": "sí|si|claro|por supuesto",
+    "it": "sì|si|certo|volentieri",
 }
 NO = {
-    "en": "no|nope|nah|no thanks|no thank you|no i dont|no i do not|no it isnt|no it is not|no sir"
+    "en": "no|nope|nah|no i dont|no i do not|no it isnt|no it is not|no sir"
     "|no maam|not now|wrong|incorrect|thats wrong|thats not right|false|negative|no way|not really"
     "|of course not|i dont|it isnt|never",
-    "ja": "いいえ|いや|ううん|違います|結構です|いいえ結構です",
-    "fr": "non|non merci",
-    "de": "nein|nein danke|nee|falsch",
-    "es": "no|no gracias",
-    "it": "no|no grazie",
+    "ja": "いいえ|いえ|いや|ううん|違います|いいえ違います|結構です|いいえ結構です|だめ|ダメ|嫌",
+    "fr": "non",
+    "de": "nein|nee|falsch",
+    "es": "no",
+    "it": "no",
 }
 CURRENCIES = {
     "$": "USD", "dollar": "USD", "dollars": "USD", "buck": "USD", "bucks": "USD",
@@ -68,6 +68,13 @@ class Conflict(ValueError):
     """Parameters of a built-in type that exclude each other."""
 
 
+COURTESY = re.compile(
+    r"^\W*please\b[\s,]*"
+    r"|(?<![\s,、])[\s,、]*+(?:\b(?:please|thanks|thank you|bitte|danke|merci|por favor|gracias|per favore|grazie"
+    r"|s['’]?il (?:vous|te) pla[iî]t)|を?お願いします|です)[\s.!。]*$",
+    re.IGNORECASE,
+)
+"""Words of courtesy before or after a value."""
 LENGTHS = ("length", "minlength", "maxlength")
 _URI = re.compile(r"(?:builtin:(?:(?:grammar|voice|dtmf)/)?)?([\w-]+)(?:\?(.*))?", re.DOTALL)
 _EXTENSION = re.compile(r" ?(?:\bextension\b|\bext\b|(?:\b|(?<=\d))x(?=\d|\b)|内線) ?")
@@ -101,7 +108,16 @@ def built_in(uri: str, lang: str) -> BuiltIn:
         raise ValueError(f'There is no built-in type "{uri[:80]}".')
     given = _parameters(name, match[2] or "")
     read = partial(_READERS[name], given, lang.split("-")[0].lower())
-    return BuiltIn(name, read, partial(_open, name, given))
+    return BuiltIn(name, partial(_read, read), partial(_open, name, given))
+
+
+def _read(read: Callable[[str, str], Json], text: str, mode: str) -> Json:
+    """The value of an utterance, or else of what is left without words of courtesy."""
+    value = read(text, mode)
+    if value is not None or mode == "dtmf":
+        return value
+    bare = COURTESY.sub("", text)
+    return read(bare, mode) if bare != text else None
 
 
 def uri_mode(uri: str) -> Literal["voice", "dtmf", ""]:
