@@ -174,8 +174,8 @@ def elements(vocabulary: Vocabulary, level: int, groups: Groups | None = None) -
         source = f" *{sentence(element.source)}*" if element.source else ""
         parts.append(f"{sentence(element.doc)}{source}\n")
         where = parents_of(vocabulary, element, groups or {})
-        stands = f" Stands in: {where}." if where else " The root element."
-        parts.append(f"Holds: {children_of(vocabulary, element, groups or {})}.{stands}\n")
+        parents = f"Parents: {where}." if where else "The root element."
+        parts.append(f"Children: {children_of(vocabulary, element, groups or {})}. {parents}\n")
         if element.attributes:
             head = ("attribute", "kind", "default", "meaning")
             parts.append(table(head, map(attribute_row, element.attributes)))

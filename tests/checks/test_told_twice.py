@@ -383,7 +383,7 @@ def test_a_handler_of_the_application_root_makes_its_leaf_tell_twice(tmp_path: P
 
 
 def told_twice_by(folder: Path, body: str) -> list[Problem]:
-    """What a VoiceXML document is warned of; its content stands in line 2."""
+    """The warnings about a VoiceXML document, whose content is in line 2."""
     head = "<var name='first'/><var name='n'/>"
     (folder / "main.vxml").write_text(VXML.format("", f"\n{body}{head}"))
     found = loading.validate([folder / "main.vxml"])

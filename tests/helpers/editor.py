@@ -37,7 +37,7 @@ def position(text: str, offset: int) -> lsp.Position:
 
 
 def cut(text: str, place: lsp.Range) -> str:
-    """What stands in a range."""
+    """The text in a range."""
     lines = [line.encode("utf-16-le") for line in text.split("\n")]
     first, last = place.start, place.end
     if first.line == last.line:

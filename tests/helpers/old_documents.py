@@ -26,7 +26,7 @@ def scenario(folder: Path, application: str, attributes: str = "") -> Path:
 def run(
     folder: Path, body: str | bytes, attributes: str = "", head: str = HEAD
 ) -> prima.Transcript:
-    """Run a document, or what stands in one."""
+    """Run a document, or the content of one."""
     text = f"{head}{body}</vxml>" if isinstance(body, str) else body
     data = text.encode() if isinstance(text, str) else text
     (folder / "app.vxml").write_bytes(data)

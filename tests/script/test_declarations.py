@@ -111,7 +111,7 @@ def test_names_in_our_own_code_are_free_for_documents() -> None:
     "code", ["arguments", "arguments[1]", "(() => arguments)()", "eval('arguments')"]
 )
 def test_an_expression_has_no_arguments(code: str) -> None:
-    """It is code of its scope, of no function: ours, which it stands in, shows nothing."""
+    """It is code of its scope: the function of ours around it does not show."""
     scopes = Scopes()
     for evaluate in (scopes.engine.value, scopes.engine.condition):
         with pytest.raises(ScriptError, match="arguments is not defined"):

@@ -55,7 +55,7 @@ def test_without_mediation_behaviours_collide(tmp_path: Path) -> None:
 
 
 def test_a_thousand_times_real_time_needs_no_trick() -> None:
-    """The demo's figure stands in docs/performance.md; here only that nothing is skipped."""
+    """Nothing is skipped; docs/performance.md has the demo's figure."""
     path = ROOT / "documents" / "scenarios" / "follow-during-navigation.xml"
     loops = [
         r for r in api.rehearse(path).records if r["phase"] == "end" and r.get("outcome") == "again"

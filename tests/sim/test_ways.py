@@ -270,7 +270,7 @@ def test_who_slides_along_a_wall_is_blocked(tmp_path: Path) -> None:
 def test_a_robot_begins_in_the_direction_of_its_place(
     tmp_path: Path, given: str, heading: int
 ) -> None:
-    """No default stands in the table: an editor or a schema would put it in its place."""
+    """The table has no default, which an editor or a schema would fill in."""
     from prima.sim.vocabulary.scenario import SCENARIO
 
     (tmp_path / "hall.xml").write_text(

@@ -276,7 +276,7 @@ def test_states_of_voicexml() -> None:
 
 
 LOOKED = {
-    # What came instead stands in the window, though what is nearest came long before it.
+    # The rows show what came instead, though the nearest came long before.
     '<expect says="Going up" on="reply.lift" within="2s"/>': ["reply.lift", "Going up", "Floor 3"],
     '<expect does="gesture" on="touch" within="1s"/>': ["touches", "do not push", "Gesture"],
     # It waits for something that never comes: both ends of the run.

@@ -211,7 +211,7 @@ case(
     logs=["subdialog"],
 )
 case(
-    "a script's functions and variables are of the scope it stands in",
+    "a script's functions and variables are of the scope that the script is in",
     "5.3.12",
     """<script>var d = 1; function twice(x) { return x * 2; }</script>
     <form><script>var e = twice(d);</script><block><script>var f = e + 1;</script>
