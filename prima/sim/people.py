@@ -113,15 +113,19 @@ class People:
     def observe(self, now: int, records: list[Record]) -> None:
         """Observe what has happened, and react to it after a delay."""
         for record in records:
-            phase = record["phase"]
+            phase, name = record["phase"], str(record.get("behavior")).partition(".")[0]
             if phase == "start" and record.get("text"):
-                self._texts[record["behavior"].partition(".")[0]] = record["text"]
-            for index, when in self._awaited.get(phase, ()):
-                said = self._texts.get(str(record.get("behavior")).partition(".")[0], "")
-                if fires(when.trigger, when.what, Entry(record), said):
-                    self._trigger(index, when, now)
+                self._texts[name] = record["text"]
+            if awaited := self._awaited.get(phase):
+                self._check(awaited, Entry(record), self._texts.get(name, ""), now)
             if phase in OVER and record.get("outcome") != "again":
-                self._texts.pop(str(record.get("behavior")).partition(".")[0], None)
+                self._texts.pop(name, None)
+
+    def _check(self, awaited: list[tuple[int, When]], entry: Entry, said: str, now: int) -> None:
+        """Begin what is triggered by a record."""
+        for index, when in awaited:
+            if fires(when.trigger, when.what, entry, said):
+                self._trigger(index, when, now)
 
     def _trigger(self, index: int, when: When, now: int) -> None:
         seen = self._seen[index] = self._seen.get(index, 0) + 1
