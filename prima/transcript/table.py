@@ -55,7 +55,7 @@ def layout(apps: Iterable[str], columns: int = COLUMNS, why: bool = False) -> Co
     Names of applications are not broken. If they leave too little room for the behaviour,
     the table is wider.
     """
-    made = ColumnWidths(max([3, *map(width, apps)]), 0, why=why)
+    made = ColumnWidths(max([3, *(width(visible(app)) for app in apps)]), 0, why=why)
     return made._replace(behavior=max(columns - made.left - (14 if why else 7), NARROWEST))
 
 
@@ -95,10 +95,10 @@ def format_row(row: Row, shape: ColumnWidths) -> list[str]:
     """The lines of one row."""
     mark = f"{'*' if row.star else ' '}{row.bracket or ' '}"
     left = f"  {mark}  {row.number:>{shape.numbers}} {row.time:>{shape.times}.2f}"
-    left += f"  {row.actor:<3}  {_pad(row.app, shape.apps)}  "
+    left += f"  {row.actor:<3}  {_pad(visible(row.app), shape.apps)}  "
     pieces = _wrap(visible(row.what), shape.behavior)
     event = "o" if row.event else " "
-    tail = f"  {event}      {row.rule}" if shape.why else f"  {event}"
+    tail = f"  {event}      {visible(row.rule)}" if shape.why else f"  {event}"
     first = (left + _pad(pieces[0], shape.behavior) + tail).rstrip()
     return [first, *(" " * width(left) + piece for piece in pieces[1:])]
 

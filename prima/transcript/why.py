@@ -6,6 +6,7 @@ from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from prima.errors.visible import visible
 from prima.transcript.record import Entry
 from prima.transcript.row import Row
 from prima.transcript.run import Run
@@ -47,7 +48,8 @@ def explained(run: Run, row: Row) -> list[str]:
         lines.append(f"Requested at {row.source}.")
     if row.actor != "R":
         lines.append("It came from outside; no rule decided its time.")
-    return lines + [f"{reason.time:.3f} s: {reason.text}" for reason in reasons(run, row)]
+    lines += [f"{reason.time:.3f} s: {reason.text}" for reason in reasons(run, row)]
+    return [visible(line) for line in lines]
 
 
 def _reason(entry: Entry, row: Row) -> Reason | None:

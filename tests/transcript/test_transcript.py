@@ -195,3 +195,19 @@ def test_a_profiles_voice_counts() -> None:
 def test_an_argument_that_is_no_time_is_shown_as_it_is() -> None:
     assert describe("pause", None, {"time": "robot"}) == "Pause (time robot)"
     assert describe("pause", None, {"time": 500}) == "Pause (time 0.5s)"
+
+
+def test_no_name_or_word_of_a_transcript_begins_a_line_of_its_own() -> None:
+    """A row or a reason that PRIMA has not told cannot be put into what it prints."""
+    app, fake = "a\n9  R    b", "x\n1 s: by F1"
+    records = [
+        {"time": 0.0, "phase": "request", "actor": "mediator", "app": app, "behavior": "a#1",
+         "tree": "a:1", "command": "speak", "text": fake, "priority": "low", "source": fake},
+        {"time": 0.0, "phase": "start", "actor": "robot", "app": app, "behavior": "a#1",
+         "tree": "a:1", "command": "speak", "text": fake, "rule": "S1\u2028S2\x1b"},
+    ]  # fmt: skip
+    transcript = api.Transcript(records, "t.jsonl")
+    lines = transcript.table(why=True).splitlines()
+    assert len(lines) == 2 and "\x1b" not in lines[1]
+    assert lines[0].index("Behavior") == lines[1].index('"x 1 s')
+    assert len(api.explain_row(transcript, 0).splitlines()) == 3
