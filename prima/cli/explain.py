@@ -10,6 +10,7 @@ import click
 
 from prima.cli.common import columns, format_option, print_json, put, tell_cut
 from prima.errors import UsageError, did_you_mean
+from prima.transcript.table import NARROWEST
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem as Completion
@@ -104,9 +105,10 @@ def _list(form: str) -> None:
 
 def _lines(texts: dict[str, str]) -> None:
     """Print a line for each name."""
-    width, line = max(map(len, texts)), columns()
+    width = max(map(len, texts))
+    room = max(columns() - width - 2, NARROWEST)
     for name, text in texts.items():
-        put(f"{name:{width}}  {shorten(text, line - width - 2, placeholder=' ...')}")
+        put(f"{name:{width}}  {shorten(text, room, placeholder=' ...')}")
 
 
 def _rule(name: str, form: str) -> None:

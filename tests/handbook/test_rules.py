@@ -86,3 +86,12 @@ def test_a_rule_that_is_not_there_is_told(tmp_path: Path) -> None:
 def test_every_example_of_a_rule_is_as_it_expects() -> None:
     done = prima("test", "documents/rules", cwd=ROOT)
     assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize("columns", [1, 20, 80])
+def test_the_list_is_printed_in_the_narrowest_terminal(
+    columns: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("prima.cli.explain.columns", lambda: columns)
+    made = prima("explain")
+    assert made.returncode == 0 and "undeclared-variable" in made.stdout
