@@ -10,9 +10,11 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
-from prima.errors import DocumentError, Edit, Fix, Hint, Place, Span, nearest_word, replaced
+from prima.errors import DocumentError, Fix, Hint, Place, Span, nearest_word, replaced
+from prima.markup import endtags
+from prima.markup.endtags import MISMATCH, UNCLOSED, line_of, offset_of
 from prima.markup.limits import refusal, too_deep
-from prima.markup.tree import MARKUP, Source
+from prima.markup.tree import Source
 from prima.markup.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
@@ -27,18 +29,11 @@ OTHER_FORMS = (
     ),
 )
 """Beginnings of texts in other formats, with descriptions and remedies."""
-MISMATCH = r"tag mismatch: (\S+) line (\d+) and (\S+)"
-"""The parser's message for a mismatched closing tag: the opening one, its line, the closing one."""
-UNCLOSED = r"(?:tag mismatch:|Premature end of data in tag) ([^\s<>]+) line (\d+)"
-"""The parser's message for an unclosed element: its name and line."""
 REMEDIES = (
-    (MISMATCH, "The <{0}> of line {1} is still open here: write </{0}>, or end its own tag with />."),
     (r"Namespace prefix (\S+) ", 'Write the name without "{0}:", or declare it: xmlns:{0}="...".'),
     (r"Char 0x0|PCDATA invalid Char value 0|Invalid character",
      "Remove the character; an editor may not show it. Save the file as UTF-8."),
     (r"invalid Char value|xmlParseCharRef", "Remove the control character."),
-    (r"Premature end of data in tag (\S+) line (\d+)",
-     "The <{0}> of line {1} is never closed: write </{0}>."),
     (r"Start tag expected", "Begin with a root element, such as <prima> or <vxml>."),
     (r"Attribute (\S+) redefined", "Keep one of them."),
     (r"Unescaped '<' not allowed in attributes", "Write &lt; for <, or close the quote before."),
@@ -63,7 +58,7 @@ PLAINER = (
     (r"attributes construct error", "an attribute is written wrongly"),
     (r"error parsing attribute name", "the name of an attribute is expected here"),
     (MISMATCH, "</{2}> does not end <{0}>"),
-    (r"Premature end of data in tag (\S+) line (\d+)", "the file ends inside <{0}>"),
+    (UNCLOSED, "the file ends inside <{0}>"),
     (r"StartTag: invalid element name", "a < begins no tag"),
     (r"Unescaped '<' not allowed in attributes values", "a < is in an attribute's value"),
     (r"Namespace prefix (\S+) on (\S+) is not defined", 'the prefix "{0}" is not declared'),
@@ -156,7 +151,7 @@ def _misspelt(
     if opened in tags or closed not in tags or not nearest_word(opened, [closed]):
         return None
     line = int(match[2])
-    place = Place(source.file, line, max(_line(source, line).rfind(f"<{opened}") + 1, 1))
+    place = Place(source.file, line, max(line_of(source, line).rfind(f"<{opened}") + 1, 1))
     name = Span.of(place._replace(column=place.column + 1), opened)
     remedy = replaced(f'Did you mean "{closed}"? The closing tag is right.', closed, name)
     return refusal(place, "unknown-element", f"There is no <{opened}>.", remedy)
@@ -165,18 +160,6 @@ def _misspelt(
 def _said(error: etree.XMLSyntaxError) -> str:
     """The parser's message without the place."""
     return " ".join((error.msg or "Not XML").split(", line ")[0].split())
-
-
-def _line(source: Source, number: int) -> str:
-    """A line of the text, counted from 1; empty after the last one."""
-    lines = source.text.split("\n")
-    return lines[number - 1] if number <= len(lines) else ""
-
-
-def _offset(source: Source, place: Place) -> int:
-    """The offset of a place."""
-    before = source.text.split("\n")[: place.line - 1]
-    return sum(len(line) + 1 for line in before) + place.column - 1
 
 
 def _syntax_error(
@@ -214,17 +197,13 @@ def _not_well_formed(
         sentence, remedy = "a quote that is opened here is not closed", "Write the other quote."
     else:
         place = _beginning(source, place, message)
-        wide = WIDE.get(_line(source, place.line)[place.column - 1 : place.column])
+        wide = WIDE.get(line_of(source, place.line)[place.column - 1 : place.column])
         if wide:
             remedy = wide
-        elif hint := (
-            _wrong_end(source, place, message) or _empty(source, place, message, vocabularies)
-        ):
+        elif hint := endtags.remedy(source, place, message, vocabularies):
             remedy, fixes = hint
-        elif "XML declaration" in message and "</" in source.text[: _offset(source, place)]:
+        elif "XML declaration" in message and "</" in source.text[: offset_of(source, place)]:
             remedy = "A second document begins here: keep one of them."
-        elif unclosed := re.search(UNCLOSED, message):
-            fixes = _closed(source, place, unclosed[1])
     if TEMPLATE.search(source.text):
         remedy, fixes = "A server makes the document from this: run what it makes.", ()
     sentence = f"This is not well-formed XML: {sentence.rstrip('.')}."
@@ -241,7 +220,7 @@ def _translated(table: Iterable[tuple[str, str]], message: str) -> str:
 
 def _open_quote(source: Source, place: Place) -> Place | None:
     """A quote opened on an earlier line and not closed there."""
-    before = source.text[: _offset(source, place)]
+    before = source.text[: offset_of(source, place)]
     quote = OPEN_QUOTE.search(before[-10_000:])
     if quote is None or "\n" not in quote[0]:
         return None
@@ -253,54 +232,10 @@ def _beginning(source: Source, place: Place, message: str) -> Place:
     unclosed = re.search(MISMATCH, message)
     if unclosed and unclosed[1].startswith("／"):
         line = int(unclosed[2])
-        return Place(source.file, line, max(_line(source, line).find("／") + 1, 1))
+        return Place(source.file, line, max(line_of(source, line).find("／") + 1, 1))
     for words, beginning in BEGINNINGS:
         if match := re.search(words, message):
             sought = beginning.format(*match.groups())
-            start = _line(source, place.line).rfind(sought, 0, place.column)
+            start = line_of(source, place.line).rfind(sought, 0, place.column)
             return place._replace(column=start + 1) if start >= 0 else place
     return place
-
-
-def _wrong_end(source: Source, place: Place, message: str) -> Hint:
-    """The remedy for a misspelt end tag with an unknown name."""
-    match = re.search(MISMATCH, message)
-    if match is None or not nearest_word(match[3], [match[1]]):
-        return Hint()
-    here = _line(source, place.line).startswith(f"</{match[3]}", place.column - 1)
-    if not here or re.search(rf"<{re.escape(match[3])}[\s/>]", source.text):
-        return Hint()
-    name = Span.of(place._replace(column=place.column + len("</")), match[3])
-    text = "The <{0}> of line {1} is still open here: write </{0}> instead of </{2}>."
-    title = f"Change to </{match[1]}>"
-    return replaced(text.format(*match.groups()), match[1], name, title=title)
-
-
-def _empty(source: Source, place: Place, message: str, vocabularies: Sequence[Vocabulary]) -> Hint:
-    """The remedy for an unclosed tag of an empty element: it should close itself."""
-    match = re.search(UNCLOSED, message)
-    if match is None or not _holds_nothing(match[1], vocabularies):
-        return Hint()
-    name = match[1]
-    first = _offset(source, Place(source.file, int(match[2])))
-    tags = MARKUP.finditer(source.text, first, _offset(source, place))
-    begin = re.compile(rf"<{re.escape(name)}(?=[\s>])")
-    ends = [one.end() for one in tags if begin.match(one[0]) and not one[0].endswith("/>")]
-    if not ends:
-        return Hint()
-    text = f"The <{name}> of line {match[2]} holds nothing: end its own tag with />."
-    return replaced(text, "/>", source.span(ends[-1] - 1, ends[-1]), title=f"End <{name}> with />")
-
-
-def _holds_nothing(tag: str, vocabularies: Sequence[Vocabulary]) -> bool:
-    """Whether elements with a name are known and always empty."""
-    alike = [one for own in vocabularies for one in own.elements.values() if one.tag == tag]
-    return bool(alike) and not any(one.children or one.text for one in alike)
-
-
-def _closed(source: Source, place: Place, name: str) -> tuple[Fix, ...]:
-    """The insertion of an end tag before a mismatched one, or at the end of the text."""
-    at = len(source.text.rstrip())
-    here = _line(source, place.line).startswith("</", place.column - 1)
-    span = Span.of(place, "") if here else source.span(at, at)
-    return (Fix(f"Write </{name}>", (Edit(span, f"</{name}>"),)),)

@@ -59,7 +59,8 @@ INSIDE = {
     ],
     "markup": [
         {"collecting", "limits", "sniff", "uris", "vocabulary", "tree"},
-        {"edits", "encodings", "hints", "spans", "wellformed"},
+        {"edits", "encodings", "endtags", "hints", "spans"},
+        {"wellformed"},
         {"build", "check", "roots"},
         {"reader"},
         {"__init__"},
