@@ -24,6 +24,8 @@ MOST = 500
 """Maximum number of proposals."""
 END_TAG = re.compile(r"</([^\s<>]*)$")
 END_TAG_AFTER = re.compile(r"[^\s<>]*>")
+IS = re.compile(r"\s*=")
+"""What follows the name of an attribute that has a value."""
 WORD_BEFORE = re.compile(r"(?:(?P<of>[\w$.]+)\.)?(?P<word>(?:[^\W\d]|\$)[\w$]*)?$")
 WORD_AFTER = re.compile(r"[\w$]*")
 MEMBERS = {
@@ -133,7 +135,7 @@ class _Completion:
         if (element := tag.element) is None:
             return
         given = {attr.name for attr in tag.attributes if attr is not now}
-        bare = now is None or now.first < 0
+        bare = IS.match(self.page.text, end) is None
         for name, (item, _) in attributes_by_name(element).items():
             forms = {item.name, f"{item.name}-expr"} if item.dynamic else {name}
             if given.isdisjoint(forms):

@@ -95,6 +95,23 @@ def test_proposals_bring_what_an_element_needs(editor: Editor) -> None:
     assert item.text_edit.new_text == "goto"  # the rest is there already
 
 
+@pytest.mark.parametrize(
+    ("written", "made"),
+    [
+        ('<goto |="#a"/>', '<goto next="#a"/>'),
+        ('<goto ne| = "#a"/>', '<goto next = "#a"/>'),
+        ("<goto ne|=/>", "<goto next=/>"),
+        ("<goto ne|/>", '<goto next="$1"$0/>'),
+        ('<goto | cond="x"/>', '<goto next="$1"$0 cond="x"/>'),
+    ],
+)
+def test_an_attribute_has_one_value(editor: Editor, written: str, made: str) -> None:
+    text = BEGIN + f'<form id="a"><block>{written}</block></form></prima>'
+    item = editor.proposals("fa/x.xml", text)["next"]
+    assert isinstance(item.text_edit, lsp.TextEdit)
+    assert f"<block>{made}</block>" in edited(plain(text)[0], [item.text_edit])
+
+
 @pytest.mark.parametrize("end", ["</|block>", "</bl|ock>", "</block|>", "</bl|", "</|"])
 def test_an_end_tag_is_completed_anywhere_in_its_name(editor: Editor, end: str) -> None:
     text = BEGIN + f'<form id="a"><block><exit/>{end}</form></prima>'
