@@ -23,6 +23,8 @@ ATTRIBUTE = re.compile(
     r"|'(?P<single>[^'<]*)(?P<s>'?))?)?"
 )
 """An attribute; its value ends at the quote, or before the next tag if the quote is missing."""
+NAMELESS = re.compile(r"""=\s*(?:"[^"<]*"|'[^'<]*')""")
+"""A value whose name is missing."""
 
 
 @dataclass(slots=True, eq=False)
@@ -210,7 +212,7 @@ class ScannedText:
                 tag.finished = False
                 break
             else:
-                position += 1  # a stray character
+                position = _after_stray(text, position)
         tag.end = tag.until = tag.content = position
         return position
 
@@ -244,3 +246,9 @@ class ScannedText:
     def aside(self, offset: int) -> bool:
         """Whether an offset is in a comment or an instruction."""
         return any(start < offset < end for start, end in self.asides)
+
+
+def _after_stray(text: str, position: int) -> int:
+    """Where a value without a name ends, or any other character that begins no attribute."""
+    value = NAMELESS.match(text, position)
+    return value.end() if value else position + 1

@@ -69,6 +69,7 @@ PROPOSED = {
     "voice events": ("ea/x.vxml", VOICE + '<form id="a"><catch event="|"', {"nomatch", "error.badfetch"}, set()),
     "voice values": ("ea/x.vxml", VOICE + '<form id="a" scope="|"', {"dialog", "document"}, set()),
     "namespaces": ("fa/x.xml", '<prima xmlns="|"', {"urn:prima:dialogue:1"}, set()),
+    "value without name": ("scenarios/x.xml", SCENE + '<answer |="Is it time to start?" id="a">', {"to"}, {"id"}),
     "comment": ("fa/x.xml", BEGIN + "<!-- <| -->", set(), {"form"}),
 }  # fmt: skip
 
