@@ -110,7 +110,7 @@ class _Completion:
         self, parent: ScannedTag | None, start: int, end: int, tag: ScannedTag | None
     ) -> Iterator[Proposal]:
         """Elements allowed in another; ``tag`` is the unfinished element there, if any."""
-        if parent is None and self.page.root not in (None, tag):
+        if parent is None and self.page.tags and tag not in (self.page.tags[0], self.page.root):
             return
         begin = "" if tag is not None else "<"
         alone = tag is None or not (tag.attributes or tag.finished)

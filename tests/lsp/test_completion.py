@@ -69,6 +69,8 @@ PROPOSED = {
     "voice events": ("ea/x.vxml", VOICE + '<form id="a"><catch event="|"', {"nomatch", "error.badfetch"}, set()),
     "voice values": ("ea/x.vxml", VOICE + '<form id="a" scope="|"', {"dialog", "document"}, set()),
     "namespaces": ("fa/x.xml", '<prima xmlns="|"', {"urn:prima:dialogue:1"}, set()),
+    "root without name": ("fa/x.xml", BEGIN.replace("prima", "|", 1) + '<form id="a"/></prima>', {"prima"}, {"form"}),
+    "beside the root": ("fa/x.xml", BEGIN + '<form id="a"/></prima><|', set(), {"prima", "form"}),
     "value without name": ("scenarios/x.xml", SCENE + '<answer |="Is it time to start?" id="a">', {"to"}, {"id"}),
     "comment": ("fa/x.xml", BEGIN + "<!-- <| -->", set(), {"form"}),
 }  # fmt: skip
