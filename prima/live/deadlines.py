@@ -1,4 +1,4 @@
-"""Deadlines that hold even if a driver ignores cancellation."""
+"""The work of drivers: what it may do to a run, and deadlines that hold even if it ignores them."""
 
 from __future__ import annotations
 
@@ -7,10 +7,37 @@ import ctypes
 from collections.abc import Collection, Coroutine
 from typing import Any, TypeVar
 
+from prima.errors import RunError
+
 GRACE_S = 1.0
 """How long a cancelled task may take to end before it is abandoned."""
 
 T = TypeVar("T")
+
+
+class Escaped(Exception):
+    """What a driver raised would have ended the program, or passed for a cancellation."""
+
+
+async def guarded(work: Coroutine[Any, Any, T]) -> T:
+    """The result of a driver's work, which neither ends the program nor cancels the run.
+
+    Raises:
+        Escaped: it raises what would do so, such as the ``SystemExit`` of a robot's library, or
+            ``CancelledError`` though nobody has cancelled it.
+        Exception: whatever else the work raises.
+    """
+    try:
+        return await work
+    except asyncio.CancelledError:
+        own = asyncio.current_task()
+        if own is None or own.cancelling():
+            raise
+        raise Escaped("CancelledError, although nobody has cancelled it") from None
+    except (Exception, KeyboardInterrupt, GeneratorExit):
+        raise
+    except BaseException as error:
+        raise Escaped(f"{type(error).__name__}: {error}") from error
 
 
 async def within(seconds: float, work: Coroutine[Any, Any, T]) -> T:
@@ -20,7 +47,7 @@ async def within(seconds: float, work: Coroutine[Any, Any, T]) -> T:
         TimeoutError: the deadline has passed.
         Exception: whatever the work raises.
     """
-    task = asyncio.ensure_future(work)
+    task = asyncio.ensure_future(guarded(work))
     try:
         await asyncio.wait([task], timeout=seconds)
         if not task.done():
@@ -34,6 +61,9 @@ def run(work: Coroutine[Any, Any, T]) -> T:
     """Run work in a separate event loop, which ends when the work does.
 
     Other tasks still running in it are then cancelled, and abandoned if they ignore that.
+
+    Raises:
+        RunError: another task ended the program, or cancelled this one.
     """
 
     async def alone() -> T:
@@ -46,6 +76,9 @@ def run(work: Coroutine[Any, Any, T]) -> T:
     whole = alone()
     try:
         return asyncio.run(whole)
+    except (SystemExit, asyncio.CancelledError) as error:
+        said = f"{type(error).__name__}: {error}".removesuffix(": ")
+        raise RunError(f"A driver has ended the run: {said}.") from error
     finally:  # Ctrl-C may come before the loop begins with them
         whole.close()
         work.close()

@@ -35,7 +35,7 @@ from prima.devices.profile import Profile
 from prima.grammar.answers import Answers
 from prima.live.carried import lacking, limits_of, route
 from prima.live.deadlines import within
-from prima.live.driver import Driver
+from prima.live.driver import Driver, why
 from prima.live.journal import KnownAtCut
 from prima.live.speaking import UserSpeech
 from prima.messages import ApplicationLoaded, Emergency, Heard, Inbound, Order, Record, Sensed
@@ -292,9 +292,9 @@ class LiveDevices:
             return None
         try:
             return what()
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             self._failing.add(driver)
-            driver.lose(f"the driver has failed: {type(error).__name__}: {error}")
+            driver.lose(f"the driver has failed: {why(error)}")
             return None
 
     def _carry_out(self) -> None:
@@ -333,8 +333,8 @@ class LiveDevices:
         self._routes[goal.key] = driver
         try:
             driver.start(goal)
-        except Exception as error:
-            reason = f"the driver {driver.kind} has failed: {error}"
+        except (Exception, SystemExit) as error:
+            reason = f"the driver {driver.kind} has failed: {why(error)}"
             self.conductor.report(now, Broke(goal.key, goal.device, reason))
 
 

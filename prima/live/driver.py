@@ -30,6 +30,7 @@ from prima.devices.profile import Profile
 from prima.devices.settings import Does, DriverLimits, DriverSettings, Pose
 from prima.errors import RunError, UsageError
 from prima.grammar.answers import Answers
+from prima.live.deadlines import Escaped, guarded
 from prima.live.recordings import Recordings
 from prima.live.wellformed import WRONG, well_formed
 from prima.messages import Data, Json, Record
@@ -76,6 +77,13 @@ class Refused(Exception):
     def __init__(self, reason: str, device: str = "") -> None:
         super().__init__(reason)
         self.device = device
+
+
+def why(error: BaseException) -> str:
+    """Why a driver has failed: its own words, or an error that it did not mean with its type."""
+    said, kind = str(error), type(error).__name__
+    meant = isinstance(error, Refused | RunError | UsageError | Escaped)
+    return (said if meant else f"{kind}: {said}") if said else kind
 
 
 class OpenRequests(set[asyncio.Future[Any]]):
@@ -314,18 +322,16 @@ class TaskDriver(Driver):
 
     async def _run(self, goal: Begin) -> None:
         try:
-            report: Report = Done(goal.key, await self.perform(goal))
+            report: Report = Done(goal.key, await guarded(self.perform(goal)))
         except asyncio.CancelledError:
             report = Stopped(goal.key, said=self._said.get(goal.key))
         except Unreachable as error:
             self.lose(str(error))
             return
-        except SystemExit as error:  # a robot's library tries to end the program
-            report = Broke(goal.key, goal.device, f"the driver has failed: SystemExit: {error}")
         except Exception as error:
             device = getattr(error, "device", "") or goal.device
             lacks = goal.kind == RECORD and isinstance(error, Refused)
-            report = Broke(goal.key, device, str(error) or type(error).__name__, lacks)
+            report = Broke(goal.key, device, why(error), lacks)
         finally:
             self._tasks.pop(goal.key, None)
             self._said.pop(goal.key, None)

@@ -18,7 +18,7 @@ from prima.live.carried import SPOKEN, lacking, limits_of, route
 from prima.live.chosen import Chosen
 from prima.live.deadlines import run, within
 from prima.live.devices import SAFE_S
-from prima.live.driver import Driver, Unreachable
+from prima.live.driver import Driver, Unreachable, why
 from prima.live.shell import open_driver
 from prima.live.signals import heeding_signals
 from prima.live.visit import LiveSettings, make_drivers
@@ -138,7 +138,8 @@ class Preflight:
         for command in self._commands():
             await self._try(command)
         for driver in self._opened:
-            for what, problem in (await driver.check()).items():
+            found = await self._let(driver, driver.settings.open / 1000, driver.check)
+            for what, problem in (found or {}).items():
                 self._tell(not problem, what, problem, driver.kind)
 
     async def end(self) -> int:
@@ -148,17 +149,20 @@ class Preflight:
             an exit code: 2 if a driver is not set up, 3 if something else does not work.
         """
         for ends in ("safe", "close"):
-            ended = (self._end(one, getattr(one, ends)) for one in self._drivers)
+            ended = (self._let(one, SAFE_S, getattr(one, ends)) for one in self._drivers)
             await asyncio.gather(*ended)
         return 2 if self._unusable else 3 if self._wrong else 0
 
-    async def _end(self, driver: Driver, end: Callable[[], Coroutine[Any, Any, None]]) -> None:
+    async def _let(
+        self, driver: Driver, seconds: float, what: Callable[[], Coroutine[Any, Any, Any]]
+    ) -> Any:
+        """What a driver returns; None if it fails, which is printed."""
         try:
-            await within(SAFE_S, end())
+            return await within(seconds, what())
         except Exception as error:
-            name = getattr(end, "__name__", "")
-            reason = f"{name} has failed: {error or type(error).__name__}"
-            self._tell(False, "end", reason, driver.kind)
+            reason = f"{what.__name__} has failed: {why(error)}"
+            self._tell(False, what.__name__, reason, driver.kind)
+            return None
 
     def _tell(self, right: bool | None, what: str, text: str, *columns: str) -> None:
         """Print a line: whether it works (None for information), what, and how."""
@@ -290,8 +294,8 @@ class Preflight:
             driver.sample(self._now())
             driver.start(begin)
             return await self._watch(driver, key, limits, lasts)
-        except Exception as error:
-            return CommandFinding(False, f"the driver has failed: {type(error).__name__}: {error}")
+        except (Exception, SystemExit) as error:
+            return CommandFinding(False, f"the driver has failed: {why(error)}")
         finally:
             del self._reports[key]
 

@@ -17,7 +17,7 @@ from prima.errors import UsageError
 from prima.live.clock import Clock
 from prima.live.deadlines import within
 from prima.live.devices import SAFE_S, LiveDevices
-from prima.live.driver import Driver, Unreachable, Unusable
+from prima.live.driver import Driver, Unreachable, Unusable, why
 
 FIRST_S, LONGEST_S = 0.5, 30.0
 """The delays before trying to reach a lost robot again: the first, and the longest."""
@@ -164,7 +164,7 @@ class Shell:
         try:
             await within(SAFE_S, end())
         except Exception as error:
-            self._warn(f"{driver.kind}: {end.__name__} has failed: {_why(error)}.")
+            self._warn(f"{driver.kind}: {end.__name__} has failed: {why(error)}.")
 
     def _spawn(self, what: Coroutine[Any, Any, None]) -> None:
         task = asyncio.ensure_future(what)
@@ -175,7 +175,7 @@ class Shell:
         """A driver that fails in the background does not end the run."""
         self._tasks.discard(task)
         if not task.cancelled() and (error := task.exception()):
-            self._warn(f"A driver has failed: {_why(error)}.")
+            self._warn(f"A driver has failed: {why(error)}.")
 
     def _lose(self, driver: Driver) -> None:
         """A driver has lost its robot: try repeatedly to reach it."""
@@ -215,7 +215,7 @@ class Shell:
             except TimeoutError:
                 driver.lose("the robot does not answer")
             except Exception as error:
-                driver.lose(_why(error))
+                driver.lose(why(error))
 
 
 async def open_driver(driver: Driver) -> None:
@@ -236,19 +236,13 @@ async def open_driver(driver: Driver) -> None:
         raise Unreachable(f"{settings.place}: {driver.kind}{where}: {error}") from None
     except Unusable as error:
         raise Unusable(f"{settings.place}: {driver.kind}{where}: {error}") from None
+    except UsageError:
+        raise
+    except Exception as error:
+        reason = f"the driver has failed: {why(error)}"
+        raise Unreachable(f"{settings.place}: {driver.kind}{where}: {reason}") from error
 
 
 async def _opened(driver: Driver) -> None:
-    """Open a driver; any error in it becomes an error of the driver."""
-    try:
-        await driver.open()
-        await driver.ping()
-    except (Unreachable, UsageError, TimeoutError, asyncio.CancelledError, KeyboardInterrupt):
-        raise
-    except BaseException as error:  # also SystemExit: a robot's library tries to end the program
-        reason = f"the driver has failed: {type(error).__name__}: {error}"
-        raise Unreachable(reason) from error
-
-
-def _why(error: BaseException) -> str:
-    return str(error) or type(error).__name__
+    await driver.open()
+    await driver.ping()

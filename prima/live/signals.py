@@ -53,8 +53,8 @@ def heeding_signals(stop: Callable[[], object]) -> Iterator[None]:
 
 
 def _tell_defects(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-    """Report what a task failed with that nobody awaits, but not that the loop was aborted."""
-    if not isinstance(context.get("exception"), KeyboardInterrupt):
+    """Report what a task failed with that nobody awaits, but not what has ended the loop."""
+    if not isinstance(context.get("exception"), KeyboardInterrupt | SystemExit):
         loop.default_exception_handler(context)
 
 

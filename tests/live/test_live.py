@@ -211,7 +211,11 @@ class Broken(Driver):
         ('<driver kind="silent" accept="300ms"/>', 3, "the device does not accept it"),
         ('<driver kind="wrong"/>', 3, "the motor is hot"),
         ('<driver kind="bare"/>', 3, "Bare has no method perform"),
-        ('<driver kind="broken"/>', 3, "the driver broken has failed: division by zero"),
+        (
+            '<driver kind="broken"/>',
+            3,
+            "the driver broken has failed: ZeroDivisionError: division by zero",
+        ),
         ('<driver kind="flood" heartbeat="2s"/>', 0, ""),
         ('<driver kind="flood" heartbeat="50s"/>', 3, "reports more than 10,000 things at once"),
         ("", 2, "has no driver"),

@@ -214,7 +214,7 @@ def test_a_run_that_goes_on_keeps_its_journal(stage: Path) -> None:
     [
         ("samples", "the driver has failed: ValueError: no such joint"),
         ("due", "the driver has failed: ValueError: no such joint"),
-        ("pings", "'battery'"),
+        ("pings", "KeyError: 'battery'"),
     ],
 )
 def test_a_driver_that_fails_later_has_lost_its_robot(kind: str, told: str, stage: Path) -> None:

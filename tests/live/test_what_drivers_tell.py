@@ -126,7 +126,7 @@ def test_the_journal_of_a_driver_that_measures_nothing_replays(what: str, tmp_pa
         ('self.tell(Sensed({"a": object()}))', "wrong (Sensed): a record cannot hold object"),
         ('self.tell(Occurred("speech", "user"))', "report the user's words by Heard(text)"),
         ('return {"map": "x" * 2_000_000}', "wrong (Done): it has more than 1,000,000 characters"),
-        ("sys.exit(4)", "the driver has failed: SystemExit: 4"),
+        ("sys.exit(4)", "SystemExit: 4"),
     ],
 )
 def test_a_driver_that_goes_wrong_ends_in_a_clear_sentence(
