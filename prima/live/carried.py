@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from copy import deepcopy
+from dataclasses import replace
 
 from prima.devices import voice
 from prima.devices.goals import LISTEN, RECORD, SAY, Begin
@@ -29,6 +31,11 @@ def route(drivers: Sequence[Driver], goal: Begin) -> Driver | None:
     how = (one for one in there if one.does(goal) is not None)
     able = (one for one in there if not one.mapped or goal.kind in one.own)
     return next(how, None) or next(able, None)
+
+
+def own_copy(goal: Begin) -> Begin:
+    """A goal whose arguments a driver may change: those of the Command itself are the run's."""
+    return replace(goal, command=replace(goal.command, args=deepcopy(goal.command.args)))
 
 
 def lacking(drivers: Sequence[Driver], goal: Begin) -> str:

@@ -33,7 +33,7 @@ from prima.devices.goals import (
 )
 from prima.devices.profile import Profile
 from prima.grammar.answers import Answers
-from prima.live.carried import lacking, limits_of, route
+from prima.live.carried import lacking, limits_of, own_copy, route
 from prima.live.deadlines import within
 from prima.live.driver import Driver, why
 from prima.live.journal import KnownAtCut
@@ -141,15 +141,18 @@ class LiveDevices:
 
     def due(self) -> int | None:
         """When there is next something to collect, if known."""
-        reported = None if self._told is None else max(self._told, self._last + 1)
         return earliest(
             self._last + 1 if self._loads or self._entrances.unseen else None,
-            reported,
+            self._after(self._told),
             self.conductor.due(self._sees.visible),
             self._speech.too_long,
             self.services.due(),
-            *(self._let(driver, driver.due) for driver in self.drivers),
+            *(self._after(self._let(driver, driver.due)) for driver in self.drivers),
         )
+
+    def _after(self, time: int | None) -> int | None:
+        """A time, at the earliest that after the latest instant: no instant comes twice."""
+        return None if time is None else max(time, self._last + 1)
 
     def collect(self, now: int) -> list[Inbound]:
         """Everything that has come in by ``now``, in order."""
@@ -332,7 +335,7 @@ class LiveDevices:
             return
         self._routes[goal.key] = driver
         try:
-            driver.start(goal)
+            driver.start(own_copy(goal))
         except (Exception, SystemExit) as error:
             reason = f"the driver {driver.kind} has failed: {why(error)}"
             self.conductor.report(now, Broke(goal.key, goal.device, reason))

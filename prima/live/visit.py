@@ -12,13 +12,14 @@ from datetime import UTC, datetime
 
 from prima.devices.loop import Loop
 from prima.devices.profile import Profile
+from prima.devices.settings import DriverSettings
 from prima.errors import UsageError
 from prima.live.carried import uncarried
 from prima.live.chosen import Chosen
 from prima.live.clock import Clock
 from prima.live.deadlines import run
 from prima.live.devices import LiveDevices
-from prima.live.driver import Driver
+from prima.live.driver import Driver, why
 from prima.live.drivers import driver_class, drivers_in
 from prima.live.journal import Journal, Redactor
 from prima.live.recordings import Recordings
@@ -251,10 +252,20 @@ def make_drivers(robot: Profile, site: Map, files: Iterable[str]) -> list[Driver
         except UsageError as error:
             raise UsageError(f"{settings.place}: {error}") from None
         try:
-            made.append(kind(settings, robot, site))
+            made.append(_make(kind, settings, robot, site))
         except UsageError:
             raise
-        except Exception as error:
-            reason = f"the driver has failed: {type(error).__name__}: {error}"
+        except (Exception, SystemExit) as error:
+            reason = f"the driver has failed: {why(error)}"
             raise UsageError(f"{settings.place}: {settings.kind}: {reason}") from error
+    return made
+
+
+def _make(kind: type[Driver], settings: DriverSettings, robot: Profile, site: Map) -> Driver:
+    made = kind(settings, robot, site)
+    if getattr(made, "settings", None) is not settings:
+        raise UsageError(
+            f"{settings.place}: {settings.kind}: Its __init__ leaves out that of its class. "
+            "Write super().__init__(settings, profile, site) in it, or connect in open instead."
+        )
     return made

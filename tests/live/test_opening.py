@@ -74,6 +74,10 @@ class Made(Well):
     kind = "made"
     def __init__(self, *given): raise KeyError("wheels")
 
+class Unmade(Well):
+    kind = "unmade"
+    def __init__(self, *given): self.wheels = 4
+
 class Samples(Well):
     kind = "samples"
     def sample(self, now): raise ValueError("no such joint")
@@ -87,6 +91,16 @@ class Blocks(Well):
 class Due(Well):
     kind = "due"
     def due(self): raise ValueError("no such joint")
+
+class Past(Well):
+    kind = "past"
+    def due(self): return 5
+
+class Changes(Well):
+    kind = "changes"
+    async def perform(self, goal):
+        goal.command.args.clear()
+        return await super().perform(goal)
 
 class Pings(Well):
     kind = "pings"
@@ -127,6 +141,7 @@ def live(stage: Path, drivers: str, *more: str) -> Any:
         ("never", 3, "robot.xml:20:3: never: no answer within 0.5 s"),
         ("lacks", 2, "robot.xml:20:3: lacks: the library wheels is missing: pip install wheels"),
         ("made", 2, "robot.xml:20:3: made: the driver has failed: KeyError: 'wheels'"),
+        ("unmade", 2, "Write super().__init__(settings, profile, site) in it"),
     ],
 )
 def test_a_driver_that_cannot_be_opened_ends_the_run(
@@ -139,7 +154,7 @@ def test_a_driver_that_cannot_be_opened_ends_the_run(
     assert "Traceback" not in ran.stderr
     assert "defect" not in ran.stderr
     assert not journal.exists(), "nothing has happened, so the same command may be given again"
-    if kind != "made":
+    if kind not in ("made", "unmade"):
         assert "well is safe" in ran.stderr
     again = live(stage, '<driver kind="well"/>', "-o", str(journal))
     assert again.returncode == 0, again.stderr
@@ -227,6 +242,22 @@ def test_a_driver_that_fails_later_has_lost_its_robot(kind: str, told: str, stag
     assert f"{kind}: the robot is lost; it is looked for." in ran.stderr
     assert told in journal.read_text()
     assert "well is safe" in ran.stderr
+
+
+def test_a_driver_that_is_always_due_does_not_keep_a_run_from_its_end(stage: Path) -> None:
+    ran = live(stage, '<driver kind="past" devices="arm"/><driver kind="well"/>')
+    assert ran.returncode == 0, ran.stderr
+
+
+def test_a_driver_may_change_the_arguments_that_it_gets(stage: Path) -> None:
+    question = '<field name="a" type="boolean"><prompt timeout="100ms">Well?</prompt>'
+    asks = HELLO.replace("</block>", f"</block>{question}<noinput><exit/></noinput></field>")
+    (stage / "hello.xml").write_text(asks.replace("<exit/></block>", "</block>"))
+    journal = stage / "visit.jsonl"
+    ran = live(stage, '<driver kind="changes"/>', "-o", str(journal))
+    assert ran.returncode == 0, ran.stderr
+    assert '"args":{"angle":30.0}' in journal.read_text()
+    assert prima("replay", str(journal)).returncode == 0
 
 
 @pytest.mark.parametrize("name", ["microphone", "loudspeaker"])
