@@ -144,7 +144,7 @@ class Conductor:
             task.ends = self._now + int(task.command.args["time"])
         elif kind in ("speak", "q-and-a") and task.said is None:
             task.ends = self._now + 1
-        for part, on in task.parts():
+        for part, on in task.parts(self.profile.commands[kind].devices):
             self._goals.add(self._now, task, part, on, self._loop(task.command))
 
     def _drop(self, task: Task) -> None:

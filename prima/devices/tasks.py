@@ -94,11 +94,15 @@ class Task:
         """Whether a goal of one of these kinds is under way."""
         return any(goal.begin.kind in kinds for goal in self.goals)
 
-    def parts(self) -> Iterator[tuple[str, frozenset[str]]]:
-        """The goals that make it up, by kind, and their devices."""
+    def parts(self, needs: frozenset[str]) -> Iterator[tuple[str, frozenset[str]]]:
+        """The goals that make it up, by kind, and their devices.
+
+        ``needs`` are those of its Command: the AB may keep others for what follows it (X4).
+        """
         kind, devices = self.command.type, self.order.devices
         if kind not in ("pause", "speak", "q-and-a"):
-            yield kind, devices - {"speaker"} if self.said is not None else devices
+            moved = devices & needs
+            yield kind, moved - {"speaker"} if self.said is not None else moved
         if self.said is not None:
             yield SAY, devices & {"speaker"}
         if kind == "q-and-a":
