@@ -37,7 +37,8 @@ class UserSpeech:
             return []
         began, self._over = self._began, True
         self.ends()
-        began = now if began is None else began
+        if began is None:  # only the driver knows, if anybody
+            began = now - min(max(heard.lasted, 0), now)
         passed = self._conductor.marks_passed(began)
         return [Heard(heard.text, {**passed, **heard.data}, now - began)]
 

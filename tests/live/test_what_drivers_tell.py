@@ -10,12 +10,15 @@ from typing import Any
 
 import pytest
 
+from prima.devices.conductor import Conductor
 from prima.devices.goals import At, Broke, Done, Lost, Sees, Stopped
 from prima.errors import brief
+from prima.live.speaking import UserSpeech
 from prima.live.wellformed import WRONG, well_formed
 from prima.messages import Emergency, Heard, Narrated, Occurred, Sensed
 from tests.helpers import command
 from tests.helpers.here import prima
+from tests.helpers.rehearsing import PROFILE
 
 CYCLE: list[Any] = []
 CYCLE.append(CYCLE)
@@ -136,3 +139,13 @@ def test_a_driver_that_goes_wrong_ends_in_a_clear_sentence(
     assert code == 3
     assert records[-1]["outcome"] in ("over", "until")
     assert told in said + json.dumps(records), (said, records)
+
+
+@pytest.mark.parametrize(("lasted", "known"), [(300, 300), (-5, 0), (10**9, 1000)])
+def test_how_long_an_utterance_took_counts_where_its_beginning_was_not_told(
+    lasted: int, known: int
+) -> None:
+    speech = UserSpeech(Conductor(PROFILE, dict))
+    assert speech.heard(1000, Heard("Yes.", {}, lasted)) == [Heard("Yes.", {}, known)]
+    speech.begins(2000)
+    assert speech.heard(2400, Heard("Yes.", {}, lasted)) == [Heard("Yes.", {}, 400)]
