@@ -62,9 +62,9 @@ class Counters:
         """Count a visit of an item that asks (4.1.6)."""
         return replace(self, prompts={**self.prompts, item: self.prompts.get(item, 0) + 1})
 
-    def without(self, item: Hashable, events: bool = True) -> Counters:
-        """The counters after a clear of an item (5.3.3); ``events``: its event counters as well."""
-        kept = {key: times for key, times in self.events.items() if key[0] != item or not events}
+    def without(self, item: Hashable) -> Counters:
+        """The counters after a clear of an item (5.3.3)."""
+        kept = {key: times for key, times in self.events.items() if key[0] != item}
         return Counters(kept, {**self.prompts, item: 0})
 
 

@@ -137,7 +137,8 @@ class Content(Speaker):
 
     def clear(self, node: Node, context: Context, local: Scope) -> None:
         """Undefine variables, and reset what counts visits of form items (5.3.3)."""
-        items = form_items(context)
+        # A menu is no form item: its counters are reset when it is entered, not here (4.1.6, 5.2.2).
+        items = [one for one in form_items(context) if one.tag != "menu"]
         names = node.get("namelist").split()
         self.owner.app.count_step(node, len(names) or len(items))
         named = defaultdict(list)
@@ -170,8 +171,7 @@ class Content(Speaker):
         """Reset a form item: its variable, prompt counter and event counters."""
         if item.get("name"):
             self.engine.unset(context.dialog, item.get("name"))
-        # Counters of events at a menu are not reset (5.2.2).
-        context.counters = context.counters.without(item.index, events=item.tag != "menu")
+        context.counters = context.counters.without(item.index)
 
     def named(self, node: Node, context: Context, local: Scope) -> dict[str, Json]:
         """The variables of a namelist as plain data."""

@@ -335,6 +335,15 @@ def test_the_counters_of_a_menu_are_not_cleared() -> None:  # 5.2.2
     assert run(text, "no", "no").logs() == ["one", "two"]
 
 
+def test_the_prompt_counter_of_a_menu_is_not_cleared() -> None:  # 4.1.6
+    call = run(
+        """<menu><prompt count="1">Q?</prompt><prompt count="2">Once more: Q?</prompt>
+        <choice next="#x">go</choice><nomatch><clear/><reprompt/></nomatch></menu><form id="x"/>""",
+        *("no", "go"),
+    )
+    assert call.said() == ["Q?", "Once more: Q?"]
+
+
 def test_an_event_that_no_handler_takes_is_lost_on_the_application() -> None:
     call = Call(ask("<option>yes</option>"))
     call.play()
