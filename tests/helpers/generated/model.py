@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import accumulate
 
 from tests.helpers.generated.timed import (
     END,
@@ -110,6 +111,12 @@ def lasts(command: Do | Unit) -> int:
     return WORDS.get(command.what) or KINDS[command.what].lasts
 
 
+def parts(ab: AB) -> list[int]:
+    """When the parts of a unit that runs begin, but for the first."""
+    begins = accumulate(map(lasts, ab.command.parts)) if isinstance(ab.command, Unit) else ()
+    return [ab.ends - lasts(ab.command) + time for time in begins][:-1]
+
+
 @dataclass(frozen=True)
 class Cause:
     """Why content goes on: an event (C5), the end of an AB (C3), or a state that was left (O3)."""
@@ -141,13 +148,13 @@ class Model:
         self.select()
         coming = dict(self.timed.events)
         while True:
-            ending = [ab for ab in self.memory if ab.running]
-            times = [*(ab.ends for ab in ending), *coming]
-            if min(times, default=END) >= END:
+            running = [ab for ab in self.memory if ab.running]
+            times = [*coming, *(time for ab in running for time in (ab.ends, *parts(ab)))]
+            self.now = min((time for time in times if time > self.now), default=END)
+            if self.now >= END:
                 return self.found
-            before, self.now = self.now, min(times)
-            self.begin_parts(ending, before)
-            self.end_all([ab for ab in ending if ab.ends == self.now])
+            self.end_all([ab for ab in running if ab.ends == self.now])
+            self.begin_parts()
             if self.now in coming:
                 self.occur(coming.pop(self.now))
             self.select()
@@ -203,16 +210,10 @@ class Model:
         if not thread.waits and not thread.abandoned:
             self.carry_out(thread, Cause(window=ab.stream))
 
-    def begin_parts(self, running: list[AB], before: int) -> None:
+    def begin_parts(self) -> None:
         """U4: the parts of a unit begin one after the other, which counts for its stream."""
-        parts = []
-        for ab in running:
-            time = ab.ends - lasts(ab.command)
-            for part in ab.command.parts[:-1] if isinstance(ab.command, Unit) else ():
-                time += lasts(part)
-                parts.append((time, ab))
-        for time, ab in sorted(parts, key=lambda one: one[0]):
-            if before < time < self.now:
+        for ab in self.memory:
+            if ab.running and self.now in parts(ab):
                 self.starts += 1
                 ab.began = ab.stream.latest = self.starts
 
