@@ -89,7 +89,7 @@ class Hearing:
         if value.data.get("toolong") and asked is not None and asked.cued("longest"):
             self._conclude(question.id, {"outcome": "maxspeechtimeout", "utterance": value.text})
             return True
-        if question.run is None:
+        if question.run is None or question.silent:  # nobody would learn how it has ended
             return False
         app, answer, link = self.wiring.apps.named[question.app.name], None, None
         with self.wiring.apps.contained(app):

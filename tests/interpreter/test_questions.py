@@ -283,6 +283,23 @@ def test_a_link_of_its_own_ends_the_question_that_listens() -> None:
     assert bench.saying() == ["q-and-a"], "it listens again; a reprompt would ask again"
 
 
+@pytest.mark.parametrize("leaves", ['<goto next="#b"/>', '<move-head order="now"/>'])
+def test_a_link_is_followed_while_a_question_that_nobody_waits_for_is_asked(leaves: str) -> None:
+    """Nobody would learn that it had ended the question (O2, O3), and the words would be lost."""
+    bench = Bench(
+        f"""<link event="stop"><grammar>stop it</grammar></link>
+        <on event="stop"><log>stopping</log></on>
+        <form id="a"><field name="q" type="boolean"><prompt>Well?</prompt></field>
+          <on event="touch" reactive="false"><move-head pan="30"/></on>
+          <on event="door">{leaves}</on></form>
+        <form id="b"/>"""
+    )
+    bench.event("touch")
+    bench.event("door")
+    bench.hears("stop it")
+    assert bench.logs() == ["stopping"]
+
+
 @pytest.mark.parametrize("asks", [True, False])
 def test_the_event_of_a_link_has_what_was_said_with_and_without_a_question(asks: bool) -> None:
     bench = Bench(
