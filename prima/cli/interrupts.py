@@ -1,27 +1,34 @@
-"""Ctrl-C: where its exception would be lost, or break what is under way, it comes a little later."""
+"""Ctrl-C and SIGTERM: where their exception would be lost, or break what is under way, it comes later."""
 
 from __future__ import annotations
 
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
+from typing import Any
 
 SOON_S = 0.01
 PHYSICS = "pymunk"
 """A library whose objects crash the process later if they are left half made or half freed."""
 
+PYTHONS: dict[int, Callable[[int, FrameType | None], Any] | signal.Handlers] = {
+    signal.SIGINT: signal.default_int_handler,
+    signal.SIGTERM: signal.SIG_DFL,
+}
+"""The signals that interrupt a command, with Python's own handlers."""
+
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Handle Ctrl-C in the way of this module, unless the caller ignores it or does so already."""
+    """Handle both in the way of this module, unless the caller ignores them or does so already."""
     hook, sys.unraisablehook = sys.unraisablehook, interrupt_again
-    before = signal.getsignal(signal.SIGINT)
-    if before is signal.default_int_handler:
-        with suppress(ValueError):  # not the main thread: it gets no signals
-            signal.signal(signal.SIGINT, interrupt)
+    for number, handler in PYTHONS.items():
+        if signal.getsignal(number) is handler:
+            with suppress(ValueError):  # not the main thread: it gets no signals
+                signal.signal(number, interrupt)
     try:
         yield
     finally:
@@ -30,9 +37,10 @@ def interruptible() -> Iterator[None]:
 
 
 def leave_to_python() -> None:
-    """Let Python handle Ctrl-C, as event loops expect it."""
-    if signal.getsignal(signal.SIGINT) is interrupt:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+    """Let Python handle the signals, as event loops expect it."""
+    for number, handler in PYTHONS.items():
+        if signal.getsignal(number) is interrupt:
+            signal.signal(number, handler)
 
 
 def interrupt(_: int, frame: FrameType | None) -> None:
