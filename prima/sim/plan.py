@@ -139,16 +139,15 @@ class FloorPlan:
     def _tight(self, name: str, radius: float) -> Iterator[Problem]:
         """A warning if a wall is closer (m) to a place than the robot's body allows."""
         near = [(off_line(self._places[name], *segment), wall) for segment, wall in self._walls]
-        for metres, wall in near:
-            if metres < radius:
-                place = self._nodes[name].attribute_place("x")
-                message = (
-                    f'The place "{name}" is too close to the wall in line {wall.place.line}:'
-                    f" {metres:.2f} m. The robot may not reach it."
-                )
-                remedy = f"Put it {radius:.2f} m or more away from walls."
-                yield Problem(place, "warning", "blocked-way", message, remedy)
-                return
+        node = self._nodes[name]
+        metres, wall = min(near, key=lambda one: one[0], default=(radius, node))
+        if metres < radius:
+            message = (
+                f'The place "{name}" is too close to the wall in line {wall.place.line}:'
+                f" {metres:.2f} m. The robot may not reach it."
+            )
+            remedy = f"Put it {radius:.2f} m or more away from walls."
+            yield Problem(node.attribute_place("x"), "warning", "blocked-way", message, remedy)
 
     def _unreachable(self) -> Iterator[Problem]:
         """Places to which no way leads and that some place does not see.

@@ -123,6 +123,18 @@ WALKS = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a"><f
 <topological-move to="b"/><exit/></block></form></prima>"""
 
 
+def walking(folder: Path) -> Path:
+    """A scenario in which a robot goes along the way of ``w.xml``."""
+    (folder / "a.xml").write_text(WALKS)
+    path = folder / "s.xml"
+    path.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="w.xml"'
+        f' robot="{ROOT}/documents/robots/papero.xml"><robot at="a"/>'
+        '<application src="a.xml"/></scenario>'
+    )
+    return path
+
+
 def test_a_way_through_a_wall_is_told_beside_other_errors(tmp_path: Path) -> None:
     path = tmp_path / "w.xml"
     wall = '<wall x1="2" y1="-2" x2="2" y2="2"/>'
@@ -138,15 +150,10 @@ def test_a_way_through_a_wall_is_told_beside_other_errors(tmp_path: Path) -> Non
 @pytest.mark.parametrize("y", ["0.1", "-0.18", "0.2", "0.4"])
 def test_a_way_that_is_too_narrow_for_the_robot_is_told(tmp_path: Path, y: str) -> None:
     (tmp_path / "w.xml").write_text(WORLD.format(f'<wall x1="1" y1="{y}" x2="5" y2="{y}"/>'))
-    (tmp_path / "a.xml").write_text(WALKS)
-    (tmp_path / "s.xml").write_text(
-        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="w.xml"'
-        f' robot="{ROOT}/documents/robots/papero.xml"><robot at="a"/>'
-        '<application src="a.xml"/></scenario>'
-    )
+    path = walking(tmp_path)
     assert loading.validate([tmp_path / "w.xml"]) == [], "it is wide enough for some robot"
-    told = [one.message for one in loading.validate([tmp_path / "s.xml"])]
-    blocked = bool(api.rehearse(api.load_scenario(tmp_path / "s.xml")).failures)
+    told = [one.message for one in loading.validate([path])]
+    blocked = bool(api.rehearse(api.load_scenario(path)).failures)
     assert blocked == (abs(float(y)) < 0.19)
     right = (
         'The way from "a" to "b" is too narrow for the robot: the wall in line 4 is'
@@ -161,15 +168,10 @@ def test_a_place_that_is_too_close_to_a_wall_is_told(
 ) -> None:
     x = 4 + float(metres)
     (tmp_path / "w.xml").write_text(WORLD.format(f'<wall x1="{x}" y1="-2" x2="{x}" y2="2"/>'))
-    (tmp_path / "a.xml").write_text(WALKS)
-    (tmp_path / "s.xml").write_text(
-        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="w.xml"'
-        f' robot="{ROOT}/documents/robots/papero.xml"><robot at="a"/>'
-        '<application src="a.xml"/></scenario>'
-    )
+    path = walking(tmp_path)
     right = 'The place "b" is too close to the wall in line 4: 0.19 m. The robot may not reach it.'
-    assert [one.message for one in loading.validate([tmp_path / "s.xml"])] == [right] * told
-    assert bool(api.rehearse(api.load_scenario(tmp_path / "s.xml")).failures) == told
+    assert [one.message for one in loading.validate([path])] == [right] * told
+    assert bool(api.rehearse(api.load_scenario(path)).failures) == told
 
 
 # What a scenario waits for ----------------------------------------------------------------
