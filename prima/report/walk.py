@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from prima.errors import UsageError
 from prima.language.commands import PATIENCE_MS
 from prima.messages import Json, Record
+from prima.scheduler.robot_state import difference
 
 if TYPE_CHECKING:
     from prima.api import Transcript
@@ -186,8 +187,7 @@ class WalkWatch:
 
 def _differs(a: Pose, b: Pose) -> bool:
     way = max(abs(a[1] - b[1]), abs(a[2] - b[2]))
-    turn = abs((a[3] - b[3] + 180.0) % 360.0 - 180.0)
-    return way > MOVED or turn > TURNED
+    return way > MOVED or abs(difference(a[3], b[3])) > TURNED
 
 
 def plan_of(world: Map, offers: Mapping[str, str]) -> dict[str, Json]:

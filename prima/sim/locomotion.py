@@ -8,10 +8,11 @@ from math import copysign, radians
 
 from prima.devices.profile import Motion, Profile
 from prima.messages import Command, Json
+from prima.scheduler.robot_state import difference
 from prima.sim.map import Point, distance
 from prima.sim.plan import off_line
 from prima.sim.routes import Routes
-from prima.sim.world import STANDING, STEP_MS, World, bearing, difference
+from prima.sim.world import STANDING, STEP_MS, World, bearing
 
 ARRIVED = 0.1
 """A goal is reached at this distance (m)."""

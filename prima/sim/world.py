@@ -9,6 +9,7 @@ import pymunk
 
 from prima.devices.goals import At
 from prima.devices.profile import Profile
+from prima.scheduler.robot_state import difference
 from prima.sim.map import EPSILON, Corner, Map, Point, distance
 from prima.sim.plan import crosses, off_line
 
@@ -30,11 +31,6 @@ FAR = 3.0
 def bearing(a: Point, b: Point) -> float:
     """The direction from one point to another, in degrees."""
     return degrees(atan2(b[1] - a[1], b[0] - a[0]))
-
-
-def difference(angle: float, other: float) -> float:
-    """The difference from ``other`` to ``angle``, between -180 and 180 degrees."""
-    return (angle - other + 180.0) % 360.0 - 180.0
 
 
 def room_beside(profile: Profile) -> float:
