@@ -111,9 +111,9 @@ class PythonEngine:
         call = self._functions[code] = weighed(found)
         return call
 
-    def scope(self, **values: Json) -> Scope:
-        """A new scope."""
-        return Scope({name: inward(value) for name, value in values.items()})
+    def scope(self, values: Mapping[str, Json] | None = None) -> Scope:
+        """A new scope with these variables."""
+        return Scope({name: inward(value) for name, value in (values or {}).items()})
 
     def named(self, name: str) -> Scope:
         """A new scope that its expressions know as ``application``, ``document`` or ``dialog``."""

@@ -136,10 +136,11 @@ class Engine:
         """The scope in which nothing is declared."""
         return self.nothing
 
-    def scope(self, **values: Json) -> Scope:
-        """A new, empty scope object."""
+    def scope(self, values: Mapping[str, Json] | None = None, *undefined: str) -> Scope:
+        """A new scope object with these variables, and with others that are undefined."""
         scope = self._call(self._help["scope"], ())
-        self.fill(scope, values)
+        self.fill(scope, values or {})
+        self.unset(scope, *undefined)
         return scope
 
     def named(self, name: str) -> Scope:

@@ -9,7 +9,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 from prima.errors import UsageError, one_of
-from prima.messages import Json
 from prima.script import worker
 from prima.script.ecmascript import UNDEFINED
 from prima.script.evaluation import SCOPES, EngineElement, EngineLost, Scope
@@ -55,13 +54,6 @@ class IsolatedEngine(Remote):
         if code not in self._lenient:
             self._lenient[code] = self._call("lenient", code)
         return self._lenient[code]
-
-    def scope(self, **values: Json) -> Scope:
-        """See :meth:`Engine.scope`."""
-        scope = self._call("scope")
-        if values:
-            self.fill(scope, values)
-        return scope
 
     def elements(self, code: str, scopes: tuple[Scope, ...], most: int) -> list[Any]:
         """See :meth:`Engine.elements`."""

@@ -60,11 +60,11 @@ class Calls:
                 ``connection.disconnect.hangup`` where they hang up, ``error.connection`` and
                 ``error.unsupported`` as the platform reports them (2.3.7.3).
         """
-        content, local = self.owner.content, self.owner.local()
+        content, nothing = self.owner.content, self.owner.engine.nothing
         if self.owner.gone:
             raise GoOut(self.owner.gone)
-        call = Call(item, content.word(item, "dest", context, local), kind_of(item))
-        aai = content.word(item, "aai", context, local)
+        call = Call(item, content.word(item, "dest", context, nothing), kind_of(item))
+        aai = content.word(item, "aai", context, nothing)
         if (refused := uncalled(call.to)) is not None:
             raise Thrown.at(item, *refused)
         if call.listens:

@@ -21,29 +21,29 @@ class ItemSelection:
 
     def declare(self, context: Context, item: Node) -> None:
         """Initialise an item's variable; an item without a name is only visited or not."""
+        nothing = self._owner.engine.nothing
         if name := item.get("name"):
             self._owner.content.check_name(item)
             self._owner.engine.unset(context.dialog, name)  # even if a var has declared it (C)
             if "expr" in item.attributes:
-                local = self._owner.local()
-                self._owner.content.put(context.dialog, name, item, "expr", context, local)
+                self._owner.content.put(context.dialog, name, item, "expr", context, nothing)
             return
         if "expr" in item.attributes:
             guard, name = self._owner.local(), "guard"
-            self._owner.content.put(guard, name, item, "expr", context, self._owner.local())
+            self._owner.content.put(guard, name, item, "expr", context, nothing)
             if self._owner.engine.defined(guard, name):  # null is a value
                 context.visited.add(item.index)
 
     def select(self, context: Context, wanted: str) -> Node | None:
         """The item that a goto names, or its unit; else the first unfilled one whose condition holds."""
-        items = self._next_to(context)
+        items, nothing = self._next_to(context), self._owner.engine.nothing
 
         def first_undefined(some: Sequence[Node]) -> int:
             each = enumerate(some)
             return next((at for at, one in each if not self._is_over(context, one)), len(some))
 
         def is_wanted(one: Node) -> bool:
-            return self._owner.content.holds(one, context, self._owner.local())
+            return self._owner.content.holds(one, context, nothing)
 
         return select_item(items, wanted, holds, first_undefined, is_wanted)
 
@@ -69,10 +69,10 @@ class ItemSelection:
 
     def prompts(self, context: Context, item: Node) -> list[Node | str]:
         """The prompts of an item that its counter has reached (4.1.6)."""
-        content, local = self._owner.content, self._owner.local
+        content, nothing = self._owner.content, self._owner.engine.nothing
 
         def spoken(piece: Node | str) -> bool:
-            return isinstance(piece, str) or content.holds(piece, context, local())
+            return isinstance(piece, str) or content.holds(piece, context, nothing)
 
         pieces = ((_least(piece), piece) for piece in item.content if _is_spoken(piece))
         return select_prompts(pieces, context.counters.prompts[item.index], spoken)

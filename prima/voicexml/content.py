@@ -292,11 +292,11 @@ class Content(Speaker):
         if not may_read(tree, host):
             message = f"{uri}: its access-control does not name {host}"
             raise Thrown.at(node, "error.noauthorization", message)
-        held = self.engine.scope(tree=tree)
-        blank = self.engine.scope()
+        held = self.engine.scope({"tree": tree})
+        nothing = self.engine.nothing
         try:
             self.engine.put(held, "dom", self._dom())
-            scopes = (blank, blank, blank, blank, held)
+            scopes = (nothing, nothing, nothing, nothing, held)
             self.engine.assign(scope, node.get("name"), "dom.whole(tree)", scopes)
         except ScriptError as error:
             raise self.failure(error, node, "src") from None
@@ -304,8 +304,7 @@ class Content(Speaker):
     def _dom(self) -> Scope:
         """The factory of documents; its classes exist once there is a document (2.1, D)."""
         if self._maker is None:
-            blank = self.engine.scope()
-            scopes = (blank, blank, blank, blank, blank)
+            scopes = (self.engine.nothing,) * 5
             self._maker = self.engine.raw(DOM, scopes)
             maker, session = self.engine.scope(), self.owner.documents.session
             self.engine.put(maker, "dom", self._maker)

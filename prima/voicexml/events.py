@@ -108,12 +108,9 @@ class Events:
 
     def _scope(self, thrown: Thrown) -> Scope:
         """The anonymous scope of a handler, with ``_event`` and ``_message`` (5.2.2)."""
-        local = self.engine.scope(_event=thrown.name)
         if thrown.message or thrown.worded:
-            self.engine.set(local, "_message", thrown.message)
-        else:
-            self.engine.unset(local, "_message")
-        return local
+            return self.engine.scope({"_event": thrown.name, "_message": thrown.message})
+        return self.engine.scope({"_event": thrown.name}, "_message")
 
     def _run(self, context: Context, handler: Node, thrown: Thrown) -> Flow:
         """Run a handler as if where the event was thrown; the next item may be quiet."""

@@ -242,8 +242,7 @@ class Inputs:
     ) -> Active:
         uri = node.get("src")
         if "srcexpr" in node.attributes:  # evaluated whenever the grammar listens (2.1, 2)
-            local = self.owner.local()
-            uri = self.owner.content.word(node, "src", context, local)
+            uri = self.owner.content.word(node, "src", context, self.owner.engine.nothing)
         if uri and not uri.startswith("builtin:"):
             uri = page.resolve(uri, node)
         return Active(self._load(node, page, uri), owner, page, level)

@@ -57,10 +57,10 @@ class Items:
 
         A link's attributes are evaluated where it was heard, not where it is written.
         """
-        content, local = self.owner.content, self.owner.local()
+        content, nothing = self.owner.content, self.engine.nothing
         if not node.attributes.keys().isdisjoint(("event", "eventexpr")):
-            raise content.raised(node, context, local)
-        uri = content.word(node, "next", context, local)
+            raise content.raised(node, context, nothing)
+        uri = content.word(node, "next", context, nothing)
         yield from self.owner.documents.go(context, uri, node)
 
     def remember(self, context: Context, heard: TakenUtterance) -> None:
@@ -152,17 +152,16 @@ class Items:
     def call(self, context: Context, item: Node) -> Flow:
         """A subdialog, in a context of its own (2.3.4)."""
         check_depth(context.depth, item)
-        params = self._params(context, item)
-        uri = self.owner.content.word(item, "src", context, self.owner.local())
+        params, nothing = self._params(context, item), self.engine.nothing
+        uri = self.owner.content.word(item, "src", context, nothing)
         names, method = item.get("namelist").split(), item.get("method")
-        values = self.owner.content.sent(item, names, context, self.owner.local())
+        values = self.owner.content.sent(item, names, context, nothing)
         request = UriRequest(method, values) if names or method == "post" else None
         fetched, dialog = yield from self.owner.documents.find(context, uri, item, request)
         page = fetched or context.page
         if fetched is not None:
             yield from self.owner.documents.root(fetched)  # its own, which is not the caller's
-        blank = self.engine.scope()
-        inner = Context(context.session, page, blank, blank, self.engine.named("dialog"))
+        inner = Context(context.session, page, nothing, nothing, self.engine.named("dialog"))
         inner.params, inner.depth = params, context.depth + 1
         self.owner.context = inner
         try:
@@ -180,12 +179,12 @@ class Items:
 
     def _params(self, context: Context, item: Node) -> Params:
         """The params of a subdialog, by value (6.4)."""
-        local, given = self.owner.local(), Params(self.engine.scope())
+        nothing, given = self.engine.nothing, Params(self.engine.scope())
         for param in item.all("param"):
             name = param.get("name")
             given.names[name] = None
             if "expr" in param.attributes:
-                self.owner.content.put(given.values, name, param, "expr", context, local)
+                self.owner.content.put(given.values, name, param, "expr", context, nothing)
                 self.engine.detach(given.values, name)
             else:
                 self.engine.set(given.values, name, param.get("value"))

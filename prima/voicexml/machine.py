@@ -98,8 +98,10 @@ class Machine:
 
     def start(self) -> Flow:
         """Run the application from its first dialog to its end (1.5.1)."""
-        page, blank = self.document.page, self.engine.scope()
-        context = Context(self.documents.begin(), page, blank, blank, self.engine.named("dialog"))
+        page, nothing = self.document.page, self.engine.nothing
+        context = Context(
+            self.documents.begin(), page, nothing, nothing, self.engine.named("dialog")
+        )
         self.context = context
         reason = GoOut()
         try:

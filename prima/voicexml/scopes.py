@@ -36,11 +36,11 @@ class Documents:
 
     def begin(self) -> Scope:
         """Make the scope of the whole session (5.1.4); documents see it and cannot change it."""
-        session, blank = self.engine.scope(), self.engine.scope()
+        session, nothing = self.engine.scope(), self.engine.nothing
         self.engine.put(session, "session", session)
-        given = self.engine.scope(given=dict(self.owner.app.connection))
+        given = self.engine.scope({"given": dict(self.owner.app.connection)})
         for code in (CONNECTION, TELEPHONE):
-            self.engine.raw(code, (session, blank, blank, blank, given))
+            self.engine.raw(code, (session, nothing, nothing, nothing, given))
         self.session = session
         return self.engine.view(session)
 

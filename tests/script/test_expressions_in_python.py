@@ -251,7 +251,12 @@ def test_deep_brackets_are_no_trouble() -> None:
 
 def test_texts_do_not_grow_without_end() -> None:
     engine = PythonEngine()
-    scopes = (engine.scope(), engine.scope(s="x" * 60_000), engine.named("dialog"), engine.scope())
+    scopes = (
+        engine.scope(),
+        engine.scope({"s": "x" * 60_000}),
+        engine.named("dialog"),
+        engine.scope(),
+    )
     with pytest.raises(ScriptError, match="memory"):
         engine.value("s + s", scopes)
     with pytest.raises(ScriptError, match="memory"):
@@ -263,7 +268,7 @@ def test_texts_do_not_grow_without_end() -> None:
 
 def test_long_texts_that_are_gone_count_no_more() -> None:
     engine = PythonEngine()
-    document = engine.scope(s="x" * 60_000)
+    document = engine.scope({"s": "x" * 60_000})
     for index in range(500):
         scopes = (engine.scope(), document, engine.named("dialog"), engine.scope())
         engine.assign(scopes[2], "v", f"s + {index}", scopes)
@@ -272,7 +277,12 @@ def test_long_texts_that_are_gone_count_no_more() -> None:
 
 def test_assignments_reach_the_innermost_variable() -> None:
     engine = PythonEngine()
-    scopes = (engine.scope(n=0), engine.scope(n=1), engine.named("dialog"), engine.scope())
+    scopes = (
+        engine.scope({"n": 0}),
+        engine.scope({"n": 1}),
+        engine.named("dialog"),
+        engine.scope(),
+    )
     engine.assign_declared("n", "n + 10", scopes)
     engine.assign_declared("application.n", "n + 100", scopes)
     assert [engine.value("n", (scope,) * 4) for scope in scopes[:2]] == [111, 11]

@@ -96,7 +96,7 @@ def test_no_way_to_the_hosts_clock(engine: Engine) -> None:
 
 
 def test_whole_numbers_keep_their_size(engine: Engine) -> None:
-    scope = engine.scope(large=2**40, small=-(2**31) - 1)
+    scope = engine.scope({"large": 2**40, "small": -(2**31) - 1})
     blank = engine.scope()
     assert engine.value("large", (blank, blank, blank, scope)) == 2**40
     assert engine.value("small", (blank, blank, blank, scope)) == -(2**31) - 1
