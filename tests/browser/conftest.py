@@ -27,14 +27,17 @@ def browser() -> Iterator[Browser]:
         assert "CI" not in os.environ, "CI has to install chromium"
         pytest.skip("there is no chromium on this machine")
     with sync_playwright() as started:
-        opened = started.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        opened = started.chromium.launch(
+            executable_path=CHROMIUM,
+            args=["--no-sandbox", "--disable-gpu", "--disable-software-rasterizer"],
+        )
         yield opened
         opened.close()
 
 
 @pytest.fixture(scope="session")
 def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """One run, two runs, one in Japanese, and a long one, as files."""
+    """One run, two runs, one without its scenario, and one in Japanese, as files."""
     folder = tmp_path_factory.mktemp("pages")
     loaded = api.load_scenario(SCENARIO)
     first, second = api.rehearse(SCENARIO), api.rehearse(SCENARIO, "fifo")
@@ -44,10 +47,17 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         "two": make([first, second], [loaded]),
         "bare": make([first]),
         "ja": make([api.rehearse(japanese)]),
-        "long": make([long_run(5000)]),
     }
-    paths = {}
-    for name, text in made.items():
-        paths[name] = folder / f"{name}.html"
-        paths[name].write_text(text, encoding="utf-8")
-    return paths
+    return {name: written(folder, name, text) for name, text in made.items()}
+
+
+@pytest.fixture(scope="session")
+def long_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run of 5,000 rows, as a file."""
+    return written(tmp_path_factory.mktemp("pages"), "long", make([long_run(5000)]))
+
+
+def written(folder: Path, name: str, text: str) -> Path:
+    path = folder / f"{name}.html"
+    path.write_text(text, encoding="utf-8")
+    return path

@@ -157,9 +157,9 @@ def test_without_scripts_the_transcript_can_be_read(
 
 @pytest.mark.parametrize(("size", "most"), [(DESK, 150), (PHONE, 60)])
 def test_a_long_run_opens_at_what_can_be_read(
-    browser: Browser, pages: dict[str, Path], size: tuple[int, int], most: int
+    browser: Browser, long_page: Path, size: tuple[int, int], most: int
 ) -> None:
-    with Opened(browser, pages["long"], size) as opened:
+    with Opened(browser, long_page, size) as opened:
         page = opened.page
         told = re.fullmatch(
             r"Shown: 0 to (\d+) s of (\d+) s; .*Whole run.*", page.inner_text("#shown")
@@ -177,9 +177,9 @@ def test_a_short_run_is_shown_whole(browser: Browser, pages: dict[str, Path]) ->
         assert opened.page.inner_text("#shown") == "The whole run is shown."
 
 
-def test_five_thousand_rows_stay_usable(browser: Browser, pages: dict[str, Path]) -> None:
+def test_five_thousand_rows_stay_usable(browser: Browser, long_page: Path) -> None:
     began = time.monotonic()
-    with Opened(browser, pages["long"], DESK) as opened:
+    with Opened(browser, long_page, DESK) as opened:
         page = opened.page
         page.evaluate(
             "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
