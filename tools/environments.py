@@ -46,10 +46,11 @@ def install(name: str) -> None:
     packages = folder / "apt.txt"
     if packages.exists():
         _install_packages(packages.read_text().split())
-    _run(sys.executable, "-m", "venv", "--clear", str(home))
-    pip = (str(python_of(name)), "-m", "pip", "install", "--quiet", "--disable-pip-version-check")
+    uv = (sys.executable, "-m", "uv", "--quiet")
+    _run(*uv, "venv", "--clear", "--python", sys.executable, str(home))
     for path in wanted:
-        _run(*pip, "-r", str(path))
+        where = ("--python", str(python_of(name)), "--requirements", str(path))
+        _run(*uv, "pip", "install", "--compile-bytecode", *where)
     stamp.write_text(digest)
 
 
