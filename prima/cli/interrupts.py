@@ -43,6 +43,17 @@ def leave_to_python() -> None:
             signal.signal(number, handler)
 
 
+@contextmanager
+def fatal() -> Iterator[None]:
+    """Let both end the process at once: a thread that waits for input keeps an exception waiting."""
+    before = {number: signal.signal(number, signal.SIG_DFL) for number in PYTHONS}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
 def interrupt(_: int, frame: FrameType | None) -> None:
     """Break off what runs, unless that is physics: then soon."""
     while frame is not None:

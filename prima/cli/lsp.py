@@ -6,6 +6,7 @@ import sys
 
 import click
 
+from prima.cli.interrupts import fatal
 from prima.errors import UsageError
 
 
@@ -33,5 +34,7 @@ def lsp(stdio: bool) -> None:
     if sys.stdin is None or sys.stdin.isatty():
         message = "An editor starts this command; docs/editors.md says how to set it up."
         raise UsageError(f"lsp: {message} To check a file here: prima validate FILE.")
-    if not serve():
+    with fatal():
+        shut_down = serve()
+    if not shut_down:
         raise click.exceptions.Exit(1)

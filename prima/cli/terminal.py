@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Protocol
 
+from prima.cli.failures import INTERRUPTED
 from prima.devices.lines import line_text
 
 GLANCE = 0.1
@@ -194,7 +195,7 @@ def ending_well(on_signal: Callable[[], object]) -> Iterator[None]:
     """
     restore = _restoring()
 
-    def end(number: int, _frame: object) -> None:
+    def end(_number: int, _frame: object) -> None:
         restore()
         if os.isatty(2):
             os.write(2, b"\n")  # after the line that was begun
@@ -203,7 +204,7 @@ def ending_well(on_signal: Callable[[], object]) -> Iterator[None]:
         with suppress(Exception):
             on_signal()
         os.write(2, b"prima: interrupted\n")
-        os._exit(128 + number)
+        os._exit(INTERRUPTED)
 
     names = ("SIGINT", "SIGTERM", "SIGHUP")
     numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 import threading
@@ -54,3 +55,18 @@ def test_a_lost_ctrl_c_is_repeated_until_its_timer_has_started(
     lost = SimpleNamespace(exc_value=KeyboardInterrupt())
     interrupt_again(cast("sys.UnraisableHookArgs", lost))
     assert starts == 3
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_each_signal_ends_a_talk_that_waits_for_a_line(number: signal.Signals) -> None:
+    with subprocess.Popen(
+        [sys.executable, "-m", "prima", "talk", "--scripted", "documents/scenarios/follow-during-navigation.xml"],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT,
+    ) as talk:  # fmt: skip
+        assert talk.stdin is not None and talk.stdout is not None and talk.stderr is not None
+        talk.stdin.write("/wait 1s\n")
+        talk.stdin.flush()
+        assert talk.stdout.readline()
+        talk.send_signal(number)
+        assert talk.wait(60) == 130
+        assert talk.stderr.read().endswith("prima: interrupted\n")

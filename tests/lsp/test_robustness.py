@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -372,3 +373,15 @@ def test_an_editor_that_leaves_without_shutdown_gets_exit_code_1(begun: bool) ->
         if begun:
             speak(process, BEGINNING)
             assert hear(process)["id"] == 0
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_ends_a_server_that_waits_for_its_editor(number: signal.Signals) -> None:
+    """Its exception waited until the editor sent something, and then the exit code was 0."""
+    with subprocess.Popen(
+        [sys.executable, "-m", "prima", "lsp"], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as process:
+        speak(process, BEGINNING)
+        assert hear(process)["id"] == 0
+        process.send_signal(number)
+        assert process.wait(SECONDS) == -number
