@@ -179,7 +179,8 @@ def test_a_document_is_few_objects(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         counts.append((len(gc.get_objects()) - before, len(document.forms)))
         del document
     _, (few, some), (many, more) = counts  # the first one also frees what other tests have left
-    assert (many - few) / (more - some) < 10.5  # three elements, with what they hold and mean
+    most = 10.5 if sys.version_info < (3, 14) else 14.5  # which also looks through plain dicts
+    assert (many - few) / (more - some) < most  # three elements, with what they hold and mean
 
 
 def test_dialogs_without_handlers_and_units_are_not_sketched(

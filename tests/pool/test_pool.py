@@ -113,8 +113,8 @@ def test_processes_that_cannot_begin_are_told() -> None:
         list(spread(square, range(3), 2, broken))
 
 
-SPAWNS = """
-import os, signal
+SPAWNS = r"""
+import os, re, signal
 from multiprocessing import util
 from prima.pool.processes import warm_up
 
@@ -122,7 +122,8 @@ def waits():
     return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 def spawn(path, args, fds, real=util.spawnv_passfds):
-    print(args[-1].split()[1], waits(), os.environ.get("PYTHONSAFEPATH"))
+    name = re.search(r"multiprocessing\.\w+", str(args)).group()
+    print(name, waits(), os.environ.get("PYTHONSAFEPATH"))
     return real(path, args, fds)
 
 util.spawnv_passfds = spawn
