@@ -12,7 +12,8 @@ def main() -> None:
 
         run()
     except KeyboardInterrupt:
-        sys.stderr.write("prima: interrupted\n")
+        if sys.stderr is not None:
+            sys.stderr.write("prima: interrupted\n")
         sys.exit(INTERRUPTED)
 
 

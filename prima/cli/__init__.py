@@ -12,8 +12,8 @@ from importlib import import_module
 
 import click
 
-from prima.cli.common import escape_for_people, tell
-from prima.cli.failures import INTERRUPTED, exit_code, last_words
+from prima.cli.common import escape_for_people
+from prima.cli.failures import exit_code, interrupted, last_words
 from prima.cli.interrupts import interruptible
 from prima.errors import did_you_mean
 from prima.version import __version__
@@ -101,8 +101,7 @@ def main() -> None:
             code = cli.main(standalone_mode=False)
             sys.stdout.flush()
         except (click.Abort, KeyboardInterrupt):
-            tell("prima: interrupted")
-            code = INTERRUPTED
+            code = interrupted()
         except (Exception, SystemExit) as error:
             code = exit_code(error)
     last_words()

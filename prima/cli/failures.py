@@ -27,6 +27,8 @@ def exit_code(error: BaseException) -> int:
     for kind, handle in HANDLERS:
         if isinstance(error, kind):
             return handle(error)
+    if isinstance(error.__cause__, KeyboardInterrupt):  # while Python 3.11 made a class
+        return interrupted()
     if "PRIMA_DEBUG" in os.environ:
         raise error
     tell(
@@ -34,6 +36,12 @@ def exit_code(error: BaseException) -> int:
         " Please report it; PRIMA_DEBUG=1 shows where."
     )
     return RUN
+
+
+def interrupted() -> int:
+    """Print that the command was interrupted; return the exit code."""
+    tell("prima: interrupted")
+    return INTERRUPTED
 
 
 def _message(code: int, text: str = "") -> Callable[[Any], int]:

@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM: where their exception would be lost, or break what is under way, it comes later."""
+"""Ctrl-C, SIGTERM and a closed terminal: their exception comes later where it would be lost, or break something."""
 
 from __future__ import annotations
 
@@ -19,11 +19,13 @@ PYTHONS: dict[int, Callable[[int, FrameType | None], Any] | signal.Handlers] = {
     signal.SIGTERM: signal.SIG_DFL,
 }
 """The signals that interrupt a command, with Python's own handlers."""
+if hasattr(signal, "SIGHUP"):  # not on Windows
+    PYTHONS[signal.SIGHUP] = signal.SIG_DFL
 
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Handle both in the way of this module, unless the caller ignores them or does so already."""
+    """Handle them in the way of this module, unless the caller ignores them or does so already."""
     hook, sys.unraisablehook = sys.unraisablehook, interrupt_again
     for number, handler in PYTHONS.items():
         if signal.getsignal(number) is handler:
@@ -45,13 +47,15 @@ def leave_to_python() -> None:
 
 @contextmanager
 def fatal() -> Iterator[None]:
-    """Let both end the process at once: a thread that waits for input keeps an exception waiting."""
-    before = {number: signal.signal(number, signal.SIG_DFL) for number in PYTHONS}
+    """Let them end the process at once: a thread that waits for input keeps an exception waiting."""
+    handled = [number for number in PYTHONS if signal.getsignal(number) is interrupt]
+    for number in handled:
+        signal.signal(number, signal.SIG_DFL)
     try:
         yield
     finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        for number in handled:
+            signal.signal(number, interrupt)
 
 
 def interrupt(_: int, frame: FrameType | None) -> None:
@@ -78,8 +82,10 @@ def interrupt_again(lost: sys.UnraisableHookArgs) -> None:
 def _soon() -> None:
     from threading import Timer
 
+    heard = (number for number in PYTHONS if signal.getsignal(number) is interrupt)
+    number = next(heard, signal.SIGINT)  # which a shell's background job ignores
     started = False
     while not started:
         with suppress(KeyboardInterrupt):  # the timer was quicker than its start: lost here, too
-            Timer(SOON_S, os.kill, (os.getpid(), signal.SIGINT)).start()
+            Timer(SOON_S, os.kill, (os.getpid(), number)).start()
             started = True

@@ -15,6 +15,20 @@ import pytest
 from prima.cli.interrupts import interrupt_again
 
 ROOT = Path(__file__).parents[2]
+IN_CLASS = """
+import signal
+import prima.cli
+class Part:
+    def __set_name__(self, owner, name):
+        signal.raise_signal(signal.{name})
+def make(**_):
+    class Whole:
+        part = Part()
+prima.cli.cli.main = make
+prima.cli.main()
+"""
+"""Python 3.11 makes a RuntimeError of each exception in this place, as in enumerations."""
+IGNORED = "import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)"
 IN_PHYSICS = """
 import signal, sys
 from prima.__main__ import main
@@ -33,6 +47,25 @@ def test_ctrl_c_breaks_nothing_in_physics(place: str) -> None:
     """A world that was half freed crashed the process at its end."""
     done = subprocess.run(
         [sys.executable, "-c", IN_PHYSICS.format(place=place), "test", "documents/scenarios", "-j", "1"],
+        capture_output=True, text=True, timeout=60, check=False, cwd=ROOT,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr.lstrip()) == (130, "prima: interrupted\n")
+
+
+def test_sigterm_in_physics_ends_a_background_job() -> None:
+    """A shell's background job ignores SIGINT, by which the signal was repeated."""
+    code = IGNORED + IN_PHYSICS.format(place="spacefree").replace("SIGINT", "SIGTERM")
+    done = subprocess.run(
+        [sys.executable, "-c", code, "test", "documents/scenarios", "-j", "1"],
+        capture_output=True, text=True, timeout=60, check=False, cwd=ROOT,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr.lstrip()) == (130, "prima: interrupted\n")
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_each_signal_ends_a_command_that_makes_a_class(name: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", IN_CLASS.format(name=name)],
         capture_output=True, text=True, timeout=60, check=False, cwd=ROOT,
     )  # fmt: skip
     assert (done.returncode, done.stderr.lstrip()) == (130, "prima: interrupted\n")

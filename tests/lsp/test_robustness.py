@@ -375,7 +375,7 @@ def test_an_editor_that_leaves_without_shutdown_gets_exit_code_1(begun: bool) ->
             assert hear(process)["id"] == 0
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
 def test_a_signal_ends_a_server_that_waits_for_its_editor(number: signal.Signals) -> None:
     """Its exception waited until the editor sent something, and then the exit code was 0."""
     with subprocess.Popen(
