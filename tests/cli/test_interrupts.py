@@ -90,16 +90,38 @@ def test_a_lost_ctrl_c_is_repeated_until_its_timer_has_started(
     assert starts == 3
 
 
+class Talk(subprocess.Popen[str]):
+    """A talk that waits for a line; ``before`` is run in its process, before PRIMA."""
+
+    def __init__(self, before: str = "") -> None:
+        scenario = "documents/scenarios/follow-during-navigation.xml"
+        code = f"import signal\n{before}\nfrom prima.__main__ import main\nmain()"
+        super().__init__(
+            [sys.executable, "-c", code, "talk", "--scripted", scenario],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            cwd=ROOT,
+        )  # fmt: skip
+        self.wait_a_second()
+
+    def wait_a_second(self) -> None:
+        assert self.stdin is not None and self.stdout is not None
+        self.stdin.write("/wait 1s\n")
+        self.stdin.flush()
+        assert self.stdout.readline()
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_each_signal_ends_a_talk_that_waits_for_a_line(number: signal.Signals) -> None:
-    with subprocess.Popen(
-        [sys.executable, "-m", "prima", "talk", "--scripted", "documents/scenarios/follow-during-navigation.xml"],
-        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT,
-    ) as talk:  # fmt: skip
-        assert talk.stdin is not None and talk.stdout is not None and talk.stderr is not None
-        talk.stdin.write("/wait 1s\n")
-        talk.stdin.flush()
-        assert talk.stdout.readline()
+    with Talk() as talk:
         talk.send_signal(number)
         assert talk.wait(60) == 130
+        assert talk.stderr is not None
         assert talk.stderr.read().endswith("prima: interrupted\n")
+
+
+def test_a_talk_goes_on_after_a_signal_that_its_caller_ignores() -> None:
+    """As that of a closed terminal, under nohup."""
+    with Talk("signal.signal(signal.SIGHUP, signal.SIG_IGN)") as talk:
+        talk.send_signal(signal.SIGHUP)
+        _, err = talk.communicate("/quit\n", timeout=60)
+        assert talk.returncode == 0 and "interrupted" not in err
