@@ -329,7 +329,7 @@ def _protected(path: Path, made: str) -> str:
     from prima.markup.sniff import root_of
     from prima.testing.finding import GLANCE
 
-    if not path.is_file():
+    if not os.path.isfile(path):  # without an error for a name that is too long
         return ""
     try:
         with path.open("rb") as stream:

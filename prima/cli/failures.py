@@ -125,7 +125,8 @@ def _write_nowhere(stream: int) -> None:
 
 
 def _system(error: OSError) -> int:
-    tell(f"prima: cannot go on: {error.strerror}.")
+    name = f"{error.filename}: " if isinstance(error.filename, str) else ""
+    tell_line(f"prima: {name}cannot go on: {error.strerror}.")
     _write_nowhere(sys.stdout.fileno())
     return USAGE
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from os.path import exists
 from pathlib import Path
 
 from prima.errors import with_article
@@ -170,7 +171,7 @@ def _move(
         raise RenameError(f'"{new}" is not a file\'s name.')
     if target == link[0]:
         return [], None
-    if target.exists() or target in workspace.open:
+    if exists(target) or target in workspace.open:
         raise RenameError(f'A file "{new}" already exists.')
     return moved(workspace, link[0], target), (link[0], target)
 

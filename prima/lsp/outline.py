@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from os.path import isfile
 from pathlib import Path
 
 from prima.lsp.scan import ScannedTag, ScannedText
@@ -81,4 +82,4 @@ def _part(tag: ScannedTag) -> OutlineElement:
 def links(workspace: Workspace, path: Path) -> list[tuple[Path, int, int]]:
     """The existing files that a document names, with the positions of their names."""
     named = workspace.named(path)
-    return [one for one in named if one[0].is_file() or one[0] in workspace.open]
+    return [one for one in named if isfile(one[0]) or one[0] in workspace.open]

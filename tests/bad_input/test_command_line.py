@@ -121,6 +121,22 @@ def test_a_folder_that_is_read_only(prima: Prima, tmp_path: Path, transcript: st
     prima("run", "s.xml", "-o", folder / "t").check(2, "cannot be written: Permission denied")
 
 
+LONG = "x" * 300
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("run", "s.xml", "-o", f"{LONG}.jsonl"), ("report", "s.xml", "-o", f"{LONG}.html"),
+     ("report", f"{LONG}.csv"), ("new", "ea", f"{LONG}.xml")],
+    ids=["run", "report", "table", "new"],
+)  # fmt: skip
+def test_a_name_that_is_too_long_is_named(
+    tmp_path: Path, transcript: str, words: tuple[str, ...]
+) -> None:
+    done = process(tmp_path, *words, seconds=30).check(2, "File name too long")
+    assert LONG in done.err
+
+
 # Pipes, terminals and signals ----------------------------------------------------------------
 def closed_pipe(folder: Path) -> Result:
     """What a long table gives when its reader goes away after the first line."""

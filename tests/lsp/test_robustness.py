@@ -176,6 +176,19 @@ def test_a_long_text_without_end_takes_no_long_time() -> None:
         everything(workspace, path, len(BEGIN) + 10)
 
 
+def test_a_name_that_is_too_long_leads_nowhere(tmp_path: Path) -> None:
+    field = (
+        f'<form id="a"><field name="b"><grammar src="{"x" * 300}.grxml"/></field></form></prima>'
+    )
+    workspace = Workspace()
+    path = workspace.put((tmp_path / "x.xml").as_uri(), BEGIN + field)
+    assert path is not None and workspace.named(path)
+    assert links(workspace, path) == []
+    offset = (BEGIN + field).index("xxx")
+    everything(workspace, path, offset)
+    assert naming.rename(workspace, path, offset, "y" * 300)
+
+
 def test_a_text_that_is_nested_too_deep_has_an_outline(editor: Editor) -> None:
     problems = editor.open("fa/deep.xml", BEGIN + '<form id="a">' * 3_000)
     assert [one.code for one in problems] == ["too-deep"]
