@@ -25,7 +25,7 @@ if hasattr(signal, "SIGHUP"):  # not on Windows
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Handle them in the way of this module, unless the caller ignores them or does so already."""
+    """Handle the signals in this module's way, unless the caller ignores them or does so already."""
     hook, sys.unraisablehook = sys.unraisablehook, interrupt_again
     for number, handler in PYTHONS.items():
         if signal.getsignal(number) is handler:
@@ -47,7 +47,7 @@ def leave_to_python() -> None:
 
 @contextmanager
 def fatal() -> Iterator[None]:
-    """Let them end the process at once: a thread that waits for input keeps an exception waiting."""
+    """Let the signals end the process at once: a thread that waits for input keeps an exception waiting."""
     handled = [number for number in PYTHONS if signal.getsignal(number) is interrupt]
     for number in handled:
         signal.signal(number, signal.SIG_DFL)

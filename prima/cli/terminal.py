@@ -11,6 +11,7 @@ from contextlib import contextmanager, suppress
 from typing import Protocol
 
 from prima.cli.failures import INTERRUPTED
+from prima.cli.interrupts import PYTHONS
 from prima.devices.lines import line_text
 
 GLANCE = 0.1
@@ -206,9 +207,7 @@ def ending_well(on_signal: Callable[[], object]) -> Iterator[None]:
         os.write(2, b"prima: interrupted\n")
         os._exit(INTERRUPTED)
 
-    names = ("SIGINT", "SIGTERM", "SIGHUP")
-    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
-    heeded = [number for number in numbers if signal.getsignal(number) is not signal.SIG_IGN]
+    heeded = [number for number in PYTHONS if signal.getsignal(number) is not signal.SIG_IGN]
     before = {number: signal.signal(number, end) for number in heeded}
     try:
         yield

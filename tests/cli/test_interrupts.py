@@ -101,9 +101,6 @@ class Talk(subprocess.Popen[str]):
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
             cwd=ROOT,
         )  # fmt: skip
-        self.wait_a_second()
-
-    def wait_a_second(self) -> None:
         assert self.stdin is not None and self.stdout is not None
         self.stdin.write("/wait 1s\n")
         self.stdin.flush()

@@ -39,7 +39,7 @@ ENVIRONMENT = {
     "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1",
 }
 ALONE = ("--nthreads", "1", "--no-nanny")
-VARY = ("--vary", "touch=0s..8s/100ms", "--policy", "prima", "--policy", "fifo")
+VARY = ("--vary", "touch=0s..8s/50ms", "--policy", "prima", "--policy", "fifo")
 
 
 def begin(*words: str) -> subprocess.Popen[str]:
@@ -126,7 +126,7 @@ def test_a_worker_killed_in_the_middle_loses_nothing(dask: Cluster) -> None:
     dask.worker()
     made = subprocess.Popen(
         [sys.executable, "-m", "prima", "sweep", "visit.xml", "-o", "t.csv", "--on", dask.address,
-         "--vary", "touch=0s..8s/20ms"],
+         "--vary", "touch=0s..8s/10ms"],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
     until(lambda: Path("t.csv").exists() and Path("t.csv").read_bytes().count(b"\n") > 50)
@@ -134,9 +134,9 @@ def test_a_worker_killed_in_the_middle_loses_nothing(dask: Cluster) -> None:
     killed.send_signal(signal.SIGKILL)
     out, err = made.communicate(timeout=120)
     assert made.returncode == 0, err
-    assert out.startswith("t.csv: 401 runs, ")
+    assert out.startswith("t.csv: 801 runs, ")
     Path("local").mkdir()
-    prima("sweep", "visit.xml", "--vary", "touch=0s..8s/20ms", "-o", "local/t.csv")
+    prima("sweep", "visit.xml", "--vary", "touch=0s..8s/10ms", "-o", "local/t.csv")
     assert Path("local/t.csv").read_bytes() == Path("t.csv").read_bytes()
 
 
@@ -218,7 +218,7 @@ def test_a_plan_counts_the_cluster_s_workers(dask: Cluster) -> None:
     for _ in range(3):
         dask.worker()
     done = command.prima("sweep", "visit.xml", *VARY, "--plan", "--on", dask.address)
-    assert "162 runs: about" in done.stdout and "with 3 processes" in done.stdout, done.stderr
+    assert "322 runs: about" in done.stdout and "with 3 processes" in done.stdout, done.stderr
 
 
 def test_nobody_answers(tmp_path: Path) -> None:
