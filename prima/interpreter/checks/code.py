@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
+from itertools import chain
 from typing import Any
 
 from prima.errors import Diagnosis, Problem
@@ -48,6 +49,8 @@ QUOTES = re.compile("[“”„‟‘’‚‛]")
 """Typographic quotes."""
 MISTAKEN = re.compile("|".join(["[^\\x00-\\x7f]", *(words for words, _ in MISTAKES)]))
 """Signs of a common mistake in code."""
+CONDITIONS = frozenset({"cond", "when"})
+"""Attributes with conditions."""
 WIDEST = 60
 """Characters of code that a message quotes."""
 
@@ -115,10 +118,9 @@ def check_code(facts: Facts) -> Iterator[Problem]:
 
 def _used(variables: Variables, expr: Expression, known: Known, script: bool) -> Iterator[Problem]:
     if script:
-        yield from variables.of_script(expr, known)
-        return
-    yield from variables.of_expression(expr, known)
-    yield from _assigns(expr)
+        return variables.of_script(expr, known)
+    found = variables.of_expression(expr, known)
+    return chain(found, _assigns(expr)) if expr.attribute in CONDITIONS else found
 
 
 # All code, with the names that it may use and whether it is a script
@@ -134,11 +136,13 @@ def all_code(facts: Facts) -> Iterator[Code]:
         known = facts.known_in(form)
         yield from _outside(form, known, known)
         for item in items:
-            yield from ((one, known, False) for one in _of_item(item))
+            for one in _of_item(item):
+                yield one, known, False
     for kind, held in HELD.items():
         for holder, act in facts.acts.of(kind):
-            known = facts.known_in(holder)
-            yield from ((one, known, False) for one in held(act) if isinstance(one, Expression))
+            for part in held(act):
+                if isinstance(part, Expression):
+                    yield part, facts.known_in(holder), False
     for holder, script in facts.acts.of(Script):
         yield script.code, facts.known_in(holder), True
 
@@ -150,8 +154,11 @@ def _outside(holder: Document | Form, known: Known, later: Known) -> Iterator[Co
             yield act.code, known, True
         elif act.expr is not None:
             yield act.expr, known, False
-    yield from ((watch.when, known, False) for watch in holder.watches)
-    yield from ((cond, later, False) for cond in _conditions(holder.handlers))
+    for watch in holder.watches:
+        yield watch.when, known, False
+    for handler in holder.handlers:
+        if handler.cond is not None:
+            yield handler.cond, later, False
 
 
 def _conditions(conditional: Iterable[Handler | Prompt]) -> Iterator[Expression]:
@@ -223,7 +230,7 @@ def _of_full_width(code: str) -> str:
 
 def _assigns(expr: Expression) -> Iterator[Problem]:
     """The problem of a condition that assigns a variable where a comparison was meant."""
-    if "=" not in expr.code or expr.attribute not in ("cond", "when"):
+    if "=" not in expr.code:
         return
     parsed = parse_expression(expr.code)
     if parsed is None:

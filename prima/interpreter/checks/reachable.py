@@ -179,6 +179,8 @@ def check_content(facts: Facts) -> Iterator[Problem]:
 def check_handlers(facts: Facts) -> Iterator[Problem]:
     """Warn of handlers whose events an earlier one of the same scope always takes."""
     for scope in scopes_of(facts.document, facts.acts):
+        if len(scope) < 2:
+            continue
         earlier: dict[tuple[str, int], Handler] = {}
         for handler in scope:
             takers = [_taker(earlier, name, handler.count) for name in handler.events]

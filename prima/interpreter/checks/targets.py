@@ -42,7 +42,7 @@ def check_targets(facts: Facts) -> Iterator[Problem]:
 
 
 def _goto(facts: Facts, act: Goto, items: set[str]) -> Iterator[Problem]:
-    if isinstance(act.form, str):
+    if isinstance(act.form, str) and act.form not in facts.document.forms:
         yield from _form(facts, act.form, act.node, "next")
     if isinstance(act.item, str) and act.item not in items:
         yield _item(facts, act, act.item, items)
