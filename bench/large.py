@@ -248,7 +248,8 @@ FAMILIES: dict[str, Family] = {
     "ABNF rules": Family("#ABNF 1.0;\nlanguage en;\nroot $r0;\n", lambda i, n: f"$r{i} = go $r{min(i + 1, n - 1)};\n", "", ".gram"),
     "ABNF alternatives": Family("#ABNF 1.0;\nlanguage en;\nroot $r0;\n$r0 = a", lambda i, n: f" | number{i}", ";\n", ".gram"),
     # Worlds, robots and scenarios
-    "places with ways": _world(lambda i, n: f'<place id="p{i}" x="{i % 100}" y="{i // 100 % 100}"/>' + (f'<way from="p{i}" to="p{i - 1}"/>\n' if i % 2 else "\n")),
+    "places with ways": _world(lambda i, n: f'<place id="p{i}" x="{i % 100}" y="{i // 100}"/>' + (f'<way from="p{i}" to="p{i - 1}"/>\n' if i % 2 else "\n")),
+    "places at the points of others": _world(lambda i, n: f'<place id="p{i}" x="{i % 100}" y="{i // 100 % 50}"/>\n'),
     "ways to nowhere": _world(lambda i, n: f'<way from="start" to="q{i}"/>\n'),
     "ways": _world(lambda i, n: f'<place id="p{i}" x="{i % 100}" y="{i // 100}"/><way from="start" to="p{i}"/><way from="p{i}" to="p{max(i - 1, 0)}"/>\n'),
     "walls": _world(lambda i, n: f'<wall x1="{i}" y1="1" x2="{i}" y2="2"/>\n'),
