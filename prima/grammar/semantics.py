@@ -1,12 +1,13 @@
 """The meaning of an utterance by the tags of the matched rules (SISR 1.0).
 
-Every matched rule has a value; rules that it refers to are evaluated first. Without tags it is
-the value of the last rule that it refers to, or else the text of its tokens.
+Tags and the rules that are referred to are evaluated from left to right. Every matched rule has a
+value: without tags it is that of the last rule that it refers to, or else the text of its tokens.
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -83,6 +84,20 @@ class TagInterpreter:
         Raises:
             TagFailed: a tag failed.
         """
+        self._read(top)
+        todo = [self._evaluate(top)]
+        while todo:
+            inner = next(todo[-1], None)
+            if inner is None:
+                todo.pop()
+            else:
+                todo.append(self._evaluate(inner))
+        return self._plain(self._results[id(top)])
+
+    # Tokens
+
+    def _read(self, top: RuleFrame) -> None:
+        """Note the tokens of each rule: its tags may read all of them."""
         todo: list[tuple[RuleFrame, int]] = [(top, 0)]
         self._results[id(top)] = _result(top, 0)
         while todo:
@@ -97,10 +112,7 @@ class TagInterpreter:
                     break
                 self._token(event)
             else:
-                result = self._results[id(frame)]
-                result.last = len(self.tokens)
-                self._value(frame, result)
-        return self._plain(self._results[id(top)])
+                self._results[id(frame)].last = len(self.tokens)
 
     def _token(self, event: Words | Tag | Value) -> None:
         if isinstance(event, Words):
@@ -118,15 +130,18 @@ class TagInterpreter:
 
     # Values
 
-    def _value(self, frame: RuleFrame, result: _Result) -> None:
+    def _evaluate(self, frame: RuleFrame) -> Iterator[RuleFrame]:
+        """Find the value of a rule; gives each rule that it refers to when its turn comes."""
+        result = self._results[id(frame)]
         tags = [event for event in frame.events if isinstance(event, Tag)]
-        dialect = result.document.dialect
-        if not tags:
-            self._default(frame, result)
-        elif dialect in ("literals", "last"):
+        if tags and result.document.dialect not in ("literals", "last"):
+            yield from self._script(frame, result, tags)
+            return
+        yield from (event for event in frame.events if isinstance(event, RuleFrame))
+        if tags:
             result.value = tags[-1].code.strip()
         else:
-            self._script(frame, result)
+            self._default(frame, result)
 
     def _default(self, frame: RuleFrame, result: _Result) -> None:
         """The value of a rule without tags (SISR 1.0: default assignment)."""
@@ -166,32 +181,26 @@ class TagInterpreter:
             failed = SemanticError(f"The value cannot be given: {error}.", result.place())
             raise TagFailed(failed) from None
 
-    def _script(self, frame: RuleFrame, result: _Result) -> None:
-        """Run the tags of a rule with the values of the rules that it refers to."""
+    def _script(self, frame: RuleFrame, result: _Result, tags: list[Tag]) -> Iterator[RuleFrame]:
+        """Run the tags of a rule; before those behind it comes each rule that it refers to."""
         engine = self._engine(result.document)
         legacy = result.document.dialect == "legacy"
-        pieces: list[str] = []
-        tags = [event for event in frame.events if isinstance(event, Tag)]
         result.tag = tags[-1]
         codes = [translate(tag.code) if legacy else tag.code for tag in tags]
-        numbered = enumerate(in_turn(codes))
-        tagged = list(zip(tags, codes, strict=True))
-        _check(tagged, result.document, engine)
+        _check(list(zip(tags, codes, strict=True)), result.document, engine)
         environment: Any = None
         try:
             environment = engine.environment(self.text(result), result.document.merges)
+            result.box = engine.rule(_program(frame, in_turn(codes)), environment)
             for event in frame.events:
-                if isinstance(event, Tag):
-                    number, code = next(numbered)
-                    pieces.append(f"$next.at = {number};\n{code}\n;")
-                elif isinstance(event, RuleFrame):
+                if isinstance(event, RuleFrame):
+                    yield event
                     inner = self._results[id(event)]
-                    engine.add(environment, event.name, self._box(inner, result), self.text(inner))
-                    pieces.append("$next(out);")
+                    given = event.name, self._box(inner, result), self.text(inner)
+                    result.box = engine.resume(environment, *given)
                 elif isinstance(event, Value):
-                    engine.add(environment, "builtin", engine.box(event.value), event.text)
-                    pieces.append("$next(out);")
-            result.box = engine.rule("\n".join(pieces), environment)
+                    given = "builtin", engine.box(event.value), event.text
+                    result.box = engine.resume(environment, *given)
         except EngineLost as error:
             raise EngineLost(f"{tags[0].where()}: {error}") from None
         except ScriptError as error:
@@ -227,6 +236,19 @@ class TagInterpreter:
 def _result(frame: RuleFrame, first: int) -> _Result:
     document = frame.rule.document
     return _Result(document, document, first)
+
+
+def _program(frame: RuleFrame, codes: list[str]) -> str:
+    """The tags of a rule as the body of a generator, which waits for each rule that it refers to."""
+    pieces: list[str] = []
+    numbered = enumerate(codes)
+    for event in frame.events:
+        if isinstance(event, Tag):
+            number, code = next(numbered)
+            pieces.append(f"$next.at = {number};\n{code}\n;")
+        elif isinstance(event, RuleFrame | Value):
+            pieces.append("yield $next; $next(out);")
+    return "\n".join(pieces)
 
 
 def _check(tags: list[tuple[Tag, str]], document: GrammarDocument, engine: Any) -> None:

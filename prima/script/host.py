@@ -42,8 +42,8 @@ METHODS: Mapping[str, Mapping[str, int]] = {
         "empty": GIVES_VALUE,
     },
     "TagEngine": {
-        "run": GIVES_NOTHING, "box": GIVES_VALUE, "environment": GIVES_VALUE, "add": GIVES_NOTHING,
-        "rule": GIVES_VALUE, "reached": GIVES_DATA, "fault": GIVES_DATA, "carry": GIVES_DATA,
+        "run": GIVES_NOTHING, "box": GIVES_VALUE, "environment": GIVES_VALUE,
+        "rule": GIVES_VALUE, "resume": GIVES_VALUE, "reached": GIVES_DATA, "fault": GIVES_DATA, "carry": GIVES_DATA,
         "take": GIVES_VALUE, "json": GIVES_DATA,
     },
     "Syntax": {"expression": GIVES_NOTHING, "script": GIVES_NOTHING, "has_statements": GIVES_DATA,

@@ -111,22 +111,28 @@ class TagEngine:
         return self._call(self._help["box"], json.dumps(value))
 
     def environment(self, text: str, merges: bool) -> Any:
-        """The environment of a rule's tags; rules that it refers to are added in order."""
+        """The environment of a rule's tags, for :meth:`rule`."""
         return self._call(self._help["environment"], well_formed(text), merges)
 
-    def add(self, environment: Any, name: str, box: Any, text: str) -> None:
-        """Add the value of a rule that was referred to."""
-        self._call(self._member(environment, "add"), name, box, well_formed(text))
-
     def rule(self, code: str, environment: Any) -> Any:
-        """Run the tags of a rule; ``$next(out)`` in them passes a rule that was referred to."""
+        """Run the tags of a rule to where ``yield $next`` waits for one that it refers to, or to its end.
+
+        Returns:
+            The boxed value, or None if it waits.
+        """
         function = self._functions.get(code)
         if function is None:
-            body = f"{GUARD}(function (rules, meta, $next, out) {{\n{code}\n$next.at = {DONE}; return {{ v: out }};\n}})"
+            body = f"(function* (rules, meta, $next, out) {{\n{code}\n$next.at = {DONE}; return {{ v: out }};\n}})"
             function = self._functions[code] = self._call(self._context.eval, body)
-        given = [self._member(environment, name) for name in ("rules", "meta", "next")]
-        box = self._call(function, *given, self._call(self._context.eval, "({})"))
-        if self.reached(environment) != DONE:
+        return self._reach(environment, self._call(self._help["begin"], environment, function))
+
+    def resume(self, environment: Any, name: str, box: Any, text: str) -> Any:
+        """Go on with the tags of a rule, which waited for this value of one that it refers to."""
+        given = environment, name, box, well_formed(text)
+        return self._reach(environment, self._call(self._help["resume"], *given))
+
+    def _reach(self, environment: Any, box: Any) -> Any:
+        if box is not None and self.reached(environment) != DONE:
             raise ScriptError("return outside of a function")
         return box
 
@@ -158,9 +164,3 @@ class TagEngine:
         """A boxed value as plain data; undefined and functions become None."""
         text = self._call(self._help["json"], box)
         return read_json(well_formed_json(text)) if isinstance(text, str) else None
-
-    def _member(self, thing: Any, name: str) -> Any:
-        getter = self._functions.get(f".{name}")
-        if getter is None:
-            getter = self._functions[f".{name}"] = self._context.eval(f"((o) => o.{name})")
-        return self._call(getter, thing)

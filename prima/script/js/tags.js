@@ -42,6 +42,14 @@ const counted = () => {
     return value;
   };
 };
+// Nothing but our own yield gives the function that the tags of a rule have for the next one.
+const goOn = Object.getPrototypeOf(function* () {}).prototype.next, Wrong = SyntaxError;
+const go = (environment) => {
+  const step = apply(goOn, environment.steps, []);
+  if (step.done) return step.value;
+  if (step.value !== environment.next) throw new Wrong('yield outside of a generator');
+  return null;
+};
 const plain = (value) => value !== null && typeof value === 'object' && !isArray(value);
 return {
   box: function (text) { return { v: parse(text) }; },
@@ -52,21 +60,28 @@ return {
   },
   take: function (text) { return { v: unmark(parse(text)) }; },
   environment: function (text, merges) {
-    let last, lastMeta = { text: '', score: 1 }, at = 0;
-    const own = { text: text, score: 1 }, rules = create(named), meta = create(named), waiting = [];
+    let last, lastMeta = { text: '', score: 1 }, name = 'latest';
+    const own = { text: text, score: 1 }, rules = create(named), meta = create(named);
     hidden(rules, 'latest', function () { return last; });
     hidden(meta, 'latest', function () { return lastMeta; });
     hidden(meta, 'current', function () { return own; });
     return {
       rules: rules, meta: meta,
-      add: function (name, box, text) { waiting.push([name, box, { text: text, score: 1 }]); },
+      steps: null,
+      add: function (rule, box, text) { name = rule; last = box.v; lastMeta = { text: text, score: 1 }; },
       next: function (out) {
-        const [name, box, about] = waiting[at++];
-        last = box.v; lastMeta = about;
         if (name !== 'latest') rules[name] = last;
-        if (name !== 'latest' && name !== 'current') meta[name] = about;
+        if (name !== 'latest' && name !== 'current') meta[name] = lastMeta;
         if (merges && plain(out) && plain(last)) assign(out, last);
       },
     };
+  },
+  begin: function (environment, tags) {
+    environment.steps = tags(environment.rules, environment.meta, environment.next, {});
+    return go(environment);
+  },
+  resume: function (environment, rule, box, text) {
+    environment.add(rule, box, text);
+    return go(environment);
   },
 }; })()
