@@ -140,9 +140,8 @@ def all_code(facts: Facts) -> Iterator[Code]:
                 yield one, known, False
     for kind, held in HELD.items():
         for holder, act in facts.acts.of(kind):
-            for part in held(act):
-                if isinstance(part, Expression):
-                    yield part, facts.known_in(holder), False
+            codes = [one for one in held(act) if isinstance(one, Expression)]
+            yield from [(one, facts.known_in(holder), False) for one in codes]
     for holder, script in facts.acts.of(Script):
         yield script.code, facts.known_in(holder), True
 
