@@ -68,7 +68,7 @@ class DocumentError(PrimaError):
         super().__init__("\n".join(map(str, listed(self.problems))))
 
     def __reduce__(self) -> tuple[type[DocumentError], tuple[list[Problem]]]:
-        return type(self), (self.problems,)  # the message is no argument
+        return type(self), (self.problems,)  # the message is not an argument
 
 
 class UsageError(PrimaError):

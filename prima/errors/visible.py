@@ -25,7 +25,7 @@ FORMULA = tuple("=+-@\uff1d\uff0b\uff0d\uff20")
 def visible(text: str, keep: str = "") -> str:
     """Text without characters that control a terminal, or reverse or hide other text.
 
-    White space that is no space becomes one, but what is to be kept, as ``"\\n"``.
+    Other white space becomes a space, except the characters in ``keep``, such as ``"\\n"``.
     """
     if text.isprintable():
         return text

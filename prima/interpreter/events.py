@@ -282,7 +282,7 @@ class KnownEvents:
     def _unheard(self, one: RaisedEvent, wanted: set[str]) -> Problem | None:
         heard = any(name in self.heard or name in DEFAULTS for name in beginnings(one.name))
         if one.name in wanted or heard or not re.fullmatch(EVENT, one.name):
-            return None  # or it is no name, which is reported already
+            return None  # or it is not a name, which is reported already
         self._guesses += 1
         nearest = ""
         if self._guesses <= MOST_GUESSES:

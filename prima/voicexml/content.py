@@ -137,7 +137,7 @@ class Content(Speaker):
 
     def clear(self, node: Node, context: Context, local: Scope) -> None:
         """Undefine variables, and reset what counts visits of form items (5.3.3)."""
-        # A menu is no form item: its counters are reset when it is entered, not here (4.1.6, 5.2.2).
+        # A menu is not a form item: its counters are reset when it is entered, not here (4.1.6, 5.2.2).
         items = [one for one in form_items(context) if one.tag != "menu"]
         names = node.get("namelist").split()
         self.owner.app.count_step(node, len(names) or len(items))

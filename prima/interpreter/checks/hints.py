@@ -80,7 +80,7 @@ def _stream(facts: Facts, form: Form, one: Form | Item) -> Iterator[Problem]:
 
 
 def _is_no_reaction(node: Node) -> bool:
-    """Whether a handler is no reaction, by its attribute or by each of its events (C5)."""
+    """Whether a handler is not a reaction, by its attribute or by each of its events (C5)."""
     said = node.get("reactive")
     own = {name.partition(".")[0] for name in node.get("event", "").split()} <= NO_CAUSES
     return said == "false" or (said != "true" and own)
