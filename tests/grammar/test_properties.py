@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 from prima.grammar import load
 from prima.grammar.answers import Answers
 from prima.grammar.phrases import phrases
+from tests.helpers.grammars import SCRIPT
 
 SRGS = "http://www.w3.org/2001/06/grammar"
 QUICK = settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
@@ -90,6 +92,45 @@ def test_phrases_that_are_offered_are_taken(one: tuple[str, str], two: tuple[str
     grammar = load(f"#ABNF 1.0;\nlanguage en;\nroot $r;\n$r = {one[0]};\n$s = {two[0]};\n")
     for phrase in phrases(Answers(grammars=[grammar])):
         assert grammar.match(phrase), (phrase, one, two)
+
+
+Rule = list[Any]
+"""Words and tags in order, as letters, and the rules that are referred to."""
+
+RULES: st.SearchStrategy[Rule] = st.recursive(
+    st.lists(st.sampled_from(["word", "tag"]), max_size=4),
+    lambda inner: st.lists(st.one_of(st.sampled_from(["word", "tag"]), inner), max_size=4),
+    max_leaves=12,
+)
+
+
+@QUICK
+@given(RULES)
+def test_tags_run_from_left_to_right(top: Rule) -> None:
+    rules: list[str] = []
+    words: list[str] = []
+    log: list[int] = []
+
+    def write(rule: Rule) -> int:
+        number = len(rules)
+        rules.append("")
+        parts: list[str] = []
+        for one in [*rule, "word", "tag"]:
+            if one == "word":
+                words.append("x")
+                parts.append("x")
+            elif one == "tag":
+                log.append(number)
+                parts.append(f"{{log.push({number}); out = log}}")
+            else:
+                parts.append(f"$r{write(one)}")
+        rules[number] = f"$r{number} = {' '.join(parts)};"
+        return number
+
+    write(top)
+    text = SCRIPT.replace("root $r;", "root $r0;") + "{var log = []};\n" + "\n".join(rules)
+    (found,) = load(text).match(" ".join(words))
+    assert (found.error, found.interpretation) == (None, log)
 
 
 def test_phrases_repeat_what_is_needed() -> None:
