@@ -173,8 +173,9 @@ def policy_option(meaning: str, many: bool = False, **more: Any) -> Callable[[An
 
 
 def coloured() -> bool:
-    """Whether to colour what goes to stdout."""
-    return sys.stdout.isatty() and "NO_COLOR" not in os.environ
+    """Whether to colour what goes to stdout: not if ``NO_COLOR`` has a value (no-color.org)."""
+    unwanted = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
+    return sys.stdout.isatty() and not unwanted
 
 
 def columns() -> int:

@@ -47,24 +47,23 @@ def test_progress_is_told_to_a_terminal_alone(stage: Path) -> None:
     assert re.search(rb"\r[1-6] of 7 runs", said)
     assert out.decode() == prima(*words).stdout
     assert b"\x1b" not in out
-    both, _ = terminal(words, out_too=True, NO_COLOR="")
+    both, _ = terminal(words, out_too=True, NO_COLOR="1")
     assert re.search(rb"\r2 of 7 runs(, 1 not fine)?; about \d+ s left ", both)
     assert re.search(rb" \rb/q.xml +prima +0  until", both)  # a row begins at the margin
     assert prima("b").stderr == ""
 
 
-def test_colours_are_for_terminals_that_want_them(stage: Path) -> None:
-    words = ["a/one.xml", "a/three.xml"]
-    said, _ = terminal(words, out_too=True, NO_COLOR="")
-    assert b"\x1b" not in said
-    environment = {name: value for name, value in os.environ.items() if name != "NO_COLOR"}
-    ours, theirs = pty.openpty()
-    subprocess.run([*MODULE, *words], stdout=theirs, stderr=subprocess.DEVNULL, env=environment)
-    os.close(theirs)
-    said = os.read(ours, 65536)
-    os.close(ours)
+@pytest.mark.parametrize(
+    ("variable", "value", "wanted"),
+    [("NO_COLOR", "1", False), ("NO_COLOR", "", True), ("TERM", "dumb", False)],
+)
+def test_colours_are_for_terminals_that_want_them(
+    stage: Path, variable: str, value: str, wanted: bool
+) -> None:
+    colours = {"NO_COLOR": "", "TERM": "xterm", variable: value}
+    said, _ = terminal(["a/one.xml", "a/three.xml"], out_too=True, **colours)
     red = [line for line in said.splitlines() if b"\x1b[31m" in line]
-    assert len(red) == 1 and b"a/three.xml" in red[0]
+    assert [b"a/three.xml" in line for line in red] == [True] * wanted
 
 
 def test_control_characters_in_a_name_do_not_reach_the_terminal(stage: Path) -> None:
