@@ -468,9 +468,9 @@ def _any_language(words: dict[str, str]) -> str:
 
 ACCEPTED = {
     "boolean": (
-        "A word of assent or refusal: "
+        "One or more words of assent, or of refusal: "
         + "; ".join(_any_language(words) for words in (builtin.YES, builtin.NO)),
-        ("Yes, please.", "OK!", "No, thank you.", "はい"),
+        ("Yes, please.", "OK, sure!", "No, thank you.", "はい"),
     ),
     "number": (
         "A number in digits, in English words or in Japanese numerals, with a sign or decimals",

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from functools import partial
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Literal
 from urllib.parse import unquote
 
@@ -183,11 +183,18 @@ def _boolean(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
         pressed = {given.get("y", "1"): True, given.get("n", "2"): False}
         return pressed.get(text.strip())
     said = fold(text)
-    for words, value in ((YES, True), (NO, False)):
-        spoken = [words["en"], words.get(lang, "")] if lang else words.values()
-        if said and said in map(fold, "|".join(spoken).split("|")):
-            return value
-    return None
+    answers = (value for value in (True, False) if _answers(value, lang).fullmatch(said))
+    return next(answers, None)
+
+
+@lru_cache(32)
+def _answers(value: bool, lang: str) -> re.Pattern[str]:
+    """One or more folded answers of the same sense, as in "Yes, of course"."""
+    words = YES if value else NO
+    spoken = [words["en"], words.get(lang, "")] if lang else words.values()
+    folded = {fold(one) for one in "|".join(spoken).split("|")} - {""}
+    one = "|".join(map(re.escape, sorted(folded, key=len, reverse=True)))
+    return re.compile(rf"(?>{one})(?:(?: |(?<=[^\x00-\x7f]))(?>{one}))*+")
 
 
 def _digits(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
