@@ -16,7 +16,7 @@ from prima.interpreter.elements import (
     Unit,
     all_items,
 )
-from prima.interpreter.frame import Content, Fiber, Frame, GoForm
+from prima.interpreter.frame import Abandoned, Content, Fiber, Frame, GoForm
 from prima.interpreter.owner import FORM_STEPS, Owner
 from prima.interpreter.places import source
 from prima.interpreter.selection import satisfied, select_item, select_prompts
@@ -269,15 +269,18 @@ class Algorithm:
         frame.units = (*frame.units, (number, unit))
         outer, fiber.unit = fiber.unit, number
         self.owner.engine.set(frame.dialog, unit.name, True)
+        given_up = False
         try:
             yield from self._visit_unit(frame, fiber, unit)
+        except Abandoned:
+            given_up = True
+            raise
         finally:
             fiber.unit = outer
-            for other in [one for one in frame.fibers if one.unit == number and one is not fiber]:
-                self.owner.forget(other)
-            if (number, unit) in frame.units:
-                frame.units = tuple(one for one in frame.units if one[0] != number)
-                self.owner.actions.append(CloseUnit(number))
+            if not given_up:  # otherwise its handlers go on in it
+                for other in frame.inside(number):
+                    self.owner.forget(other)
+            self.owner.leave_emptied(frame)
 
     def _visit_unit(self, frame: Frame, fiber: Fiber, unit: Unit) -> Content:
         """Visit the items of a unit; a goto between them does not leave it."""

@@ -56,6 +56,10 @@ class Frame:
         self.document = document
         self.dialog = dialog
 
+    def inside(self, unit: int) -> list[Fiber]:
+        """The content that is under way in a unit (U5)."""
+        return [one for one in self.fibers if one.unit == unit]
+
 
 class Fiber:
     """A piece of content in progress: the form's own, or a handler's."""

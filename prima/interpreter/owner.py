@@ -197,6 +197,9 @@ class Owner(Protocol):
     def leave(self, frame: Frame) -> None:
         """O3: give up the content of a state."""
 
+    def leave_emptied(self, frame: Frame) -> None:
+        """Conclude the units in which nothing is going on any more."""
+
     def close_units(self, frame: Frame) -> None:
         """U5: conclude every unit that a state is in."""
 

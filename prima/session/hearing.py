@@ -64,8 +64,10 @@ class Hearing:
         taken = self._answer(question, value) if question is not None else self._breaks_in(value)
         if taken or self._follow_links(value.text, said, question):
             return
-        if question is None or question.silent:
+        if question is None:
             self.unheard = value.text
+        elif question.silent:  # U5: of a unit that has been left
+            self._conclude(question.id, {"outcome": "nomatch", "utterance": value.text})
         elif not self._offer(value, said):
             self._refuse(question, value)
 

@@ -77,6 +77,7 @@ class Body:
 
     def take(self, now: int, call: Told) -> list[Report]:
         """Carry out a call of the conductor; returns immediate reports."""
+        self._now = now
         if isinstance(call, Begin):
             self._begin(now, call)
         elif isinstance(call, Again):
@@ -187,6 +188,7 @@ class Body:
             case other:
                 if other in self.profile.motions:
                     effort.control = partial(self._dance, effort)
+                    effort.control()
                 lasts = self.profile.durations.get(other, 1)
                 effort.ends = max(begin.spoken, now + lasts, now + 1)
 
@@ -242,8 +244,12 @@ class Body:
 
     @property
     def moves_on(self) -> bool:
-        """Whether there is a motion whose end the world determines."""
-        return any(one.turns_on for one in self.efforts.values())
+        """Whether a goal has to set the wheels again, though they may not turn."""
+        return any(one.turns_on or self._dances(one) for one in self.efforts.values())
+
+    def _dances(self, effort: Effort) -> bool:
+        """Whether it performs the steps of an added motion."""
+        return effort.begin.kind in self.profile.motions and effort.control is not None
 
     def collect(self, now: int) -> list[Report]:
         """Advance the body, and return its devices' reports at ``now``."""

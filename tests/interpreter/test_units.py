@@ -248,3 +248,59 @@ def test_e1_an_error_in_a_unit_of_commands_has_the_commands_place_and_handlers()
     bench.fail("One.")
     [error] = bench.phases("error")
     assert error["message"].startswith("error.device.speaker: app.xml:1:")
+
+
+@pytest.mark.parametrize("said", ["yes", "nonsense"])
+def test_u5_words_end_the_question_of_a_unit_whose_time_is_up(said: str) -> None:
+    bench = Bench(UNIT.format(""))
+    bench.listens()
+    bench.step(at=20_100)
+    bench.hears(said)
+    assert bench.saying() == ["Bye."]
+    [question] = [one for one in bench.phases("end") if one["command"] == "q-and-a"]
+    assert question["outcome"] == "nomatch"
+
+
+IN_UNIT = """<form id="a">
+  <iu><block><speak>One.</speak></block><block><gesture name="bow"/></block>{handler}</iu>
+  <block><speak>Two.</speak></block>
+  <error><log expr="event.name"/></error>
+</form>"""
+
+
+def test_u5_the_error_of_a_handler_in_a_unit_is_handled() -> None:
+    handler = '<on event="touch"><move-head pan="5"/></on>'
+    bench = Bench(IN_UNIT.format(handler=handler))
+    bench.event("touch")
+    bench.finish("One.")
+    bench.fail("move-head", "neck")
+    assert bench.logs() == ["error.device.neck"]
+    assert bench.running() == {}
+    [unit] = [one for one in bench.phases("end") if one["command"] == "iu"]
+    assert unit["outcome"] == "done"
+
+
+def test_o2_a_command_wanted_now_in_a_unit_is_carried_out_in_it() -> None:
+    handler = '<on event="touch"><speak order="now">Wait.</speak><log>said</log></on>'
+    bench = Bench(IN_UNIT.format(handler=handler))
+    bench.event("touch")
+    assert bench.saying() == ["Wait.", "iu"]
+    bench.finish("Wait.")
+    assert (bench.logs(), bench.running()) == (["said"], {})
+
+
+def test_o3_what_follows_a_waiting_unit_that_is_left_continues_its_stream() -> None:
+    speaker = '<form id="a"><block><speak>A long story.</speak></block></form>'
+    waits = """<form id="a">
+      <block><gesture name="bow"/></block>
+      <iu><block><speak>One.</speak></block></iu>
+      <on event="touch"><goto next="#b"/></on>
+    </form>
+    <form id="b"><block><speak>Two.</speak></block></form>"""
+    bench = Bench(document(waits, "ea", "waits"), document(speaker, "fa", "speaks"))
+    bench.finish("gesture")
+    assert [one["rule"] for one in bench.phases("hold")] == ["S1"]
+    bench.event("touch")
+    trees = {one["tree"] for one in bench.phases("request") if one["app"] == "waits"}
+    assert trees == {"waits:1"}
+    assert bench.phases("stream-end") == []

@@ -226,6 +226,20 @@ def test_x5_a_dance_on_the_way_strays_no_further_than_its_bound(
     assert arrives[1] < arrives[0]
 
 
+def test_a_dance_alone_moves_the_body_as_its_steps_say(tmp_path: Path) -> None:
+    steps = '<step for="1s" speed="0.3"/><step for="1s"/><step for="1s" turn-speed="30"/>'
+    adds = f'<adds command="dance" devices="locomotion" duration="6s">{steps}</adds>'
+    said = '<watch name="moves" when="sensor.moving"/>' + form(
+        '<block><command type="dance"/><exit/></block><on event="moves"><log>moves</log></on>'
+    )
+    made = play(tmp_path, document("fa", "fa", said), more=ARM + adds)
+    [dance] = [one for one in made.records if one["phase"] == "end"]
+    there = {name: dance["data"][name] for name in ("x", "y", "heading")}
+    assert there == pytest.approx({"x": 0.56, "y": 0.15, "heading": 60.0}, abs=0.01)
+    logs = [one for one in made.records if one["phase"] == "log"]
+    assert len(logs) == 3, "it stands still twice"
+
+
 # X6 in the simulated world ----------------------------------------------------------------
 
 
