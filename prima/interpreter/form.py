@@ -22,7 +22,7 @@ from prima.interpreter.places import source
 from prima.interpreter.selection import satisfied, select_item, select_prompts
 from prima.interpreter.transfers import GoBack, GoItem, Thrown, Transfer, check_depth, thrown_of
 from prima.interpreter.vocabulary.questions import USUAL_CONFIDENCE
-from prima.messages import CloseUnit, Command, Cue, Json, Notice, OpenUnit, Step
+from prima.messages import Command, Cue, Json, Notice, OpenUnit, Step
 from prima.script.evaluation import ScriptError
 
 

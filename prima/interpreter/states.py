@@ -17,7 +17,7 @@ from prima.interpreter.owner import FORM_STEPS
 from prima.interpreter.protocol import App
 from prima.interpreter.pyengine import PythonEngine, is_python
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, Transfer, thrown_of
-from prima.messages import CloseUnit, Data, LeaveState, Notice
+from prima.messages import CloseUnit, Data, LeaveState, Notice, Raise
 from prima.script.evaluation import Scope, ScriptError
 from prima.script.isolated import Engines
 
@@ -187,6 +187,8 @@ class States(App["AnyEngine | PythonEngine"]):
         self.leave(frame)
         self.frame = caller
         self.note(None, "leave", caller.form.id)
+        if caller.form.watches:
+            self.guard(self._look_again, caller.form)
         main = next((one for one in caller.fibers if one.main), None)
         if main is None or main.content is None:
             return None
@@ -202,6 +204,11 @@ class States(App["AnyEngine | PythonEngine"]):
             self._drop(main)
             return caller, further
         return None
+
+    def _look_again(self, form: Form) -> None:
+        """C6: raise the events whose conditions turned true during a subdialog."""
+        self.untold = True
+        self.actions += map(Raise, self.handling.check_watches(form.watches))
 
     def forget(self, fiber: Fiber) -> None:
         """Give up a piece of content, with everything that it waits for."""

@@ -28,6 +28,24 @@ def test_a_watch_is_raised_when_its_condition_turns_true_and_armed_again() -> No
     assert bench.phases("request")[0]["reactive"] is True
 
 
+@pytest.mark.parametrize(("distance", "raised"), [(0.8, ["near"]), (3, [])])
+def test_what_turns_true_during_a_subdialog_is_raised_after_it(
+    distance: float, raised: list[str]
+) -> None:
+    bench = Bench(
+        """<form id="a"><watch name="near" when="sensor.human.distance &lt; 1"/>
+          <subdialog name="x" src="#b"/><block><speak>Back.</speak></block>
+          <on event="near"><log>near</log></on></form>
+        <form id="b"><block><speak>Inside.</speak></block><block><return/></block></form>"""
+    )
+    bench.step(Sensed({"human.distance": distance}))
+    assert bench.logs() == []
+    bench.finish("Inside.")
+    assert (bench.logs(), bench.saying()) == (raised, ["Back."])
+    bench.step(Sensed({"moving": True}))
+    assert bench.logs() == raised
+
+
 @pytest.mark.parametrize("handler", ["", '<on event="near"><log>near</log></on>'])
 @pytest.mark.parametrize("way", ["goto", "subdialog"])
 def test_events_of_watches_on_entry_do_not_lose_the_reactive_flag(handler: str, way: str) -> None:
@@ -211,8 +229,9 @@ def test_a_watch_knows_what_changed_while_a_subdialog_had_its_place() -> None:
     bench.step(Sensed({"x": 0, "y": 0}))
     bench.finish("First.")
     bench.step(Sensed({"x": 5}))
-    bench.event("touch")
     assert bench.logs() == []
+    bench.event("touch")
+    assert bench.logs() == ["near"]
     bench.step(Sensed({"y": 1}))
     assert bench.logs() == ["near"]
 
