@@ -222,7 +222,12 @@ class States(App["AnyEngine | PythonEngine"]):
                 pass  # the fiber that is running this
 
     def leave(self, frame: Frame) -> None:
-        """O3: end the state's content, conclude its units, give up its Commands."""
+        """O3: end the state's content, conclude its units, give up its Commands.
+
+        The mediator hears of the state first: a unit that waits belongs to the stream that goes on.
+        """
+        if frame.asked:  # otherwise the mediator does not know the state
+            self.actions.append(LeaveState(frame.state))
         if frame.fibers:
             for fiber in frame.fibers:
                 self.forget(fiber)
@@ -230,8 +235,6 @@ class States(App["AnyEngine | PythonEngine"]):
             self.close_units(frame)
         if self.timers:
             self.keep_timers(timer for timer in self.timers if timer.state != frame.state)
-        if frame.asked:  # otherwise the mediator does not know the state
-            self.actions.append(LeaveState(frame.state))
 
     def leave_emptied(self, frame: Frame) -> None:
         """U5: conclude the units in which nothing is going on any more."""

@@ -18,7 +18,6 @@ from prima.scheduler.behavior import (
 )
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.memory import WorkingMemory
-from prima.scheduler.streams import continue_with
 
 
 def running_as(memory: WorkingMemory, name: str) -> Behavior | None:
@@ -240,5 +239,4 @@ def close_unit(mediation: Mediation, app: Application, number: int) -> None:
     if unit.name in mediation.memory.running:
         settle(mediation, unit)
     elif unit.name in mediation.memory.behaviors:
-        continue_with(mediation, app, unit.stream)  # O3, as its state may be left
         delete(mediation, unit, "U5")

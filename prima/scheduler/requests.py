@@ -202,8 +202,9 @@ def o2(
     """
     devices = mediation.table[command.type].occupied(command.text)
     if unit is not None:
-        inside = [ab for ab in unit.inner.values() if ab.devices & devices]
-        cancel(mediation, inside, devices)
+        # All of a unit is one stream: of it, a tree is what was requested at once (U3).
+        runs = {id(ab.run) for ab in unit.inner.values() if ab.devices & devices}
+        cancel(mediation, [ab for ab in unit.inner.values() if id(ab.run) in runs], devices)
         return unit.stream
     streams = {
         ab.stream.name: ab.stream for ab in mediation.memory.of_app(app) if ab.devices & devices

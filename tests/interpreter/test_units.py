@@ -304,3 +304,14 @@ def test_o3_what_follows_a_waiting_unit_that_is_left_continues_its_stream() -> N
     trees = {one["tree"] for one in bench.phases("request") if one["app"] == "waits"}
     assert trees == {"waits:1"}
     assert bench.phases("stream-end") == []
+
+
+def test_o2_of_a_unit_all_is_cancelled_that_was_requested_at_once() -> None:
+    handlers = """<on event="touch"><speak>Ouch.</speak><move-head pan="5"/></on>
+      <on event="human.lost"><speak order="now">Come back.</speak></on>"""
+    bench = Bench(IN_UNIT.format(handler=handlers))
+    bench.event("touch")
+    bench.event("human.lost")
+    cancelled = [one["command"] for one in bench.phases("cancel")]
+    assert sorted(cancelled) == ["move-head", "speak", "speak"]
+    assert bench.saying() == ["Come back.", "iu"]
