@@ -13,6 +13,7 @@ from click.exceptions import Exit
 
 from prima.cli import common
 from prima.cli.common import coloured, put, tell, tell_line
+from prima.cli.failures import whoever_reads
 from prima.cli.progress import ProgressBar
 from prima.errors import UsageError, counted
 from prima.errors.visible import escaped, visible
@@ -76,14 +77,16 @@ def run_all(
                 exits[row.exit] += 1
                 earlier += row.earlier
                 progress.make_room(bool(row.messages))
-                table.put(row)
+                with whoever_reads():
+                    table.put(row)
                 progress.show(sum(exits.values()), exits.total() - exits[0])
     except KeyboardInterrupt:
         raise click.Abort from None
     finally:
         progress.clear()
     if form == "text":
-        put(f"\n{format_counts(exits)}")
+        with whoever_reads():
+            put(f"\n{format_counts(exits)}")
     if options.resume:
         tell(f"{earlier} of {counted(len(plan), 'run')} had been made before")
     if any(exits[code] for code in exits if code):
@@ -99,7 +102,8 @@ class _Table:
         if form == "json":
             common.write_for_programs()
         if form == "text":
-            put(format_head(self.wide))
+            with whoever_reads():
+                put(format_head(self.wide))
 
     def put(self, row: BatchRow) -> None:
         """Print a row."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import shlex
 import sys
 from collections.abc import Callable
 from contextlib import suppress
@@ -257,7 +258,7 @@ def _goes_on(transcript: Transcript) -> bool:
 
 def how_to_go_on(journal: str) -> str:
     """A message that a live run can go on from its journal."""
-    return f"Go on with: prima live --resume {journal}"
+    return f"Go on with: prima live --resume {shlex.quote(journal)}"
 
 
 def print_json(data: Any) -> None:

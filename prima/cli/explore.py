@@ -22,6 +22,7 @@ from prima.cli.common import (
     workers_option,
     write_for_programs,
 )
+from prima.cli.failures import whoever_reads
 from prima.cli.progress import ProgressBar
 from prima.errors import RunError, UsageError, counted
 
@@ -133,9 +134,10 @@ def _put(exploration: Exploration, form: str) -> None:
     if not exploration.orders:
         return
     explored = Explored(exploration)
-    if form == "json":
-        write_for_programs()
-        put(json.dumps(explored.data(), indent=1, ensure_ascii=False))
-        return
-    for line in explored.text():
-        put(line)
+    with whoever_reads():
+        if form == "json":
+            write_for_programs()
+            put(json.dumps(explored.data(), indent=1, ensure_ascii=False))
+            return
+        for line in explored.text():
+            put(line)

@@ -36,6 +36,7 @@ from prima.cli.common import (
     workers_option,
     write_for_programs,
 )
+from prima.cli.failures import whoever_reads
 from prima.cli.progress import run_into
 from prima.errors import TOO_MUCH, RunError, UsageError, counted
 
@@ -226,7 +227,8 @@ def _run_one(
         transcript = rehearse(sys.stdout.write)
     else:
         transcript = rehearse(None, keep=True)
-        put(transcript.table(why, columns()))
+        with whoever_reads():
+            put(transcript.table(why, columns()))
     return transcript
 
 

@@ -8,6 +8,7 @@ import click
 from click.exceptions import Exit
 
 from prima.cli.common import formats_option, print_json, put, write_for_programs
+from prima.cli.failures import whoever_reads
 
 
 @click.command()
@@ -38,12 +39,13 @@ def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> N
         results.append(result)
         if sys.stderr.isatty():
             click.echo(f"\r{len(results)} of {total} runs", err=True, nl=len(results) == total)
-    if form == "json":
-        print_json([result_data(result) for result in results])
-    elif form == "csv":
-        write_for_programs()
-        put(format_csv(results))
-    else:
-        put(format_table(results))
+    with whoever_reads():
+        if form == "json":
+            print_json([result_data(result) for result in results])
+        elif form == "csv":
+            write_for_programs()
+            put(format_csv(results))
+        else:
+            put(format_table(results))
     if any(result.failures for result in results):
         raise Exit(3)

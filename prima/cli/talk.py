@@ -274,4 +274,5 @@ def _real_time(conversation: Conversation, typist: Typist) -> None:
         conversation.line(text)
         if game.clock < now:  # it has gone back
             clock.back(game.clock)
-        typist.ready()
+        if not conversation.done:  # else Python ends while a line is awaited
+            typist.ready()

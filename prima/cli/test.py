@@ -264,7 +264,7 @@ def _agreed(result: Result, yes: bool) -> bool:
     """Whether the author agrees to write a table."""
     if yes:
         return True
-    if not sys.stdin.isatty():
+    if sys.stdin is None or not sys.stdin.isatty():
         tell(f"{result.file}: not written. To write it, add --yes.")
         return False
     return click.confirm(f"Write {result.file}?", err=True)

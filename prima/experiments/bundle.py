@@ -65,7 +65,7 @@ def check_bundle(path: str, out: Output) -> None:
             folder.
     """
     there = Path(path)
-    if there.resolve() in (out.path.resolve(), out.folder.resolve()):
+    if os.path.realpath(there) in map(os.path.realpath, (out.path, out.folder)):
         raise UsageError(f"{path}: the table is written there; name another file for the archive.")
     if there.is_dir():
         raise UsageError(f"{path}: it is a folder; name a file for the archive.")

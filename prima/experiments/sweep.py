@@ -7,6 +7,7 @@ beginning of its table, and ``resume`` continues after it.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from errno import ENOSPC
@@ -82,9 +83,9 @@ class Sweep:
 
     def _check_scenarios(self, question: SweepQuestion) -> None:
         """Refuse a scenario that is named twice: each of its runs would count twice."""
-        seen: dict[Path, str] = {}
+        seen: dict[str, str] = {}
         for name in question.scenarios:
-            path = Path(name).resolve()
+            path = os.path.realpath(name)  # Path.resolve fails on loops of links
             if path in seen:
                 also = f', as "{seen[path]}"' if seen[path] != name else ""
                 raise UsageError(f'The scenario "{name}" is there twice{also}.')

@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from prima.cli.common import how_to_go_on
 from tests.helpers.bad_input import (
     SECONDS,
     Prima,
@@ -135,6 +136,27 @@ def test_a_name_that_is_too_long_is_named(
 ) -> None:
     done = process(tmp_path, *words, seconds=30).check(2, "File name too long")
     assert LONG in done.err
+
+
+@pytest.mark.parametrize("words", ["sweep loop", "sweep s.xml -o t.csv --bundle loop", "run loop"])
+def test_links_in_a_circle_are_no_scenarios(tmp_path: Path, words: str) -> None:
+    stage(tmp_path, app(block("<exit/>")))
+    (tmp_path / "loop").symlink_to("loop")
+    process(tmp_path, *words.split()).check(2, "prima: ")
+
+
+def test_tables_are_not_updated_where_nobody_can_be_asked(tmp_path: Path) -> None:
+    stage(tmp_path, app(block("<speak>Hello.</speak><exit/>")))
+    write(tmp_path, "s.txt", "another table")
+    command = f"{sys.executable} -m prima test s.xml --update <&-"
+    made = subprocess.run(
+        ["bash", "-c", command], cwd=tmp_path, check=False, capture_output=True, text=True
+    )
+    assert made.returncode == 1 and "not written. To write it, add --yes." in made.stderr
+
+
+def test_a_journal_with_any_name_can_be_gone_on_with_as_told() -> None:
+    assert how_to_go_on("a b'c.jsonl").endswith("""--resume 'a b'"'"'c.jsonl'""")
 
 
 # Pipes, terminals and signals ----------------------------------------------------------------
