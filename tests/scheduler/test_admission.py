@@ -343,16 +343,19 @@ def test_o3_only_what_the_state_has_asked_for_is_deleted() -> None:
     assert stage.phases("leave") == [{**left, "state": 1}]
 
 
-def test_o2_in_a_unit_only_what_needs_its_devices_is_cancelled() -> None:
+def test_o2_in_a_unit_what_was_requested_at_once_is_cancelled_whole() -> None:
     stage = Stage()
     stage.open("ea", 1, "speaker", "neck")
     both = [Step(say("One.")), Step(command("move-head", pan=1))]
     stage.request("ea", steps=both, unit=1)
+    stage.request("ea", command("move-head", pan=2), unit=1)
     stage.select()
     stage.at(10).request("ea", replace(say("Wait!"), now=True), unit=1)
-    assert stage.select() == ["ea#4"]
-    assert stage.running == {"ea#1", "ea#3", "ea#4"}
-    assert stage.told("ea") == ["cancel.speak"]
+    assert stage.select() == ["ea#5"]
+    assert stage.running == {"ea#1", "ea#3", "ea#5"}, "what runs on other devices finishes"
+    assert stage.told("ea") == ["cancel.move-head", "cancel.speak"]
+    stage.end("ea#3")
+    assert stage.select() == ["ea#4"], "what was requested by itself is carried out"
 
 
 def test_e3_at_most_five_hundred_commands_wait_side_by_side() -> None:
