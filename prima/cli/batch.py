@@ -77,8 +77,7 @@ def run_all(
                 exits[row.exit] += 1
                 earlier += row.earlier
                 progress.make_room(bool(row.messages))
-                with whoever_reads():
-                    table.put(row)
+                table.put(row)
                 progress.show(sum(exits.values()), exits.total() - exits[0])
     except KeyboardInterrupt:
         raise click.Abort from None
@@ -105,6 +104,7 @@ class _Table:
             with whoever_reads():
                 put(format_head(self.wide))
 
+    @whoever_reads()
     def put(self, row: BatchRow) -> None:
         """Print a row."""
         if self.form == "json":

@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from prima.errors import UsageError, did_you_mean, listed, one_of
+from prima.errors import Problem, UsageError, did_you_mean, listed, one_of
 from prima.errors.visible import escaped, visible
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from prima.api import Transcript
-    from prima.errors import Problem
 
 
 class SuggestingChoice(click.Choice[str]):
@@ -175,8 +174,7 @@ def policy_option(meaning: str, many: bool = False, **more: Any) -> Callable[[An
 
 def coloured() -> bool:
     """Whether to colour what goes to stdout: not if ``NO_COLOR`` has a value (no-color.org)."""
-    unwanted = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
-    return sys.stdout.isatty() and not unwanted
+    return sys.stdout.isatty() and not os.getenv("NO_COLOR") and os.getenv("TERM") != "dumb"
 
 
 def columns() -> int:

@@ -187,6 +187,15 @@ def _root(
         ab.freed = mediation.now
 
 
+def _at_once(unit: Behavior, devices: frozenset[str]) -> list[Behavior]:
+    """O2: what was requested in a unit at once with an AB that needs one of these devices.
+
+    All of a unit is one stream: of it, a tree is what was requested at once (U3).
+    """
+    runs = {id(ab.run) for ab in unit.inner.values() if ab.devices & devices}
+    return [ab for ab in unit.inner.values() if id(ab.run) in runs]
+
+
 def o2(
     mediation: Mediation,
     app: Application,
@@ -202,9 +211,7 @@ def o2(
     """
     devices = mediation.table[command.type].occupied(command.text)
     if unit is not None:
-        # All of a unit is one stream: of it, a tree is what was requested at once (U3).
-        runs = {id(ab.run) for ab in unit.inner.values() if ab.devices & devices}
-        cancel(mediation, [ab for ab in unit.inner.values() if id(ab.run) in runs], devices)
+        cancel(mediation, _at_once(unit, devices), devices)
         return unit.stream
     streams = {
         ab.stream.name: ab.stream for ab in mediation.memory.of_app(app) if ab.devices & devices
