@@ -280,7 +280,7 @@ class Algorithm:
             if not given_up:  # otherwise its handlers go on in it
                 for other in frame.inside(number):
                     self.owner.forget(other)
-            self.owner.leave_emptied(frame)
+            self.owner.close_units(frame)
 
     def _visit_unit(self, frame: Frame, fiber: Fiber, unit: Unit) -> Content:
         """Visit the items of a unit; a goto between them does not leave it."""

@@ -184,7 +184,6 @@ class Handling:
             return
         for fiber in [fiber for fiber in frame.fibers if fiber.main or fiber.unit == notice.run]:
             self.owner.forget(fiber)
-        self.owner.close_units(frame)
         frame.item = unit
         thrown = Thrown.at(unit.node, notice.event, notice.message)
         fiber = Fiber(frame, main=True, local=self.event_scope(thrown.event))

@@ -197,11 +197,8 @@ class Owner(Protocol):
     def leave(self, frame: Frame) -> None:
         """O3: give up the content of a state."""
 
-    def leave_emptied(self, frame: Frame) -> None:
-        """Conclude the units in which nothing is going on any more."""
-
     def close_units(self, frame: Frame) -> None:
-        """U5: conclude every unit that a state is in."""
+        """U5: conclude the units in which nothing is going on any more."""
 
     def drive(self, fiber: Fiber, notice: Notice | None) -> None:
         """Run a piece of content until it waits or ends, then carry out its transfer."""

@@ -147,7 +147,7 @@ class States(App["AnyEngine | PythonEngine"]):
         frame = fiber.frame
         if frame.fibers:
             frame.fibers = tuple(one for one in frame.fibers if one is not fiber)
-            self.leave_emptied(frame)
+            self.close_units(frame)
 
     def transfer(self, frame: Frame, transfer: Transfer) -> None:
         """Leave a state for another; chains of gotos loop here instead of nesting."""
@@ -231,23 +231,15 @@ class States(App["AnyEngine | PythonEngine"]):
         if frame.fibers:
             for fiber in frame.fibers:
                 self.forget(fiber)
-        if frame.units:
-            self.close_units(frame)
         if self.timers:
             self.keep_timers(timer for timer in self.timers if timer.state != frame.state)
 
-    def leave_emptied(self, frame: Frame) -> None:
+    def close_units(self, frame: Frame) -> None:
         """U5: conclude the units in which nothing is going on any more."""
         for number, _ in reversed(frame.units):
             if not frame.inside(number):
                 frame.units = tuple(one for one in frame.units if one[0] != number)
                 self.actions.append(CloseUnit(number))
-
-    def close_units(self, frame: Frame) -> None:
-        """U5: conclude every unit that the state is in."""
-        for number, _ in reversed(frame.units):
-            self.actions.append(CloseUnit(number))
-        frame.units = ()
 
     def keep_timers(self, timers: Iterable[Timer]) -> None:
         """Set the delayed events, and when the first one is due."""

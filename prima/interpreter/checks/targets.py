@@ -34,10 +34,10 @@ def check_targets(facts: Facts) -> Iterator[Problem]:
         yield from _goto(facts, act, names[name_of(holder)])
     for _, items in facts.forms:
         for item in items:
-            if isinstance(item, Subdialog):
+            if isinstance(item, Subdialog) and item.form not in facts.document.forms:
                 yield from _form(facts, item.form, item.node, "src")
     for link in (link for _, links in facts.links for link in links):
-        if link.form:
+        if link.form and link.form not in facts.document.forms:
             yield from _form(facts, link.form, link.node, "next")
 
 
@@ -77,10 +77,9 @@ def _item_names(facts: Facts) -> dict[str | None, set[str]]:
 
 
 def _form(facts: Facts, name: str, node: Node, attribute: str) -> Iterator[Problem]:
-    forms = facts.document.forms
-    named = node.get(attribute).strip()
-    if name not in forms and named.startswith("#"):  # otherwise the schema reports it
-        hint = suggestion(name, forms, *value_span(node, attribute, name))
+    """The problem of a form that is missing."""
+    if node.get(attribute).strip().startswith("#"):  # otherwise the schema reports it
+        hint = suggestion(name, facts.document.forms, *value_span(node, attribute, name))
         yield UNKNOWN_FORM.at(node.place_of(attribute), hint, name=name)
 
 
