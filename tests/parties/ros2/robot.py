@@ -100,8 +100,8 @@ class Robot(Node):
         return Fibonacci.Result(sequence=[0, 1])
 
     def say(self, request: Any, response: Any) -> Any:
+        self.silent.clear()  # before anyone hears of it: the next request may follow at once
         tell("says", text=request.string_value)
-        self.silent.clear()
         cut = self.silent.wait(0.05 * len(request.string_value))
         tell("says no more", cut=cut)
         response.bool_value = not cut
