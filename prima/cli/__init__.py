@@ -12,9 +12,9 @@ from importlib import import_module
 
 import click
 
-from prima.cli.common import escape_for_people
 from prima.cli.failures import exit_code, interrupted, last_words
 from prima.cli.interrupts import interruptible
+from prima.cli.printing import escape_for_people
 from prima.errors import did_you_mean
 from prima.version import __version__
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import codecs
-import json
 import os
 from collections import Counter
 from contextlib import closing
@@ -11,12 +10,10 @@ from contextlib import closing
 import click
 from click.exceptions import Exit
 
-from prima.cli import common
-from prima.cli.common import coloured, put, tell, tell_line
-from prima.cli.failures import whoever_reads
+from prima.cli.printing import coloured, echo, print_json, put, tell, tell_line
 from prima.cli.progress import ProgressBar
 from prima.errors import UsageError, counted
-from prima.errors.visible import escaped, visible
+from prima.errors.visible import visible
 from prima.experiments.batch import run_batch
 from prima.experiments.plan import BatchPlan, BatchRow, Options
 from prima.experiments.rows import format_counts, format_head, format_row, row_data
@@ -44,8 +41,8 @@ def listed(name: str) -> list[str]:
         raise UsageError(f"{name}: cannot be read: {getattr(error, 'strerror', error)}.") from None
     if len(data) > MOST_LISTED or b"\0" in data or data.lstrip()[:1] == b"<":
         raise UsageError(f"{name}: not a list of scenarios: write one path per line.")
-    lines = [line.strip() for line in os.fsdecode(data.removeprefix(codecs.BOM_UTF8)).splitlines()]
-    paths = [line for line in lines if line and not line.startswith("#")]
+    lines = [line.strip() for line in data.removeprefix(codecs.BOM_UTF8).splitlines()]
+    paths = [os.fsdecode(line) for line in lines if line and not line.startswith(b"#")]
     if not paths:
         raise UsageError(f"{name}: names no scenarios: write their paths, one per line.")
     return paths
@@ -84,8 +81,7 @@ def run_all(
     finally:
         progress.clear()
     if form == "text":
-        with whoever_reads():
-            put(f"\n{format_counts(exits)}")
+        put(f"\n{format_counts(exits)}")
     if options.resume:
         tell(f"{earlier} of {counted(len(plan), 'run')} had been made before")
     if any(exits[code] for code in exits if code):
@@ -98,22 +94,16 @@ class _Table:
     def __init__(self, plan: BatchPlan, form: str) -> None:
         self.wide = min(max(map(len, ["scenario", *plan.scenarios])), WIDEST)
         self.form = form
-        if form == "json":
-            common.write_for_programs()
         if form == "text":
-            with whoever_reads():
-                put(format_head(self.wide))
+            put(format_head(self.wide))
 
-    @whoever_reads()
     def put(self, row: BatchRow) -> None:
         """Print a row."""
         if self.form == "json":
-            text = json.dumps(row_data(row), ensure_ascii=False)
-            text = text.encode(errors="replace").decode()  # of names that are not UTF-8
-            click.echo(escaped(text))
+            print_json(row_data(row), indent=None)
         else:
             text = visible(format_row(row, self.wide))
-            click.echo(f"\033[31m{text}\033[0m" if row.exit and coloured() else text)
+            echo(f"\033[31m{text}\033[0m" if row.exit and coloured() else text)
         run = f"{row.scenario}, {row.policy}" if row.policy else row.scenario
         for message in row.messages:
             tell_line(

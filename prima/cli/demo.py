@@ -7,7 +7,9 @@ import sys
 
 import click
 
-from prima.cli.common import check_output, columns, output_option, put, tell
+from prima.cli.options import output_option
+from prima.cli.outputs import check_output
+from prima.cli.printing import columns, put, tell
 from prima.cli.report import write_page
 
 SCENARIO = "follow-during-navigation.xml"

@@ -2,29 +2,19 @@
 
 from __future__ import annotations
 
-import sys
-
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import (
-    check_output,
-    coloured,
-    formats_option,
-    or_stdout,
-    output_option,
-    policy_option,
-    tell_cut,
-    write_for_programs,
-)
-from prima.cli.failures import whoever_reads
+from prima.cli.options import PathName, formats_option, or_stdout, output_option, policy_option
+from prima.cli.outputs import check_output
+from prima.cli.printing import coloured, echo, tell_cut, write_for_programs
 from prima.cli.runs import run_of
 from prima.errors import UsageError
 
 
 @click.command()
-@click.argument("before", type=click.Path())
-@click.argument("after", type=click.Path(), required=False)
+@click.argument("before", type=PathName())
+@click.argument("after", type=PathName(), required=False)
 @policy_option("Run a scenario under this policy; twice, once for each run: {}.", many=True)
 @formats_option("text", "json", "html", meaning="What to print; html is a page for the browser.")
 @output_option("Write the page here, with --format html.", callback=or_stdout)
@@ -53,17 +43,17 @@ def diff(
     before_run, after_run = run_of(one, first, whole), run_of(other, second, whole)
     old, new = before_run.transcript, after_run.transcript
     difference = api.diff(old, new)
-    with whoever_reads():
-        if form == "html":
-            from prima.cli.report import write_page
-            from prima.report import make
+    if form == "html":
+        from prima.cli.report import write_page
+        from prima.report import make
 
-            write_page(make([old, new], [before_run.scenario, after_run.scenario]), output)
-        elif form == "json":
-            write_for_programs()
-            sys.stdout.writelines(difference_json(difference))
-        else:
-            click.echo(format_difference(difference, coloured()), nl=False, color=coloured())
+        write_page(make([old, new], [before_run.scenario, after_run.scenario]), output)
+    elif form == "json":
+        write_for_programs()
+        for piece in difference_json(difference):
+            echo(piece, nl=False)
+    else:
+        echo(format_difference(difference, coloured()), nl=False)
     tell_cut(old, new)
     if difference.differs:
         raise Exit(1)

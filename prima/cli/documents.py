@@ -7,12 +7,13 @@ from pathlib import Path
 
 import click
 
-from prima.cli.common import tell
+from prima.cli.options import PathName
+from prima.cli.printing import tell
 from prima.errors import UsageError
 
 
 @click.command()
-@click.argument("folder", type=click.Path())
+@click.argument("folder", type=PathName())
 def documents(folder: str) -> None:
     """Copy the documents that come with PRIMA to a new FOLDER, to read, run and change.
 
@@ -32,8 +33,6 @@ def copy_folder(source: Path, folder: str) -> None:
     Raises:
         UsageError: the new one exists already, or cannot be written.
     """
-    if not folder:
-        raise UsageError("The folder has no name; name a new one.")
     try:
         shutil.copytree(source, folder)
     except FileExistsError:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from prima.cli.common import columns, format_option, print_json, put, tell_cut
+from prima.cli.options import format_option
+from prima.cli.printing import columns, print_json, put, tell_cut
 from prima.errors import UsageError, did_you_mean
 from prima.transcript.table import NARROWEST
 

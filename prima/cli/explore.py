@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING
 
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import (
+from prima.cli.options import (
+    PathName,
     Whole,
     duration_option,
     format_option,
@@ -16,13 +16,10 @@ from prima.cli.common import (
     limit_option,
     on_option,
     policy_option,
-    put,
     raise_limits,
-    tell,
     workers_option,
-    write_for_programs,
 )
-from prima.cli.failures import whoever_reads
+from prima.cli.printing import print_json, put, tell
 from prima.cli.progress import ProgressBar
 from prima.errors import RunError, UsageError, counted
 
@@ -31,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("scenario", type=click.Path())
+@click.argument("scenario", type=PathName())
 @click.option(
     "--move",
     "moves",
@@ -49,7 +46,7 @@ if TYPE_CHECKING:
     help="Runs at most, before shifts are minimised; default 20000.",
 )
 @policy_option("Run under this policy.", default="")
-@click.option("-o", "--output", type=click.Path(), help="A folder for the orders and problems.")
+@click.option("-o", "--output", type=PathName(), help="A folder for the orders and problems.")
 @workers_option
 @on_option
 @click.option("--resume", is_flag=True, help="Use the runs that the folder has already.")
@@ -134,10 +131,8 @@ def _put(exploration: Exploration, form: str) -> None:
     if not exploration.orders:
         return
     explored = Explored(exploration)
-    with whoever_reads():
-        if form == "json":
-            write_for_programs()
-            put(json.dumps(explored.data(), indent=1, ensure_ascii=False))
-            return
-        for line in explored.text():
-            put(line)
+    if form == "json":
+        print_json(explored.data())
+        return
+    for line in explored.text():
+        put(line)

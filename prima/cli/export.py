@@ -9,13 +9,15 @@ from pathlib import Path
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import check_output, or_stdout, output_option, suggesting, tell
+from prima.cli.options import PathName, or_stdout, output_option, suggesting
+from prima.cli.outputs import check_output
+from prima.cli.printing import tell
 from prima.errors import UsageError, counted, one_of
 from prima.exports import FORMATS
 
 
 @click.command()
-@click.argument("transcript", type=click.Path())
+@click.argument("transcript", type=PathName())
 @click.option(
     "--to",
     metavar="FORMAT",

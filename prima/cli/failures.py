@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
 
 import click
 
-from prima.cli.common import tell, tell_line
+from prima.cli.printing import tell, tell_line, write_nowhere
 from prima.errors import DocumentError, MissingFile, RunError, UsageError, brief, listed
 
 FINE, PROBLEMS, USAGE, RUN, INTERRUPTED = 0, 1, 2, 3, 130
@@ -95,19 +94,9 @@ def _usage(error: click.ClickException) -> int:
     return USAGE
 
 
-@contextmanager
-def whoever_reads() -> Iterator[None]:
-    """Print results; if nobody reads them any more, go on, as the exit code still counts."""
-    try:
-        yield
-        sys.stdout.flush()
-    except BrokenPipeError as error:
-        closed_pipe(error)
-
-
 def closed_pipe(_error: BrokenPipeError) -> int:
     """Nobody reads stdout any more; Python must not flush it at exit."""
-    _write_nowhere(sys.stdout.fileno())
+    write_nowhere(sys.stdout)
     return FINE
 
 
@@ -116,18 +105,13 @@ def last_words() -> None:
     try:
         sys.stderr.flush()
     except OSError:
-        _write_nowhere(sys.stderr.fileno())
-
-
-def _write_nowhere(stream: int) -> None:
-    """Give up what a stream still holds, which Python would write at exit."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), stream)
+        write_nowhere(sys.stderr)
 
 
 def _system(error: OSError) -> int:
     name = f"{error.filename}: " if isinstance(error.filename, str) else ""
     tell_line(f"prima: {name}cannot go on: {error.strerror}.")
-    _write_nowhere(sys.stdout.fileno())
+    write_nowhere(sys.stdout)
     return USAGE
 
 

@@ -8,14 +8,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from prima.cli.common import (
-    SuggestingChoice,
-    check_output,
-    or_stdout,
-    output_option,
-    tell,
-    tell_cut,
-)
+from prima.cli.options import PathName, SuggestingChoice, or_stdout, output_option
+from prima.cli.outputs import check_output
+from prima.cli.printing import echo, tell, tell_cut, write_for_programs
 from prima.errors import UsageError
 
 if TYPE_CHECKING:
@@ -25,7 +20,7 @@ FORMATS = ["svg", "dot", "mermaid", "json"]
 
 
 @click.command()
-@click.argument("file", type=click.Path())
+@click.argument("file", type=PathName())
 @click.option(
     "--to", type=SuggestingChoice(FORMATS), help="By default according to OUTPUT's suffix, or svg."
 )
@@ -67,7 +62,8 @@ def graph(file: str, to: str | None, what: str | None, row: int | None, output: 
     read: list[Transcript] = []
     made = picture(file, form or "svg", what or "", row, read)
     if output is None:
-        click.echo(made.encode(), nl=False)
+        write_for_programs()
+        echo(made, nl=False)
     else:
         write_whole(output, made)
         tell(f"written: {output}")

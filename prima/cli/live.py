@@ -9,18 +9,17 @@ from typing import TYPE_CHECKING
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import (
+from prima.cli.failures import INTERRUPTED, closed_pipe
+from prima.cli.interrupts import leave_to_python
+from prima.cli.options import (
     Number,
+    PathName,
     bound_option,
-    check_output,
-    clean,
-    columns,
     duration_option,
     ea_option,
     fa_option,
     format_option,
     hosts_option,
-    how_to_go_on,
     isolate_option,
     limit_option,
     map_option,
@@ -28,15 +27,22 @@ from prima.cli.common import (
     patience_option,
     policy_option,
     raise_limits,
+    why_option,
+)
+from prima.cli.outputs import check_output
+from prima.cli.printing import (
+    clean,
+    columns,
+    echo,
+    how_to_go_on,
+    stream,
     tell,
     tell_line,
     tell_problems,
-    why_option,
     write_for_programs,
 )
-from prima.cli.failures import INTERRUPTED, closed_pipe
-from prima.cli.interrupts import leave_to_python
 from prima.cli.progress import print_records
+from prima.errors import RunError
 
 if TYPE_CHECKING:
     from prima.live.visit import Visit
@@ -46,16 +52,16 @@ FASTEST = 1000.0  # equals prima.api.live.FASTEST, which is slow to import
 
 
 @click.command()
-@click.argument("scenario", type=click.Path(), required=False)
-@click.option("--robot", type=click.Path(), help="The robot, whose document names its drivers.")
-@click.option("--world", type=click.Path(), help="The site's map, and what its areas offer.")
+@click.argument("scenario", type=PathName(), required=False)
+@click.option("--robot", type=PathName(), help="The robot, whose document names its drivers.")
+@click.option("--world", type=PathName(), help="The site's map, and what its areas offer.")
 @fa_option
 @ea_option
 @click.option(
-    "--services", type=click.Path(), help="Ask the services of this document, and no others."
+    "--services", type=PathName(), help="Ask the services of this document, and no others."
 )
-@click.option("-o", "--output", type=click.Path(), help="Write the journal here, as it grows.")
-@click.option("--resume", "journal", type=click.Path(), help="Go on with a run that was cut off.")
+@click.option("-o", "--output", type=PathName(), help="Write the journal here, as it grows.")
+@click.option("--resume", "journal", type=PathName(), help="Go on with a run that was cut off.")
 @click.option(
     "--check", "checks", is_flag=True, help="Try each driver and Command of the robot, and end."
 )
@@ -140,7 +146,7 @@ def live(
     if checks:
         from prima.live.preflight import check_robot
 
-        raise Exit(check_robot(chosen, settings, lambda text: click.echo(clean(text))))
+        raise Exit(check_robot(chosen, settings, lambda text: echo(clean(text))))
     if output is not None:
         check_output(
             output, "journal", *filter(None, (scenario, robot, world, services, *fas, *eas))
@@ -162,6 +168,8 @@ def _run(visit: Visit, why: bool, as_json: bool) -> None:
         except BrokenPipeError as error:  # nobody reads the rows any more: as after Ctrl-C
             closed_pipe(error)
             visit.stop()
+        except OSError as error:
+            raise RunError(f"stdout: cannot be written: {error.strerror}.") from None
 
     visit.run(sink, lambda text: tell(f"prima: {text}"))
     session = visit.loop.session
@@ -189,13 +197,17 @@ class Rows:
         self._head = format_head(self._shape)
 
     def __call__(self, records: list[Record]) -> None:
-        """Print what the records of an instant add."""
+        """Print what the records of an instant add.
+
+        Raises:
+            OSError: they cannot be printed.
+        """
         from prima.transcript.lines import finished
         from prima.transcript.table import format_row
 
         if self._head:
-            click.echo(self._head)
+            stream(self._head)
             self._head = ""
         for row in self._table.add([finished(record) for record in records]):
-            click.echo(clean("\n".join(format_row(row, self._shape))))
+            stream(clean("\n".join(format_row(row, self._shape))))
         sys.stdout.flush()

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import click
 
-from prima.cli.common import SuggestingChoice, tell
+from prima.cli.options import PathName, SuggestingChoice
+from prima.cli.printing import tell
 
 KINDS = ("fa", "ea", "vxml", "scenario", "world", "robot")
 
 
 @click.command()
 @click.argument("kind", type=SuggestingChoice(KINDS))
-@click.argument("name", type=click.Path())
+@click.argument("name", type=PathName())
 def new(kind: str, name: str) -> None:
     """Start a document that is commented, valid, and runs.
 

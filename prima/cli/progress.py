@@ -94,8 +94,9 @@ class ProgressBar:
             return
         self.last = now
         wrong = f", {bad} not fine" if bad else ""
-        text = f"{done} of {self.total} runs{wrong}"
-        if done > 1:
+        of = f" of {self.total}" if done <= self.total else ""  # exploring ends with a few more
+        text = f"{done}{of} runs{wrong}"
+        if of and done > 1:
             left = (now - self.began) / (done - 1) * (self.total - done)
             text += f"; about {left:.0f} s left"
         click.echo(f"\r{text.ljust(len(self.shown))} ", err=True, nl=False)

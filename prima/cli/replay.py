@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-import sys
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import check_output, tell, tell_cut, write_for_programs
+from prima.cli.options import PathName
+from prima.cli.outputs import check_output
+from prima.cli.printing import echo, tell, tell_cut, write_for_programs
 
 if TYPE_CHECKING:
     from prima.api import Transcript
 
 
 @click.command()
-@click.argument("transcript", type=click.Path())
-@click.argument("scenario", type=click.Path(), required=False)
-@click.option("-o", "--output", type=click.Path(), help="Write the replayed transcript here.")
+@click.argument("transcript", type=PathName())
+@click.argument("scenario", type=PathName(), required=False)
+@click.option("-o", "--output", type=PathName(), help="Write the replayed transcript here.")
 def replay(transcript: str, scenario: str | None, output: str | None) -> None:
     """Run a transcript's inbound events again and check that the result is the same.
 
@@ -39,7 +40,7 @@ def replay(transcript: str, scenario: str | None, output: str | None) -> None:
     again = api.replay(original, scenario)
     if output == "-":
         write_for_programs()
-        sys.stdout.write(again.dumps())
+        echo(again.dumps(), nl=False)
     elif output is not None:
         write_whole(output, again.dumps())
     given, made = original.dumps(), again.dumps()

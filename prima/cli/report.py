@@ -10,16 +10,9 @@ from typing import TYPE_CHECKING
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import (
-    SuggestingChoice,
-    check_output,
-    output_option,
-    paths_option,
-    policy_option,
-    tell,
-    tell_cut,
-    write_for_programs,
-)
+from prima.cli.options import PathName, SuggestingChoice, output_option, paths_option, policy_option
+from prima.cli.outputs import check_output
+from prima.cli.printing import echo, tell, tell_cut, write_for_programs
 from prima.cli.runs import GivenRun, is_markup, run_of
 from prima.errors import UsageError, counted, did_you_mean, one_of
 
@@ -29,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("runs", metavar="TRANSCRIPT|SCENARIO...|TABLE", nargs=-1, type=click.Path())
+@click.argument("runs", metavar="TRANSCRIPT|SCENARIO...|TABLE", nargs=-1, type=PathName())
 @output_option("Write the page here, or a folder for figures.")
 @policy_option("Run a scenario under this policy; twice to compare two runs: {}.", many=True)
 @paths_option(
@@ -165,7 +158,7 @@ def _write_figure(figures: list[Figure], output: str | None, name: str) -> None:
         raise UsageError(message.strip())
     if output is None:
         write_for_programs()
-        click.echo(found.whole(), nl=False)
+        echo(found.whole(), nl=False)
         return
     write_whole(output, found.whole())
     tell(f"{output}: written")
@@ -228,7 +221,7 @@ def write_page(page: str, output: str | None) -> None:
 
     if output is None:
         write_for_programs()
-        click.echo(page, nl=False)
+        echo(page, nl=False)
         return
     write_whole(output, page)
     tell(f"{output}: {len(page.encode()) // 1024 + 1} kB; open it in a browser")

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import (
+from prima.cli.options import (
     MAPS,
+    PathName,
     Whole,
     bound_option,
-    check_output,
-    columns,
     ea_option,
     fa_option,
     format_option,
@@ -27,16 +26,12 @@ from prima.cli.common import (
     paths_option,
     patience_option,
     policy_option,
-    put,
     raise_limits,
-    tell,
-    tell_line,
-    tell_problems,
     why_option,
     workers_option,
-    write_for_programs,
 )
-from prima.cli.failures import whoever_reads
+from prima.cli.outputs import check_output
+from prima.cli.printing import columns, put, tell, tell_line, tell_problems, write_for_programs
 from prima.cli.progress import run_into
 from prima.errors import TOO_MUCH, RunError, UsageError, counted
 
@@ -51,7 +46,7 @@ FOLDER_ENDINGS = ("/", os.sep)
 
 
 @click.command()
-@click.argument("scenarios", metavar="[SCENARIO]...", nargs=-1, type=click.Path())
+@click.argument("scenarios", metavar="[SCENARIO]...", nargs=-1, type=PathName())
 @fa_option
 @ea_option
 @click.option("--say", "says", multiple=True, help="The user's answer to the next question.")
@@ -175,8 +170,6 @@ def _check_batch(applications: bool, why: bool, resume: bool, output: str | None
         raise UsageError("--why works only with one run: prima show TRANSCRIPT --why.")
     if resume and output is None:
         raise UsageError("--resume needs the folder of the transcripts: -o FOLDER.")
-    if output == "":
-        raise UsageError("-o: name the folder that the transcripts go into.")
     is_file = output is not None and output.endswith(".jsonl") and not os.path.isdir(output)
     if output == "-" or is_file:
         raise UsageError(f"{output}: several transcripts go into a folder: -o runs/.")
@@ -227,8 +220,7 @@ def _run_one(
         transcript = rehearse(sys.stdout.write)
     else:
         transcript = rehearse(None, keep=True)
-        with whoever_reads():
-            put(transcript.table(why, columns()))
+        put(transcript.table(why, columns()))
     return transcript
 
 

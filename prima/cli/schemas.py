@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import click
 
-from prima.cli.common import tell
 from prima.cli.documents import copy_folder
+from prima.cli.options import PathName
+from prima.cli.printing import tell
 
 
 @click.command()
-@click.argument("folder", type=click.Path())
+@click.argument("folder", type=PathName())
 def schemas(folder: str) -> None:
     """Copy the schemas of PRIMA's documents to a new FOLDER, for editors.
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from prima.cli.common import clean, coloured, columns, put, tell
+from prima.cli.printing import clean, coloured, columns, echo, put, tell
 from prima.cli.terminal import Keyboard
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ class TerminalScreen:
         if self.typist is not None:
             self.typist.clear()
         if styled:
-            click.echo(text)
+            echo(text)
         else:
             put(text)
         sys.stdout.flush()

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import click
 
-from prima.cli.common import columns, put, tell_cut, why_option
+from prima.cli.options import PathName, why_option
+from prima.cli.printing import columns, put, tell_cut
 
 
 @click.command()
-@click.argument("transcript", type=click.Path())
+@click.argument("transcript", type=PathName())
 @why_option
 def show(transcript: str, why: bool) -> None:
     """Print a transcript as a table.

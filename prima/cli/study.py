@@ -7,12 +7,12 @@ import sys
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import formats_option, print_json, put, write_for_programs
-from prima.cli.failures import whoever_reads
+from prima.cli.options import PathName, formats_option
+from prima.cli.printing import print_json, put, write_for_programs
 
 
 @click.command()
-@click.argument("scenarios", nargs=-1, type=click.Path())
+@click.argument("scenarios", nargs=-1, type=PathName())
 @click.option("--policy", "policies", multiple=True, help="Only this policy; may be repeated.")
 @formats_option("text", "json", "csv")
 def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> None:
@@ -39,13 +39,12 @@ def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> N
         results.append(result)
         if sys.stderr.isatty():
             click.echo(f"\r{len(results)} of {total} runs", err=True, nl=len(results) == total)
-    with whoever_reads():
-        if form == "json":
-            print_json([result_data(result) for result in results])
-        elif form == "csv":
-            write_for_programs()
-            put(format_csv(results))
-        else:
-            put(format_table(results))
+    if form == "json":
+        print_json([result_data(result) for result in results])
+    elif form == "csv":
+        write_for_programs()
+        put(format_csv(results))
+    else:
+        put(format_table(results))
     if any(result.failures for result in results):
         raise Exit(3)

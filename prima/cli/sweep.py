@@ -7,23 +7,22 @@ from typing import TYPE_CHECKING
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import (
+from prima.cli.options import (
+    PathName,
     SuggestingChoice,
     Whole,
     bound_option,
-    check_output,
     isolate_option,
     limit_option,
     on_option,
     output_option,
     patience_option,
     policy_option,
-    put,
     raise_limits,
-    tell,
     workers_option,
-    write_for_programs,
 )
+from prima.cli.outputs import check_output
+from prima.cli.printing import put, stream, tell, write_for_programs
 from prima.cli.progress import ProgressBar
 from prima.errors import UsageError, counted
 
@@ -36,7 +35,7 @@ MANY = 100_000
 
 
 @click.command()
-@click.argument("scenarios", metavar="SCENARIO...|STUDY.toml", nargs=-1, type=click.Path())
+@click.argument("scenarios", metavar="SCENARIO...|STUDY.toml", nargs=-1, type=PathName())
 @click.option(
     "--vary",
     "varied",
@@ -58,7 +57,7 @@ MANY = 100_000
 @click.option("--resume", is_flag=True, help="Go on behind the rows that are there already.")
 @click.option(
     "--bundle",
-    type=click.Path(),
+    type=PathName(),
     help="Write an archive (RO-Crate), too: the table with all that it was made from.",
 )
 @click.option("--plan", is_flag=True, help="Only tell how many runs these are, and how long.")
@@ -185,10 +184,10 @@ def _print(made: Sweep, pool: Pool) -> int:
     worst, exit_column = 0, head.index("exit")
     for number, row in enumerate(made.results(pool)):
         if number == 0:  # nothing is printed for a pool that is not there
-            click.echo(line(head), nl=False)
+            stream(line(head), nl=False)
         code = row[exit_column]
         worst = max(worst, code if isinstance(code, int) else 0)
-        click.echo(line(row), nl=False)
+        stream(line(row), nl=False)
     return worst
 
 

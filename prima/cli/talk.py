@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import (
+from prima.cli.options import (
     MAPS,
+    PathName,
     ea_option,
     fa_option,
     format_option,
@@ -19,11 +20,9 @@ from prima.cli.common import (
     map_option,
     policy_option,
     raise_limits,
-    tell,
-    tell_problems,
     why_option,
-    write_for_programs,
 )
+from prima.cli.printing import tell, tell_problems, write_for_programs
 from prima.cli.progress import print_records
 from prima.cli.screen import TerminalScreen
 from prima.cli.terminal import Keyboard, PausingClock, Piped, Typist, edit_lines, ending_well
@@ -36,11 +35,11 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("scenario", type=click.Path(), required=False)
+@click.argument("scenario", type=PathName(), required=False)
 @fa_option
 @ea_option
-@click.option("--world", type=click.Path(), help="Let --fa and --ea run in this world.")
-@click.option("--robot", type=click.Path(), help="Let --fa and --ea run on this robot.")
+@click.option("--world", type=PathName(), help="Let --fa and --ea run in this world.")
+@click.option("--robot", type=PathName(), help="Let --fa and --ea run on this robot.")
 @click.option(
     "--step", is_flag=True, help="Stop time until you type: the default outside a terminal."
 )
@@ -48,7 +47,7 @@ if TYPE_CHECKING:
     "--real-time", is_flag=True, help="Let time pass by itself: the default in a terminal."
 )
 @click.option(
-    "--save", "target", type=click.Path(), help="Write the session here as a scenario at its end."
+    "--save", "target", type=PathName(), help="Write the session here as a scenario at its end."
 )
 @click.option("--scripted", is_flag=True, help="Carry out the scenario's user actions too.")
 @policy_option("The mediator's policy: {}.")

@@ -8,22 +8,18 @@ from typing import TYPE_CHECKING
 import click
 from click.exceptions import Exit
 
-from prima.cli.common import (
+from prima.cli.options import (
     Number,
+    PathName,
     SuggestingChoice,
     Whole,
-    check_output,
-    coloured,
     format_option,
     limit_option,
     policy_option,
-    print_json,
-    put,
     raise_limits,
-    same_file,
-    tell,
 )
-from prima.cli.failures import whoever_reads
+from prima.cli.outputs import check_output, same_file
+from prima.cli.printing import coloured, echo, print_json, put, tell
 from prima.errors import UsageError
 
 if TYPE_CHECKING:
@@ -35,7 +31,7 @@ MOST_JOBS = 64
 
 
 @click.command()
-@click.argument("paths", nargs=-1, type=click.Path())
+@click.argument("paths", nargs=-1, type=PathName())
 @click.option(
     "-k", "word", metavar="WORD", default="", help="Only scenarios with WORD in the path."
 )
@@ -53,14 +49,14 @@ MOST_JOBS = 64
 @click.option(
     "--coverage", "cover", is_flag=True, help="Show how much of the documents was reached."
 )
-@click.option("--coverage-xml", type=click.Path(), help="Write coverage here (Cobertura).")
+@click.option("--coverage-xml", type=PathName(), help="Write coverage here (Cobertura).")
 @click.option(
     "--fail-under",
     type=Number(0, 100),
     metavar="PERCENT",
     help="Exit with 1 if less of the documents was reached.",
 )
-@click.option("--junit", "junit_file", type=click.Path(), help="Write results here (JUnit XML).")
+@click.option("--junit", "junit_file", type=PathName(), help="Write results here (JUnit XML).")
 @limit_option
 @format_option
 def test(
@@ -113,14 +109,13 @@ def test(
         result.coverage = {}
         _progress(len(results), len(chosen))
     under = _is_under(coverage, fail_under)
-    with whoever_reads():
-        if form == "text":
-            _report(results)
-        if update:
-            _update(results, set(paths), yes)
-        _finish(results, coverage if cover else None, form)
-        if under and form == "text":
-            tell(f"prima: less than {fail_under:g}% of the documents was reached.")
+    if form == "text":
+        _report(results)
+    if update:
+        _update(results, set(paths), yes)
+    _finish(results, coverage if cover else None, form)
+    if under and form == "text":
+        tell(f"prima: less than {fail_under:g}% of the documents was reached.")
     _write(results, coverage, junit_file, coverage_xml)
     _set_exit_code(results, under)
 
@@ -187,16 +182,16 @@ def _paint(text: str, status: str) -> str:
 
 def _report(results: list[Result]) -> None:
     """Print each result in a line, then the failures."""
-    from prima.cli.common import clean
+    from prima.cli.printing import clean
     from prima.testing.summary import format_result, row
 
     wide = max(len(result.path) for result in results)
     for result in results:
-        click.echo(_paint(clean(row(result, wide)), result.status), color=coloured())
+        echo(_paint(clean(row(result, wide)), result.status))
     for result in results:
         shown = format_result(result)
         if shown:
-            click.echo(_paint(f"\n{clean(result.path)}", result.status), color=coloured())
+            echo(_paint(f"\n{clean(result.path)}", result.status))
             put(shown)
 
 

@@ -12,19 +12,16 @@ import click
 from click.exceptions import Exit
 
 from prima.checks.ignores import KINDS, SETTINGS
-from prima.cli.common import (
-    coloured,
+from prima.cli.failures import in_words
+from prima.cli.options import (
+    PathName,
     formats_option,
     limit_option,
     map_option,
     paths_option,
-    print_json,
-    put,
     raise_limits,
-    tell,
-    tell_line,
 )
-from prima.cli.failures import in_words, whoever_reads
+from prima.cli.printing import coloured, echo, print_json, put, tell, tell_line
 from prima.errors import Problem, UsageError, listed, one_of
 from prima.errors.visible import visible
 from prima.markup.limits import LIMITS
@@ -35,7 +32,7 @@ MANY = 50
 
 
 @click.command()
-@click.argument("files", nargs=-1, required=True, type=click.Path())
+@click.argument("files", nargs=-1, required=True, type=PathName())
 @formats_option(
     "text", "short", "json", "sarif", meaning="What to print; short omits source lines."
 )
@@ -47,7 +44,7 @@ MANY = 50
 @paths_option(
     "--with", "fas", "Certify how each of FILES, an EA, can affect this FA.", metavar="FA"
 )
-@click.option("--robot", type=click.Path(), default="", help="The robot's profile for --with.")
+@click.option("--robot", type=PathName(), help="The robot's profile for --with.")
 @map_option
 @limit_option
 def validate(
@@ -57,7 +54,7 @@ def validate(
     strict: bool,
     notes: bool,
     fas: tuple[str, ...],
-    robot: str,
+    robot: str | None,
     maps: tuple[str, ...],
     limits: tuple[str, ...],
 ) -> None:
@@ -81,7 +78,7 @@ def validate(
     if fas:
         if any((watch, notes, strict, maps, form in ("short", "sarif"))):
             raise UsageError("--with works only with --robot and --format text or json.")
-        _certify(fas, files, robot, form)
+        _certify(fas, files, robot or "", form)
         return
     if watch:
         _watch(files, form, notes, maps)
@@ -120,8 +117,7 @@ def _check(
         if len(names) >= MANY and sys.stderr.isatty():
             click.echo(f"\r{index} of {len(names)} files", err=True, nl=index == len(names))
     problems = loading.once([*problems, *validation.ignored()])
-    with whoever_reads():
-        _show([one for one in problems if notes or one.severity != "note"], form)
+    _show([one for one in problems if notes or one.severity != "note"], form)
     for message in unread:
         tell_line(f"prima: {message}")
     counts = Counter(problem.severity for problem in problems)
@@ -186,7 +182,7 @@ def _show(every: list[Problem], form: str) -> None:
 
         lines = SourceLines()
         for problem in problems:
-            click.echo(render(problem, lines, coloured()), color=coloured())
+            echo(render(problem, lines, coloured()))
     else:
         for problem in problems:
             put(visible(str(problem)))

@@ -39,12 +39,12 @@ from prima.errors.problems import (
     in_order,
     listed,
 )
-from prima.errors.words import counted, one_of, with_article
+from prima.errors.words import argument, counted, one_of, with_article
 
 __all__ = [
     "LONGEST_TEXT", "MOST_TOLD", "SEVERITIES", "TOO_MUCH", "Diagnosis", "DocumentError", "Edit",
     "Fix", "Hint", "MissingFile", "Place", "PrimaError", "Problem", "RunError", "Severity", "Span",
-    "UsageError", "brief", "counted", "did_you_mean", "few", "few_guesses", "guessable", "has_errors",
+    "UsageError", "argument", "brief", "counted", "did_you_mean", "few", "few_guesses", "guessable", "has_errors",
     "in_order", "listed", "meant", "nearest_word", "one_of", "replaced", "suggestion",
     "with_article",
 ]  # fmt: skip

@@ -143,4 +143,5 @@ def _uri(path: str) -> str:
     """A file's name as a URI reference, relative for a relative name."""
     from urllib.parse import quote
 
-    return ("file://" if path.startswith("/") else "") + quote(path.replace("\\", "/"))
+    name = quote(path.replace("\\", "/"), errors="surrogateescape")
+    return f"file://{name}" if path.startswith("/") else name

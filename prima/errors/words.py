@@ -1,13 +1,21 @@
-"""Numbers and lists in sentences."""
+"""Numbers, lists and file names in sentences."""
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterable
+from pathlib import PurePath
 
 
 def counted(number: int, noun: str) -> str:
     """A number with its noun: ``1 reaction``, ``2 reactions``."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def argument(path: str | PurePath) -> str:
+    """A file's name as it is written in a command line, where ``-v.xml`` would be an option."""
+    name = str(path)
+    return shlex.quote(f"./{name}" if name.startswith("-") else name)
 
 
 def with_article(noun: str) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from prima.errors import DocumentError, UsageError, did_you_mean, has_errors, one_of
+from prima.errors import DocumentError, UsageError, argument, did_you_mean, has_errors, one_of
 from prima.graph.model import Graph
 from prima.graph.run import NEVER
 
@@ -135,7 +135,7 @@ def states(path: str | Path) -> Graph:
 
     data = read_file(path)
     if message := OTHERS.get(_root(path, data)):
-        raise UsageError(f"{path}: {message.format(path=path)}")
+        raise UsageError(f"{path}: {message.format(path=argument(path))}")
     document, problems = read_application(str(path), data)
     if has_errors(problems):
         raise DocumentError(problem for problem in problems if problem.severity == "error")

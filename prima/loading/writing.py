@@ -39,7 +39,7 @@ def whole(path: str | Path) -> Iterator[IO[bytes]]:
     """
     _check_name(path)
     try:
-        with _opened(os.path.realpath(path)) as stream:
+        with _opened(path) as stream:
             yield stream
     except OSError as error:
         raise UsageError(f"{path}: cannot be written: {error.strerror}.") from None
@@ -81,11 +81,12 @@ def write_whole(path: str | Path, content: str | bytes) -> None:
 
 
 @contextmanager
-def _opened(real: str) -> Iterator[IO[bytes]]:
-    there = os.path.exists(real)
+def _opened(path: str | Path) -> Iterator[IO[bytes]]:
+    real = os.path.realpath(path)
+    there = os.path.isfile(real)
     folder = os.path.dirname(real)
-    if there and (not os.path.isfile(real) or not os.access(folder, os.W_OK)):
-        with open(real, "wb") as plain:
+    if not _can_be_replaced(path) or (there and not os.access(folder, os.W_OK)):
+        with open(path, "wb") as plain:
             yield plain
         return
     clean_up(folder)
@@ -100,6 +101,16 @@ def _opened(real: str) -> Iterator[IO[bytes]]:
         with suppress(OSError):
             os.unlink(part)
         raise
+
+
+def _can_be_replaced(path: str | Path) -> bool:
+    """Whether a path names a regular file, or one that is not there yet.
+
+    A pipe such as ``/dev/stdout`` has a real path that names nothing, and a loop of links none.
+    """
+    there = os.path.exists(path) or os.path.lexists(os.path.realpath(path))
+    names_folder = os.fspath(path).endswith((os.sep, "/"))
+    return os.path.isfile(path) or not (there or names_folder)
 
 
 def _beside(real: str) -> tuple[str, IO[bytes]]:

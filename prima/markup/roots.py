@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from shlex import quote
 
-from prima.errors import DocumentError, Hint, Problem, one_of, suggestion
+from prima.errors import DocumentError, Hint, Problem, argument, one_of, suggestion
 from prima.errors.diagnoses.structure import WRONG_NAMESPACE, WRONG_ROOT
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
@@ -92,7 +91,7 @@ def _use(root: Node, own: str, wanted: str) -> str:
         return 'An application names it by <grammar src="..."/>.'
     if wanted != "a scenario" or own not in (APPLICATION, VOICEXML):
         return ""
-    option = f"--{root.get('kind', 'ea')} {quote(root.source.file)}"
+    option = f"--{root.get('kind', 'ea')} {argument(root.source.file)}"
     return (
         f"prima run, talk and live take it by {option}."
         ' A scenario names it by <application src="..."/>.'

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-import shlex
 from html import escape
 from pathlib import Path
 from unicodedata import combining, normalize
 
 from prima.devices.vocabulary.robot import ROBOT
-from prima.errors import DocumentError, UsageError, has_errors
+from prima.errors import DocumentError, UsageError, argument, has_errors
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.loading import is_voicexml, validate
 from prima.loading.files import read_file
@@ -62,7 +61,7 @@ def identifier(name: str, kind: str) -> str:
 
 def attempt(kind: str, path: Path) -> str:
     """The command that tries a new document."""
-    name = shlex.quote(str(path))
+    name = argument(path)
     return {
         "fa": "prima new scenario NAME",
         "ea": f"prima run --ea {name} --say Yes. --say tea",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import pty
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -14,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from prima.cli.common import how_to_go_on
+from prima.cli.printing import how_to_go_on
 from tests.helpers.bad_input import (
     SECONDS,
     Prima,
@@ -63,10 +64,17 @@ USAGES: list[Any] = [
     (["run", "app.xml"], 1, "a scenario is needed here. prima run, talk and live take it by --fa app.xml."),
     (["run", "good.jsonl"], 1, "prima show prints it"),
     (["run", "s.xml", "-o", "."], 2, "Is a directory"),
-    (["run", "s.xml", "-o", ""], 2, '"" cannot be written: it is not a file name.'),
+    (["run", "s.xml", "-o", ""], 2, "it is empty; write a path."),
+    (["run", "s.xml", "-o", "", "--resume"], 2, "it is empty; write a path."),
+    (["run", ""], 2, "it is empty; write a path."),
+    (["test", "s.xml", "--junit", ""], 2, "it is empty; write a path."),
+    (["test", "s.xml", "--junit", "-"], 2, "-: this does not go to stdout; name a file."),
+    (["demo", "--no-open", "-o", "-"], 2, "-: this does not go to stdout; name a file."),
+    (["live", "--fa", "app.xml", "--robot", ""], 2, "it is empty; write a path."),
+    (["explore", "s.xml", "-o", ""], 2, "it is empty; write a path."),
     (["run", "s.xml", "-o", "no/t"], 2, "no/t: cannot be written: No such file"),
     (["run", "s.xml", "-o", "/proc/t"], 2, "/proc/t: cannot be written"),
-    (["documents", ""], 2, "The folder has no name"),
+    (["documents", ""], 2, "it is empty; write a path."),
     (["validate", "/dev/zero"], 2, "/dev/zero: cannot be read"),
     (["show", "s.xml"], 2, "s.xml:1: this is not a line of JSON"),
     (["replay", "good.jsonl", "app.xml"], 1, "a scenario is needed here"),
@@ -157,6 +165,15 @@ def test_tables_are_not_updated_where_nobody_can_be_asked(tmp_path: Path) -> Non
 
 def test_a_journal_with_any_name_can_be_gone_on_with_as_told() -> None:
     assert how_to_go_on("a b'c.jsonl").endswith("""--resume 'a b'"'"'c.jsonl'""")
+    assert how_to_go_on("-v.jsonl").endswith("--resume ./-v.jsonl")
+
+
+def test_a_scenario_with_any_name_can_be_run_as_told(
+    tmp_path: Path, transcript: str, prima: Prima
+) -> None:
+    shutil.copy(tmp_path / "s.xml", tmp_path / "-my s.xml")
+    told = prima("graph", "--", "-my s.xml")
+    told.check(2, "prima run './-my s.xml' -o FILE.jsonl")
 
 
 # Pipes, terminals and signals ----------------------------------------------------------------
@@ -184,16 +201,26 @@ def test_a_closed_pipe_is_no_problem(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "given", ["validate wrong.xml", "test wrong.xml --junit r.xml", "diff good.jsonl other.jsonl"]
+    ("given", "code"),
+    [
+        ("validate wrong.xml", 1),
+        ("test wrong.xml --junit r.xml", 1),
+        *((f"diff good.jsonl other.jsonl{how}", 1) for how in ("", " --format json")),
+        ("show torn.jsonl", 2),
+        ("explain torn.jsonl 1 --format json", 2),
+        ("graph torn.jsonl --to dot --row 1", 2),
+        ("report torn.jsonl", 2),
+    ],
 )
 def test_what_nobody_reads_still_has_its_exit_code(
-    tmp_path: Path, transcript: str, given: str
+    tmp_path: Path, transcript: str, given: str, code: int
 ) -> None:
     write(tmp_path, "wrong.xml", scenario('<expect says="Never."/>' + "<wrong/>" * 900))
     write(tmp_path, "other.jsonl", record("over"))
+    write(tmp_path, "torn.jsonl", f"{transcript}torn")
     command = f"{sys.executable} -m prima {given} | true; exit ${{PIPESTATUS[0]}}"
     made = subprocess.run(["bash", "-c", command], cwd=tmp_path, check=False, capture_output=True)
-    assert made.returncode == 1
+    assert made.returncode == code, made.stderr
     assert "--junit" not in given or (tmp_path / "r.xml").is_file()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -102,6 +103,13 @@ def test_a_name_that_is_not_utf8_is_told(tmp_path: Path) -> None:
     done = command.prima("run", name, "-o", "x.jsonl", cwd=tmp_path)
     assert done.returncode == 2 and "is not UTF-8; rename it" in done.stderr
     assert (tmp_path / "x.jsonl").read_text() == "kept"
+    shown = command.prima("run", name, "--format", "json", cwd=tmp_path)
+    assert (shown.returncode, shown.stdout) == (2, ""), "a program could not read it"
+    (tmp_path / name).write_text("<scenario/>", encoding="utf-8")
+    problem = json.loads(command.prima("validate", name, "--format", "json", cwd=tmp_path).stdout)
+    assert problem[0]["file"] == name
+    sarif = command.prima("validate", name, "--format", "sarif", cwd=tmp_path).stdout
+    assert "l%E9.xml" in sarif and json.loads(sarif)
     done = command.prima("new", "ea", os.fsdecode(b"m\xe9"), cwd=tmp_path)
     assert done.returncode == 2 and "rename it" in done.stderr
 
@@ -151,8 +159,7 @@ def test_what_a_terminal_cannot_show_is_no_failure(
     for words in FOR_PEOPLE:
         done = narrow(words)
         assert (done.returncode, "Caf" in done.stdout) == (0, True), (words, done.stderr)
-        if encoding:
-            assert "\\u65e5\\u672c" in done.stdout, words
+        assert "\\u65e5\\u672c" in done.stdout, words
     for words in FOR_PROGRAMS:
         done = narrow(words)
         assert done.returncode == ("u.jsonl" in words), (words, done.stderr)

@@ -412,9 +412,11 @@ def test_every_module_of_a_command_is_listed() -> None:
     shared = {
         "__init__",
         "batch",
-        "common",
         "failures",
         "interrupts",
+        "options",
+        "outputs",
+        "printing",
         "progress",
         "runs",
         "screen",

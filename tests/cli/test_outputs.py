@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from prima.cli.common import check_output
+from prima.cli.outputs import check_output
 from prima.errors import UsageError
 from tests import ROOT
 from tests.helpers.here import prima
@@ -218,3 +220,27 @@ def test_several_transcripts_do_not_go_to_stdout(made: Path) -> None:
     done = prima("run", "s.xml", "--policy", "prima", "--policy", "fifo", "-o", "-", cwd=made)
     assert done.returncode == 2 and "go into a folder" in done.stderr
     assert not (made / "-").exists()
+
+
+@pytest.mark.parametrize("output", ["/dev/stdout", ">(cat)"])
+def test_a_pipe_is_written_to_directly(made: Path, output: str) -> None:
+    words = f"{sys.executable} -m prima report t.jsonl -o {output} | cat"
+    done = subprocess.run(["bash", "-c", words], cwd=made, capture_output=True, check=False)
+    assert done.stdout.startswith(b"<!DOCTYPE html>") and done.stdout.endswith(b"</html>\n")
+
+
+@pytest.mark.parametrize(
+    ("output", "why"), [("new/", "Is a directory"), ("loop", "Too many levels of symbolic links")]
+)
+def test_what_names_no_file_is_not_written(made: Path, output: str, why: str) -> None:
+    (made / "loop").unlink(missing_ok=True)
+    (made / "loop").symlink_to("loop")
+    done = prima("report", "t.jsonl", "-o", output, cwd=made)
+    assert done.returncode == 2 and f"{output}: cannot be written: {why}." in done.stderr
+    assert not (made / "new").exists() and (made / "loop").is_symlink()
+
+
+def test_a_link_to_a_file_that_is_not_there_yet_is_written_through(made: Path) -> None:
+    (made / "ahead.html").symlink_to("page.html")
+    assert prima("report", "t.jsonl", "-o", "ahead.html", cwd=made).returncode == 0
+    assert (made / "ahead.html").is_symlink() and (made / "page.html").is_file()

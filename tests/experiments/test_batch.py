@@ -140,6 +140,14 @@ def test_a_run_that_is_wrong_now_leaves_no_old_transcript(stage: Path) -> None:
 
 
 # Lists ------------------------------------------------------------------------------------------
+def test_a_path_in_a_list_may_have_any_letter(stage: Path) -> None:
+    name = "a/one\u2028\x85two.xml"
+    write(name, Path("a/one.xml").read_text())
+    write("list", f"{name}\n")
+    done = prima("--from", "list", "--format", "json")
+    assert [json.loads(line)["scenario"] for line in done.stdout.splitlines()] == [name]
+
+
 def test_a_list_comes_from_a_file_or_a_pipe(stage: Path) -> None:
     text = "# mine\n\na/one.xml\n  b  \r\n"
     write("list", text)
@@ -176,7 +184,7 @@ USAGES = [
     (["a", "-o", "nothing"], "nothing: this is a file; several transcripts need a folder"),
     (["a", "-o", "nothing/runs"], "nothing/runs: cannot be written: Not a directory."),
     (["a", "-o", "runs.jsonl"], "runs.jsonl: several transcripts go into a folder: -o runs/."),
-    (["a", "-o", ""], "-o: name the folder that the transcripts go into."),
+    (["a", "-o", ""], "it is empty; write a path."),
     (["a/one.xml", "-o", "empty"], "Is a directory. For a transcript in it, write empty/."),
     (["a", "-o", "/proc/runs"], "/proc/runs: cannot be written: No such file or directory."),
     (["no/such/folder/", "-o", "runs/"], "no/such/folder: cannot be read: No such file"),

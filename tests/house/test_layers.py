@@ -410,7 +410,7 @@ def test_help_imports_neither_simulator_nor_graph_library_nor_models() -> None:
         "try: cli.main(['--help'])\nexcept SystemExit: pass\n"
         "heavy = {'pymunk', 'pydantic', 'lxml', '_quickjs', 'asyncio'} & set(sys.modules)\n"
         "assert not heavy, heavy\n"
-        "assert not {one for one in sys.modules if one.startswith('prima.cli.')} - {'prima.cli.common', 'prima.cli.failures', 'prima.cli.interrupts'}"
+        "assert not {one for one in sys.modules if one.startswith('prima.cli.')} - {'prima.cli.printing', 'prima.cli.failures', 'prima.cli.interrupts'}"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
 

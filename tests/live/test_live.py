@@ -299,6 +299,13 @@ def test_a_full_disk_ends_the_run_and_is_told(hello: str) -> None:
     assert "/dev/full: cannot be written: No space left on device" in ran.stderr
 
 
+def test_rows_that_cannot_be_printed_end_the_run(hello: str) -> None:
+    words = f'"{sys.executable}" -m prima live --robot "{ROBOT}" --ea "{hello}" >/dev/full'
+    ran = subprocess.run(["sh", "-c", words], capture_output=True, text=True, check=False)
+    assert ran.returncode == 3, ran.stderr
+    assert "stdout: cannot be written: No space left on device" in ran.stderr
+
+
 def test_the_recipe_for_a_robot_of_ones_own_works_as_written(tmp_path: Path) -> None:
     page = (ROOT / "docs" / "live.md").read_text()
     section = page.partition("## Your own robot in an hour")[2]
