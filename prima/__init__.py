@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from typing import Any
 
     from prima.api import (
-        Difference,
         Document,
         DocumentError,
         Loaded,
@@ -36,6 +35,7 @@ if TYPE_CHECKING:
         validate,
     )
     from prima.experiments.functions import explore, sweep
+    from prima.transcript.diff import Difference
 
 __all__ = [
     "Difference", "Document", "DocumentError", "Loaded", "Problem", "RunError", "Transcript",

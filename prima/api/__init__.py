@@ -6,8 +6,6 @@ everything below them works on text and values.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from prima.api.live import replay, run_live
 from prima.api.rehearsing import Sink, rehearse
 from prima.api.transcripts import Transcript, read, skim
@@ -16,11 +14,8 @@ from prima.errors import DocumentError, Problem, RunError, UsageError
 from prima.interpreter.elements import Document
 from prima.loading import Loaded, documents_folder, load, load_scenario, stage, validate
 
-if TYPE_CHECKING:
-    from prima.transcript.diff import Difference
-
 __all__ = [
-    "Difference", "Document", "DocumentError", "Loaded", "Problem", "RunError", "Sink", "Transcript",
+    "Document", "DocumentError", "Loaded", "Problem", "RunError", "Sink", "Transcript",
     "UsageError", "diff", "documents_folder", "explain", "explain_row", "export", "load", "load_scenario",
     "read", "rehearse", "replay", "run_live", "skim", "stage", "validate",
 ]  # fmt: skip

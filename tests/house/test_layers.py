@@ -455,6 +455,11 @@ def test_validating_an_application_imports_little(
     assert set(done.stdout.splitlines()[-1].split()) <= more
 
 
+def test_all_names_of_the_interface_can_be_imported_at_once() -> None:
+    for module in (prima, prima.api):
+        assert all(hasattr(module, name) for name in module.__all__), module
+
+
 def test_no_module_hides_a_function_of_the_interface() -> None:
     """``prima.export`` would be the module as soon as anything had imported it."""
     assert not {name.split(".")[0] for name in MODULES} & set(prima.__all__)
