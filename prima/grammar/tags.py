@@ -65,9 +65,9 @@ def _script(document: GrammarDocument, tag: Tag) -> str:
 
 
 def _unknown(document: GrammarDocument, sound: dict[int, str]) -> Iterator[Problem]:
-    """Names that are neither SISR's nor assigned by any tag of the document."""
+    """Names that are neither SISR's nor assigned, or tested, by any tag of the document."""
     names = [script_names(code) for code in sound.values()]
-    known = set(SISR).union(*(one.declared | one.written for one in names))
+    known = set(SISR).union(*(one.declared | one.written | one.asked for one in names))
     for tag in document.globals:
         yield from _names(tag, sound.get(id(tag), ""), known)
     for rule in document.rules.values():

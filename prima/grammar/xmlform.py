@@ -96,11 +96,13 @@ class _Reader(GrammarChecker):
     def _language(self, node: Node) -> None:
         inherits = self.inline or self.lenient
         lang = node.get("xml:lang", self.document.lang if inherits else "")
-        if not lang and self.document.mode == "voice":
+        inherited = self.inline and lang
+        if self.document.mode == "voice" and not (node.get("xml:lang") or inherited):
+            tell = self.problems.warn if lang else self.problems.note
             message = "A grammar for voice says its language."
-            self.note(node, "missing-attribute", message, 'Write xml:lang="en-US" or the like.')
-        elif lang:
-            self.document.lang = lang
+            remedy = 'Write xml:lang="en-US" or the like.'
+            tell(partial(node.place_of, "xml:lang"), "missing-attribute", message, remedy)
+        self.document.lang = lang or self.document.lang
 
     def _children(self, node: Node) -> None:
         self.no_text(node)

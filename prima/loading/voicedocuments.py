@@ -96,10 +96,14 @@ def voicexml_problems(
         missing: set[int] = set()
         yield from (*page.problems, *page.warnings(), *_not_there(page, folder, answered, missing))
         yield from _grammars_of(page, folder, missing, answered)
-        yield from check_variables(page, pages.root(page), script)
         yield from check_caught(page.root, pages.thrown)
         yield from check_listening(page, pages.root(page))
-    yield from check_sketched((page, pages.root(page)) for page in pages)
+    rooted = [(page, pages.root(page)) for page in pages]
+    roots = {id(root) for _, root in rooted}
+    for page, root in rooted:
+        if not is_other_version(page.root):
+            yield from check_variables(page, root, script, id(page) in roots)
+    yield from check_sketched(rooted)
     yield from (*pages.problems, *pages.between())
 
 

@@ -49,6 +49,8 @@ class Names:
     """Undeclared names that are updated: ``x++``, ``x += 1``."""
     now: dict[str, int] = field(default_factory=dict)
     """Undeclared names that are read outside of functions and whose type the code does not test."""
+    asked: set[str] = field(default_factory=set)
+    """Names whose type the code tests, by ``typeof``: it may do without them."""
     called: set[int] = field(default_factory=set)
     """The offsets of names that are called."""
     uses: list[Use] = field(default_factory=list)
@@ -112,6 +114,7 @@ def _of_walk(walk: Walk, script: bool) -> Names:
             _add(made, walk, start, name, how, scope, script)
     for _, name, how, _ in walk.found:
         if how == "ask":
+            made.asked.add(name)
             made.now.pop(name, None)
     return made
 

@@ -1,4 +1,4 @@
-"""Calls to somebody else: transfers of the caller (VoiceXML 2.0, 2.3.7; 2.1, 7)."""
+"""Calls to somebody else: transfers of the caller (VoiceXML 2.0, 2.3.7; 2.1, 9)."""
 
 from __future__ import annotations
 

@@ -52,12 +52,19 @@ class Unknown(Exception):
     """A script that cannot be read may declare anything."""
 
 
-def check_variables(page: Page, root: Page | None, text: Text) -> list[Problem]:
-    """Warnings of variables that nothing declares in a document and its application root."""
+def check_variables(page: Page, root: Page | None, text: Text, is_root: bool) -> list[Problem]:
+    """Warnings of variables that nothing declares in a document and its application root.
+
+    Args:
+        page: the document.
+        root: its application root, if it has one.
+        text: gives the text of a script in a file.
+        is_root: whether it is the root of others, whose dialogs inherit its handlers and links.
+    """
     if page.application and root is None:
         return []
     try:
-        return list(_Look(page, root, text).problems())
+        return list(_Look(page, root, text).problems(is_root))
     except Unknown:
         return []
 
@@ -101,7 +108,14 @@ class _Look:
         if root is not None:
             self.shared.append(self.level(root, self.outside(root)).names)
         self.dialogs = {id(one): self.level(page, [one]) for one in page.dialogs.values()}
-        self.mentioned = self.mentions()
+        self.mentioned: set[tuple[str, str]] = set()
+        """Members of scopes that some code assigns or tests, which may therefore exist.
+
+        A scope used as a whole appears with an empty name: any member may be meant.
+        """
+        self.asked: set[str] = set()
+        """Variables whose type some code tests, which may be missing."""
+        self.look_for_tests()
 
     @staticmethod
     def outside(page: Page) -> list[Node]:
@@ -163,20 +177,16 @@ class _Look:
             raise Unknown
         return found
 
-    def mentions(self) -> set[tuple[str, str]]:
-        """Members of scopes that some code assigns or tests, which may therefore exist.
-
-        A scope used as a whole appears with an empty name: any member may be meant.
-        """
-        found: set[tuple[str, str]] = set()
+    def look_for_tests(self) -> None:
+        """Look for what the code of the document and its root assigns or tests."""
         for page in filter(None, (self.page, self.root)):
             for node in page.root.walk():
-                for names in self.mentioning(page, node):
-                    found.update(_mentions(names.uses))
-        return found
+                for names in self.code_of(page, node):
+                    self.mentioned.update(_mentions(names.uses))
+                    self.asked |= names.asked
 
-    def mentioning(self, page: Page, node: Node) -> Iterator[Names]:
-        """The names of an element's code that names scopes."""
+    def code_of(self, page: Page, node: Node) -> Iterator[Names]:
+        """The names of each piece of an element's code."""
         for attribute, code in node.attributes.items():
             if is_code(node, attribute):
                 yield expression_names(code)
@@ -185,19 +195,18 @@ class _Look:
 
     # What is used -----------------------------------------------------------------------------
 
-    def problems(self) -> Iterator[Problem]:
+    def problems(self, is_root: bool) -> Iterator[Problem]:
         """Warnings of all names used and not declared."""
         everywhere = NameScope(name for one in self.dialogs.values() for name in one.names)
         application = {"application": self.shared[-1]}
         outer = Known(*self.shared[1:])
         setup = [node for node in self.own.nodes if node.tag in SETUP]
         yield from self.check(setup, self.own, outer, application)
-        if not self.dialogs:
-            return  # handlers and links are inherited by other documents' dialogs
-        others = [node for node in self.own.nodes if node.tag not in SETUP]
-        known = Known(*self.shared, everywhere)
-        yield from self.check(others, Level(), known, application)
-        yield from self.contents(self.own, known, application)
+        if self.dialogs and not is_root:  # else other documents' dialogs inherit the rest
+            others = [node for node in self.own.nodes if node.tag not in SETUP]
+            known = Known(*self.shared, everywhere)
+            yield from self.check(others, Level(), known, application)
+            yield from self.contents(self.own, known, application)
         for dialog in self.dialogs.values():
             members = {**application, "document": self.own.names, "dialog": dialog.names}
             yield from self.check(dialog.nodes, dialog, Known(*self.shared), members)
@@ -231,6 +240,8 @@ class _Look:
             seen |= _with_it(node, level)
             for read in _reads(node):
                 if read.name in ALWAYS or read.name in outer or read.name in seen:
+                    continue
+                if read.name in self.asked:
                     continue
                 if read.name not in level.names:
                     yield self._undeclared(read, Known(level.names, *outer.scopes))

@@ -48,6 +48,10 @@ def test_tags_of_the_header_give_names_to_those_of_rules() -> None:
     ]
 
 
+def test_a_name_that_a_tag_tests_may_be_missing() -> None:
+    assert not load(f"{SCRIPT}$r = a {{if (typeof q != 'undefined') out.k = q;}};").warnings()
+
+
 def test_tags_of_other_formats_have_no_names() -> None:
     assert not load(f"{ABNF}$r = a {{nothing}};").warnings()
     assert not load(f"{ABNF}$r = a {{city='Rome'; n=Rome}};").warnings()

@@ -50,6 +50,21 @@ def test_a_variable_that_nothing_declares_is_told(tmp_path: Path, content: str, 
 
 
 @pytest.mark.parametrize(
+    "code",
+    [
+        """<if cond="typeof q != 'undefined' &amp;&amp; q == 1"/>""",
+        """<log expr="typeof q == 'undefined' ? 0 : q"/>""",
+        """<script>if (typeof (q) != "undefined") { var z = q; }</script>""",
+        """<if cond="typeof q != 'undefined'"><log expr="q"/></if>""",
+    ],
+)
+def test_a_variable_that_is_tested_may_be_missing(tmp_path: Path, code: str) -> None:
+    assert told(tmp_path, f"<form><block>{code}</block></form>") == []
+    (one,) = told(tmp_path, f'<form><block>{code}<log expr="p"/></block></form>')
+    assert 'The variable "p" is not declared' in one
+
+
+@pytest.mark.parametrize(
     ("uri", "says"),
     [
         ("grammar/bolean", 'built-in type "builtin:grammar/bolean". Did you mean "boolean"?'),

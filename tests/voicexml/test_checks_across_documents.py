@@ -56,6 +56,17 @@ def test_grammars_in_files_that_a_page_names_are_checked(tmp_path: Path) -> None
     ]
 
 
+def test_handlers_of_a_root_document_read_variables_of_its_leaves(tmp_path: Path) -> None:
+    handler = '<catch event="nomatch"><log expr="topic"/></catch>'
+    leads = '<form><block><log expr="wrong"/><goto next="leaf.vxml"/></block></form>'
+    leaf = '<var name="topic"/><form><field name="f"><option>yes</option></field></form>'
+    page = VXML.format(' application="main.vxml"', leaf)
+    (one,) = told(tmp_path, handler + leads, leaf=page)
+    assert 'The variable "wrong" is not declared' in one
+    (one,) = told(tmp_path, f"{handler}<form/>")
+    assert 'The variable "topic" is not declared' in one, "nothing names it as its root"
+
+
 @pytest.mark.parametrize(
     ("name", "text", "told"),
     [

@@ -9,6 +9,7 @@ import pytest
 from prima.loading import validate
 from tests.helpers.dialogs import GRAMMAR, ask
 from tests.helpers.old_documents import run
+from tests.helpers.validating import told
 from tests.helpers.voice import Call
 
 
@@ -32,7 +33,7 @@ def test_a_uri_that_is_none(tmp_path: Path, body: str, uri: str) -> None:
     assert "app: error." in failure and "app.vxml:1" in failure
 
 
-def test_an_external_grammar_without_a_language_has_the_documents() -> None:
+def test_an_external_grammar_without_a_language_has_the_documents(tmp_path: Path) -> None:
     grammar = (
         '<grammar version="1.0" root="r" xmlns="http://www.w3.org/2001/06/grammar">'
         '<rule id="r">tea</rule></grammar>'
@@ -41,6 +42,9 @@ def test_an_external_grammar_without_a_language_has_the_documents() -> None:
     call = Call(field, **{"g.grxml": grammar})
     call.answer("tea")
     assert call.ended == "exit"
+    (tmp_path / "g.grxml").write_text(grammar)
+    (one,) = told(tmp_path, field)
+    assert one.startswith("g.grxml missing-attribute A grammar for voice says its language.")
 
 
 def test_a_grammar_in_a_file_may_have_a_scope() -> None:
