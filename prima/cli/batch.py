@@ -23,7 +23,7 @@ from prima.pool.processes import warm_up
 MOST_LISTED = 50_000_000
 """Maximum size of a list of scenarios (bytes)."""
 WIDEST = 100
-"""Maximum width of the table's column of scenarios."""
+"""Maximum width of the table's columns of scenarios and policies."""
 
 
 def listed(name: str) -> list[str]:
@@ -92,7 +92,8 @@ class _Table:
     """Prints rows to stdout and messages to stderr."""
 
     def __init__(self, plan: BatchPlan, form: str) -> None:
-        self.wide = min(max(map(len, ["scenario", *plan.scenarios])), WIDEST)
+        columns = plan.scenarios, [one or "" for one in plan.policies]
+        self.wide = [min(max(map(len, column)), WIDEST) for column in columns]
         self.form = form
         if form == "text":
             put(format_head(self.wide))

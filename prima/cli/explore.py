@@ -111,7 +111,7 @@ def explore(
     except (KeyboardInterrupt, RunError) as ended:
         progress.clear()
         exploration.settle()
-        _put(exploration, form)
+        _put(exploration, form, written=False)
         if output is not None:
             tell(f"{output}: the runs made so far are kept; --resume goes on.")
         if isinstance(ended, RunError):
@@ -119,12 +119,12 @@ def explore(
         raise click.Abort from None
     finally:
         progress.clear()
-    _put(exploration, form)
+    _put(exploration, form, output is not None)
     if exploration.problems:
         raise Exit(1)
 
 
-def _put(exploration: Exploration, form: str) -> None:
+def _put(exploration: Exploration, form: str, written: bool) -> None:
     """Print what was found, if anything was."""
     from prima.experiments.explored import Explored
 
@@ -132,7 +132,7 @@ def _put(exploration: Exploration, form: str) -> None:
         return
     explored = Explored(exploration)
     if form == "json":
-        print_json(explored.data())
+        print_json(explored.data(written))
         return
     for line in explored.text():
         put(line)

@@ -133,6 +133,18 @@ why_option = click.option(
 )
 
 
+def check_source(scenarios: bool, applications: bool) -> None:
+    """Check that a scenario or applications are named, and not both.
+
+    Raises:
+        UsageError: they are not.
+    """
+    if scenarios and applications:
+        raise UsageError("A scenario names its own applications; leave out --fa and --ea.")
+    if not (scenarios or applications):
+        raise UsageError("Name a scenario, or applications with --fa and --ea.")
+
+
 def duration_option(name: str, meaning: str) -> Callable[[Any], Any]:
     """An option whose value is a time as written in documents, converted to ms."""
 

@@ -15,6 +15,7 @@ from prima.cli.options import (
     PathName,
     Whole,
     bound_option,
+    check_source,
     ea_option,
     fa_option,
     format_option,
@@ -142,8 +143,7 @@ def _check_source(scenarios: bool, applications: bool, says: bool, maps: bool) -
     Raises:
         UsageError: the options contradict each other.
     """
-    if scenarios == applications:
-        raise UsageError("Name a scenario, or applications with --fa and --ea.")
+    check_source(scenarios, applications)
     if says and not applications:
         raise UsageError(
             "--say works only with --fa and --ea: a scenario has the user's answers in it."

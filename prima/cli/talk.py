@@ -12,6 +12,7 @@ from click.exceptions import Exit
 from prima.cli.options import (
     MAPS,
     PathName,
+    check_source,
     ea_option,
     fa_option,
     format_option,
@@ -146,8 +147,7 @@ def _check_options(
     Raises:
         UsageError: they do.
     """
-    if (scenario is None) == (not applications):
-        raise UsageError("Name a scenario, or applications with --fa and --ea.")
+    check_source(scenario is not None, applications)
     if scenario is not None and staged:
         message = "--world and --robot work only with --fa and --ea: a scenario names its own."
         raise UsageError(message)

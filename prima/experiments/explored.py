@@ -68,8 +68,12 @@ class Explored:
         moved = [f"{path} at {at:g} s ({by:+g} s)" for path, (at, by) in self.shifts(point).items()]
         return ", ".join(moved) or "as written"
 
-    def data(self) -> dict[str, Json]:
-        """All results for JSON; times in seconds."""
+    def data(self, written: bool) -> dict[str, Json]:
+        """All results for JSON; times in seconds.
+
+        Args:
+            written: whether the problems are in a folder, too, where they have names.
+        """
         one = self.exploration
         return {
             "prima": __version__,
@@ -92,7 +96,8 @@ class Explored:
                 for which, target in enumerate(one.targets)
             },
             "problems": [
-                self._problem(number, problem) for number, problem in enumerate(one.problems, 1)
+                self._problem(problem, self.name(number, problem) if written else "")
+                for number, problem in enumerate(one.problems, 1)
             ],
         }
 
@@ -104,13 +109,13 @@ class Explored:
             "difference": self.difference(order),
         }
 
-    def _problem(self, number: int, problem: FoundProblem) -> dict[str, Json]:
+    def _problem(self, problem: FoundProblem, name: str) -> dict[str, Json]:
         return {
             "kind": problem.finding.kind,
             "text": problem.finding.text,
             "runs": problem.runs,
             "at": {path: at for path, (at, _) in self.shifts(problem.point).items()},
-            "scenario": f"{PROBLEMS}/{self.name(number, problem)}.xml",
+            "scenario": f"{PROBLEMS}/{name}.xml" if name else None,
         }
 
     @staticmethod
@@ -213,7 +218,7 @@ class ExplorationFolder:
                 self._case(ORDERS, order.signature, order.point)
             for number, problem in enumerate(self.exploration.problems, 1):
                 self._case(PROBLEMS, explored.name(number, problem), problem.point)
-            data = json.dumps(explored.data(), indent=1, ensure_ascii=False)
+            data = json.dumps(explored.data(written=True), indent=1, ensure_ascii=False)
             write_whole(self.path / RESULT, data + "\n")
         except OSError as error:
             raise UsageError(f"{self.path}: cannot be written: {error.strerror}.") from None

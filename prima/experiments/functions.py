@@ -135,7 +135,7 @@ def explore(
         raise UsageError("resume needs the output that it goes on with.")
     for _ in carried_out(exploration, pool_of(on, workers), output, resume):
         pass
-    return Explored(exploration).data()
+    return Explored(exploration).data(written=output is not None)
 
 
 def _table(made: Sweep, output: str | Path | None, pool: Pool, resume: bool) -> pyarrow.Table:

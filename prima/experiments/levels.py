@@ -142,6 +142,12 @@ class _Levels:
         except ValueError as error:
             raise self.wrong(str(error)) from None
 
+    def step(self, text: str) -> float:
+        try:
+            return self.values.difference(text)
+        except ValueError as error:
+            raise self.wrong(str(error)) from None
+
     def distribution(self, piece: str) -> Quantile | None:
         """The quantiles of a distribution, if it is one."""
         try:
@@ -156,10 +162,11 @@ class _Levels:
             return [piece]
         if match["step"] is None:
             raise self.wrong(f'The range "{piece}" has no step: write {piece}/STEP.')
-        low, high, step = (self.value(match[name].strip()) for name in ("low", "high", "step"))
+        low, high = (self.value(match[name].strip()) for name in ("low", "high"))
+        step = self.step(match["step"].strip())
         if step <= 0 or low > high:
             why = "its step is not above 0" if low <= high else "it ends before it begins"
             raise self.wrong(f'The range "{piece}" is empty: {why}.')
-        count = math.floor((high - low) / step + 1e-9) + 1
+        count = math.floor(min((high - low) / step, 1e15) + 1e-9) + 1  # it may be infinite
         self.count(count)
         return [written(self.kind, low + step * index) for index in range(count)]

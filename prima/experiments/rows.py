@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -10,6 +10,7 @@ from prima.experiments.plan import BatchRow
 from prima.transcript.criteria import shown_time
 
 COLUMNS = (
+    ("scenario", 8),
     ("policy", 8),
     ("exit", 4),
     ("ended", 5),
@@ -21,7 +22,7 @@ COLUMNS = (
     ("responses", 9),
     ("mean s", 6),
 )
-"""Headings after the scenario's, and minimum widths."""
+"""Headings and least widths."""
 
 
 def row_data(row: BatchRow) -> dict[str, Any]:
@@ -31,12 +32,12 @@ def row_data(row: BatchRow) -> dict[str, Any]:
     return data
 
 
-def format_head(wide: int) -> str:
-    """The headings, with a column of this width for scenarios."""
-    return _line(["scenario", *(head for head, _ in COLUMNS)], wide)
+def format_head(wide: Sequence[int]) -> str:
+    """The headings, with columns of these widths at least for scenarios and policies."""
+    return _line([head for head, _ in COLUMNS], wide)
 
 
-def format_row(row: BatchRow, wide: int) -> str:
+def format_row(row: BatchRow, wide: Sequence[int]) -> str:
     """A row of the table."""
     cells = [row.scenario, row.policy or "-", str(row.exit), row.ended or "-"]
     if row.ended is None:
@@ -46,8 +47,9 @@ def format_row(row: BatchRow, wide: int) -> str:
     return _line([*cells, str(row.responses), shown_time(row.response_mean)], wide)
 
 
-def _line(cells: list[str], wide: int) -> str:
-    widths = [wide, *(width for _, width in COLUMNS)]
+def _line(cells: list[str], wide: Sequence[int]) -> str:
+    least = [width for _, width in COLUMNS]
+    widths = [*map(max, wide, least), *least[len(wide) :]]
     return "  ".join(
         cell.ljust(width) if index in (0, 1, 3) else cell.rjust(width)
         for index, (cell, width) in enumerate(zip(cells, widths, strict=False))

@@ -33,6 +33,7 @@ class StudyResult:
     """One situation under one policy."""
 
     situation: str
+    """The scenario's id, or its path if an earlier one has the same id."""
     policy: str
     criteria: Criteria
     distance: int | None
@@ -61,14 +62,18 @@ def study(
         UsageError: a file or policy is unknown.
     """
     chosen = list(policies)
+    named: set[str] = set()
     for path in scenarios or situations():
         loaded = load_scenario(path)
+        own = loaded.cast.scenario.id
+        name = str(path) if own in named else own
+        named.add(name)
         expected = _expected(Path(path))
         for policy in chosen:
             transcript = rehearse(loaded, policy)
             distance, missing = _distance(expected, transcript)
             yield StudyResult(
-                loaded.cast.scenario.id,
+                name,
                 policy,
                 observe(transcript.records),
                 distance,

@@ -80,14 +80,23 @@ class Distributions:
         Raises:
             ValueError: it is not of the kind, or out of range; the message is a sentence.
         """
+        value = self.difference(text)
+        if not self.low <= value <= self.high:
+            low, high = written(self.kind, self.low), written(self.kind, self.high)
+            raise ValueError(f'"{text}" is out of range: from {low} to {high}.')
+        return value
+
+    def difference(self, text: str) -> float:
+        """A difference of two values, such as a step; it may be less than the least value.
+
+        Raises:
+            ValueError: it is not of the kind; the message is a sentence.
+        """
         try:
             value = read_value(self.kind, text)
         except ValueError as error:
             raise ValueError(f'"{text}" {error}') from None
         assert isinstance(value, int | float)
-        if not self.low <= value <= self.high:
-            low, high = written(self.kind, self.low), written(self.kind, self.high)
-            raise ValueError(f'"{text}" is out of range: from {low} to {high}.')
         return float(value)
 
     def read(self, piece: str) -> Quantile | None:
@@ -129,7 +138,7 @@ class Distributions:
 
     def _spread(self, name: str, text: str) -> float:
         """A standard deviation of a distribution: above 0."""
-        value = self.value(text)
+        value = self.difference(text)
         if value <= 0:
             raise ValueError(f"The standard deviation of {name}(...) has to be above 0.")
         return value

@@ -36,12 +36,15 @@ CHANGED = (
 SPOKEN = ("utterance", "alternatives", "recorded", "text")
 """The fields of records' data that hold what a user has said."""
 
+FREE = ("text", "words", "extra", "message")
+"""Fields of records in which an application may repeat it."""
+
 
 class Redactor:
     """Removes what users say from records; its times and the grammars' results are kept.
 
     What no grammar took is removed wherever it recurs word for word: as a field's value, in
-    messages to services, in what the robot says. Such a journal can be shown and measured; it
+    messages to services, in logs, in what the robot says. Such a journal can be shown and measured; it
     cannot be replayed or resumed.
 
     Args:
@@ -67,8 +70,9 @@ class Redactor:
         if record["phase"] == "event" and record["event"] == "speech":
             self._note(record.get("text") or "")
             record = {**record, "text": REDACTED}
-        elif record.get("text"):
-            record = {**record, "text": self._without(record["text"])}
+        else:
+            held = [name for name in FREE if record.get(name)]
+            record = {**record, **{name: self._without(record[name]) for name in held}}
         if isinstance(data, dict):
             kept = {name: value for name, value in data.items() if name not in SPOKEN}
             record = {**record, "data": self._without(kept) or None}

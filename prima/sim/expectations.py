@@ -7,6 +7,7 @@ from typing import Any
 
 from prima.devices.reading import RENAME, Reader
 from prima.errors import Hint, suggestion
+from prima.grammar.text import fold
 from prima.language.values import BadValue, read_value
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
@@ -119,8 +120,10 @@ def _check_subject(reader: Reader, node: Node, given: list[str]) -> None:
             reader.problem(node, "missing-attribute", message, "", remedy)
         return
     for name in given:
-        if not node.get(name).strip():
-            message = f'{name} "" is empty.'
+        text = node.get(name).strip()
+        if not (fold(text) if name in ("says", "logs") else text):
+            why = ": it has no letter and no digit" if text else ""
+            message = f'{name} "{text}" is empty{why}.'
             reader.problem(node, "bad-value", message, name, "Write what is expected.")
     if len(given) > 1 and given != ["says", "does"]:
         message = f'<{node.tag}> has both "{given[0]}" and "{given[1]}".'

@@ -226,10 +226,12 @@ class Conversation:
     # Saving ---------------------------------------------------------------------------
 
     def _save(self, rest: str) -> None:
-        if not rest:
+        quoted = len(rest) > 1 and rest[0] == rest[-1] and rest[0] in "\"'"
+        path = rest[1:-1] if quoted else rest
+        if not path:
             raise UsageError('Write "/save FILE", as in "/save visit.xml".')
-        self.save(rest)
-        self.screen.tell(f"Saved {rest}.")
+        self.save(path)
+        self.screen.tell(f"Saved {path}.")
 
     def check_target(self, path: str) -> None:
         """Check that a session may be saved to a file.

@@ -224,7 +224,8 @@ class ExpectationChecker:
         if found is None:
             return None, "It never does."
         who, text = found.record.app, text_of(found, name)
-        return found, f'It never does. Nearest: {who} {name} "{text}" {self._at([found])}.'
+        verb = "asks" if found.request.command == "q-and-a" else name
+        return found, f'It never does. Nearest: {who} {verb} "{text}" {self._at([found])}.'
 
 
 def _spans(changes: list[StateChange]) -> Iterable[tuple[StateChange, int | None]]:

@@ -20,14 +20,12 @@ def golden_of(scenario: Path) -> Path:
     return scenario.with_suffix(".txt")
 
 
-def read_golden(path: Path) -> str | None:
-    """The expected table, or None if there is none.
+def read_golden(path: Path) -> str:
+    """The expected table.
 
     Raises:
         UsageError: it cannot be read, or is not text.
     """
-    if not path.exists():
-        return None
     try:
         return read_file(path).decode("utf-8-sig").replace("\r\n", "\n")
     except (DocumentError, UnicodeDecodeError):

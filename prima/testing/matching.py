@@ -92,10 +92,12 @@ def text_of(fact: Fact, name: str) -> str:
 
 
 def most_alike(word: str, name: str, facts: list[Fact]) -> Fact | None:
-    """The fact with the text most similar to a text, if any is similar."""
+    """The fact with the text most similar to a text, if any holds it or is similar."""
     wanted = fold(word)[:LONGEST_COMPARED]
     phase = "start" if name == "says" else "log"
     held = [fact for fact in facts if fact.phase == phase and text_of(fact, name)]
+    if holding := next((fact for fact in held if MATCHES[name](word, fact)), None):
+        return holding
     best, found = ALIKE, None
     for fact in held[:MOST_COMPARED]:
         alike = SequenceMatcher(None, wanted, fold(text_of(fact, name))[:LONGEST_COMPARED]).ratio()

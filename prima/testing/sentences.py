@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from prima.sim.expectations import Expectation
 from prima.testing.facts import Window
-from prima.transcript.row import describe
+from prima.transcript.row import title
 
 
 def subject(one: Expectation) -> str:
@@ -15,11 +15,12 @@ def subject(one: Expectation) -> str:
     who = one.by or ("the robot" if name in ("does", "finishes", "says") else "an application")
     match name:
         case "does":
-            return f"{who} does {describe(word, one.words.get('says'), None)}{_with(one)}"
+            says = one.words.get("says")
+            return f"{who} does {title(word)}{_with(one)}" + (f', saying "{says}"' if says else "")
         case "says" | "logs":
             return f'{who} {name} "{word}"'
         case "finishes":
-            return f"{who} finishes {describe(word, None, None)}{_with(one)}"
+            return f"{who} finishes {title(word)}{_with(one)}"
         case "event":
             return f"the event {word}{_with(one)} happens"
         case "sends":
@@ -36,7 +37,7 @@ def event_of(one: Expectation) -> str:
             return f'the robot has {one.trigger} "{one.what}"'
         case "doing" | "done":
             does = "begins" if one.trigger == "doing" else "ends"
-            return f"the robot {does} {describe(one.what, None, None)}"
+            return f"the robot {does} {title(one.what)}"
     return f"the event {one.what}"
 
 

@@ -120,10 +120,15 @@ def describe(
         return f'"{text}"'
     if command == "q-and-a":
         return "(listens)"
+    shown = _arguments(TABLE_4_2.get(command), {**(args or {}), **(extra or {})})
+    said = f', saying "{text}"' if text else ""
+    return title(command) + (f" ({shown})" if shown else "") + said
+
+
+def title(command: str) -> str:
+    """The name of a Command for people."""
     row = TABLE_4_2.get(command)
-    title = row.title if row else " ".join(map(_capital, command.split("-")))
-    shown = _arguments(row, {**(args or {}), **(extra or {})})
-    return title + (f" ({shown})" if shown else "") + (f', saying "{text}"' if text else "")
+    return row.title if row else " ".join(map(_capital, command.split("-")))
 
 
 def _arguments(row: CommandType | None, given: Record) -> str:
@@ -264,9 +269,8 @@ def _interrupt_row(record: Entry, asked: dict[str, Entry]) -> Row:
 
 
 def _fail_row(record: Entry) -> Row:
-    title = describe(record.command or "iu", None, None)
-    title = "the unit" if title == "Iu" else title
-    what = f"{title} fails: {record.message or record.event}"
+    failed = title(record.command) if record.command not in ("", "iu") else "the unit"
+    what = f"{failed} fails: {record.message or record.event}"
     return _plain(record, what, "fail", event=True)
 
 

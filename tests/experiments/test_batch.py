@@ -169,7 +169,10 @@ USAGES = [
     (["a", "--resume"], "--resume needs the folder of the transcripts: -o FOLDER."),
     (["a", "--why"], "prima show TRANSCRIPT --why"),
     (["a", "--say", "yes"], "--say works only with --fa and --ea"),
-    (["a", "--ea", "a/hello.xml"], "Name a scenario, or applications with --fa and --ea."),
+    (
+        ["a", "--ea", "a/hello.xml"],
+        "A scenario names its own applications; leave out --fa and --ea.",
+    ),
     (["--ea", "a/hello.xml", *POLICIES], "name one run; for several, write scenarios."),
     (["--ea", "a/hello.xml", "--workers", "2"], "name one run; for several, write scenarios."),
     (["empty"], "empty: contains no scenarios"),
@@ -238,7 +241,7 @@ def test_from_python(stage: Path) -> None:
     rows = list(run_batch(plan, Options(), workers=2))
     assert [row.exit for row in rows] == [0] * 6
     assert rows[0].transcript == "runs/a/one.prima.jsonl"
-    assert format_row(rows[0], 10).startswith("a/one.xml   prima        0  over")
+    assert format_row(rows[0], (10, 8)).startswith("a/one.xml   prima        0  over")
     with pytest.raises(UsageError, match="There is no policy"):
         BatchPlan(["a"], ["x"])
 
@@ -254,3 +257,10 @@ def test_the_measurement_compares_what_it_measures(
     write("documents/scenarios/one.xml", scenario("one", "gone.xml"))
     with pytest.raises(AssertionError):
         bench.ratio(rounds=1)
+
+
+def test_a_long_policy_has_a_column_as_wide(stage: Path) -> None:
+    policies = ("--policy", "fixed:one", "--policy", "prima+x1+x2+x3")
+    head, *rows = prima("a/one.xml", *policies).stdout.splitlines()[:3]
+    ends = head.index("exit") + len("exit")
+    assert [row[ends - 3 : ends] for row in rows] == ["  2", "  0"], rows

@@ -36,6 +36,7 @@ def drawn(path: str, levels: str, folder: str = "") -> list[float]:
         ("touch", "3s..3s/1s", ("3000ms",)),
         ("person.x", "-1..1/0.5", ("-1", "-0.5", "0", "0.5", "1")),
         ("person.x", "0.1..0.3/0.1", ("0.1", "0.2", "0.3")),
+        ("person.speed", "0.5..0.52/0.01", ("0.5", "0.51", "0.52")),
         ("reply", "Yes.|No.|", ("Yes.", "No.", "")),
         ("reply", r"Yes\|no|No.", ("Yes|no", "No.")),
         ("reply", "normal(1,2)", ("normal(1,2)",)),
@@ -56,6 +57,7 @@ def test_levels(path: str, levels: str, made: tuple[str, ...]) -> None:
         ("touch", "5s..1s/1s", "it ends before it begins"),
         ("touch", "0s..1s/0s", "its step is not above 0"),
         ("touch", "0s..86400s/1ms", "levels; at most 100,000"),
+        ("person.speed", f"0.5..5/0.{'0' * 310}1", "levels; at most 100,000"),
         ("touch", "1s|0s..20s", r"The range \"0s..20s\" has no step: write 0s..20s/STEP"),
         ("touch", "normal(1s)", r"Write normal\(MEAN,DEVIATION\)"),
         ("touch", "normal(1s,0s)", "has to be above 0"),
@@ -80,6 +82,7 @@ def test_what_is_wrong_with_levels(path: str, levels: str, why: str) -> None:
 def test_distributions_have_their_parameters() -> None:
     assert mean(drawn("touch", "normal(10s,1s)")) == pytest.approx(10, abs=0.01)
     assert stdev(drawn("touch", "normal(10s,1s)")) == pytest.approx(1, abs=0.01)
+    assert stdev(drawn("person.speed", "normal(1,0.01)")) == pytest.approx(0.01, abs=0.001)
     assert median(drawn("touch", "lognormal(5s,0.4)")) == pytest.approx(5, abs=0.01)
     assert mean(drawn("touch", "exponential(5s)")) == pytest.approx(5, abs=0.05)
     for text in ("uniform(1s,3s)", "1s..3s"):

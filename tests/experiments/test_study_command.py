@@ -50,6 +50,16 @@ def test_a_folder_stands_for_its_scenarios(tmp_path: Path) -> None:
     assert "contains no scenarios" in prima("study", tmp_path).stderr
 
 
+def test_scenarios_with_the_same_id_can_be_told_apart(tmp_path: Path) -> None:
+    path = tmp_path / "app.xml"
+    path.write_text(app('<form id="f"><block><exit/></block></form>'))
+    first = scenario_of(path, tmp_path)
+    second = first.with_name("second.xml")
+    second.write_text(first.read_text())
+    done = prima("study", first, second, "--policy", "fifo", "--format", "csv")
+    assert [line.split(",")[0] for line in done.stdout.splitlines()[1:]] == ["s", str(second)]
+
+
 def test_an_expected_table_that_is_none_is_told(tmp_path: Path) -> None:
     scenario = scenario_of(api.documents_folder() / "fa" / "emotions.xml", tmp_path)
     (tmp_path / "s.txt").write_text("nothing\n")

@@ -338,10 +338,15 @@ def test_what_users_say_in_their_own_words_is_left_out_wherever_it_comes_back() 
         {"time": 1, "phase": "end", "text": "Who are you?", "data": value},
         {"time": 1, "phase": "send", "data": {"to": "diary", "params": {"text": [said, 3]}}},
         {"time": 1, "phase": "request", "text": "Well, MY  NAME IS ADA. Is that so?"},
+        {"time": 1, "phase": "log", "message": f"heard: {said}"},
+        {"time": 1, "phase": "request", "words": said, "extra": {"emotion": [said]}},
     ]
     made = redactor(free)
     assert "ada" not in str(made).lower()
-    assert [one.get("text") for one in made[::3]] == ["[redacted]", "Well, [redacted]. Is that so?"]
+    assert [one.get("text") for one in made[:4:3]] == [
+        "[redacted]",
+        "Well, [redacted]. Is that so?",
+    ]
     kept = {"time": 2, "phase": "end", "text": "A cake?", "data": {"value": "cake"}}
     assert redactor([heard("a cake"), kept])[1] == kept, "a grammar has made this"
     takes.clear()

@@ -131,6 +131,8 @@ def test_no_file_is_written_over_that_is_no_saved_session(tmp_path: Path) -> Non
     talk.line(f"/save {tmp_path}/new.xml")
     talk.line(f"/save {tmp_path}/new.xml")
     assert paper.told[-1] == f"Saved {tmp_path}/new.xml."
+    talk.line(f'/save "{tmp_path}/a name.xml"')
+    (tmp_path / "a name.xml").unlink()  # it must be there: a shell takes it without its quotes
     talk.line(f"/save {tmp_path}/nowhere/new.xml")
     assert "there is no folder" in paper.told[-1]
     assert sorted(path.name for path in tmp_path.iterdir()) == ["new.xml", "thesis.xml"]

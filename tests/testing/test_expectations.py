@@ -62,6 +62,10 @@ FALSE = {
     '<expect does="gesture"><data name="nome" value="nod"/></expect>': "with name nod",
     '<expect does="q-and-a"><data name="timeout" value="soon"/></expect>': "timeout 5000",
     '<expect does="q-and-a" says="Going up"/>': "It never does. Nearest",
+    '<expect does="speak" says="Which floor"/>': (
+        'the robot does Speak, saying "Which floor". It never does. Nearest: desk asks "Which floor?"'
+    ),
+    '<never does="q-and-a" says="Which floor"/>': 'the robot does Q&A, saying "Which floor". It does',
     '<expect logs="flour"/>': 'Nearest: desk logs "floor 3"',
     '<expect sends="lift"><data name="floor" value="4"/></expect>': "with floor 3",
     '<expect state="ask" by="desk" on="touch"/>': 'desk is in "ride" then',
@@ -175,6 +179,8 @@ MISTAKES = {
     '<expect by="desk"/>': ("missing-attribute", "does not say what"),
     '<expect says="x" by="dusk"/>': ("no-such-name", 'Did you mean "desk"?'),
     '<expect says=""/>': ("bad-value", "is empty"),
+    '<never says=" ... "/>': ("bad-value", 'says "..." is empty: it has no letter and no digit'),
+    '<expect logs="--"/>': ("bad-value", 'logs "--" is empty'),
     '<expect does="speek"/>': ("no-such-name", 'Did you mean "speak"?'),
     '<expect says="x" doing="speek"/>': ("no-such-name", 'Did you mean "speak"?'),
     '<expect does="field"/>': ("no-such-name", 'Did you mean "q-and-a"?'),

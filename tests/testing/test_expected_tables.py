@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from prima import api
-from prima.errors import UsageError
 from prima.testing.golden import difference
 from prima.testing.running import TestOptions, run_one
 from prima.transcript.table import format_rows
@@ -78,5 +77,7 @@ def test_a_table_is_that_of_the_scenarios_own_policy(tmp_path: Path) -> None:
 def test_a_table_that_is_no_text_is_told(tmp_path: Path) -> None:
     path = write(tmp_path, "")
     (tmp_path / "lift.txt").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(UsageError, match="not UTF-8"):
-        run_one(str(path), TestOptions())
+    result = run_one(str(path), TestOptions())
+    assert (result.status, result.golden) == ("failed", "differs")
+    assert result.difference.endswith("lift.txt: not a transcript's table: it is not UTF-8.")
+    assert run_one(str(path), TestOptions(policy="fifo")).golden == "skipped"
