@@ -181,17 +181,12 @@ class _Look:
         """Look for what the code of the document and its root assigns or tests."""
         for page in filter(None, (self.page, self.root)):
             for node in page.root.walk():
-                for names in self.code_of(page, node):
+                codes = [one for name, one in node.attributes.items() if is_code(node, name)]
+                found = list(map(expression_names, codes))
+                found += [self.script(page, node)] if node.key == "script" else []
+                for names in found:
                     self.mentioned.update(_mentions(names.uses))
                     self.asked |= names.asked
-
-    def code_of(self, page: Page, node: Node) -> Iterator[Names]:
-        """The names of each piece of an element's code."""
-        for attribute, code in node.attributes.items():
-            if is_code(node, attribute):
-                yield expression_names(code)
-        if node.key == "script":
-            yield self.script(page, node)
 
     # What is used -----------------------------------------------------------------------------
 
