@@ -53,7 +53,8 @@ UNDECLARED_VARIABLE = Diagnosis(
         "<block> in another, a variable declared only later, and an undeclared member of "
         "document or another scope that is assigned to, or whose own member is read. A "
         "grammar's tag uses a name that no tag of the grammar declares: at run time such an "
-        "answer does not match. A misspelt part of event.data is undefined."
+        "answer does not match. In VoiceXML and in tags, a variable that typeof tests anywhere "
+        "may be missing. A misspelt part of event.data is undefined."
     ),
     rule="VoiceXML 2.0, 5.1",
 )
