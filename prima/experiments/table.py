@@ -59,7 +59,7 @@ OUTCOMES = (
 MEASURES = (
     Column("seconds", "number", "measure", "duration of the run", "s"),
     Column("records", "integer", "measure", "records of the transcript"),
-    Column("collisions", "integer", "measure", "displaced Commands (policy none)"),
+    Column("collisions", "integer", "measure", "devices lost, by loop and device (policy none)"),
     Column("starved", "integer", "measure", "behaviors that waited too long (E4, E6)"),
 )
 MEANINGS = {

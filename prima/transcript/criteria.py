@@ -26,7 +26,7 @@ class Criteria:
     """The effects of a run on units, streams and the channel, and its reaction times."""
 
     units_cut: int = 0
-    """Behaviors that lost a device to another application while they ran."""
+    """Commands that lost a device to another application while they ran."""
     restarts: int = 0
     """Behaviors that gave way because their author allowed it (X2)."""
     broken: int = 0

@@ -47,6 +47,8 @@ class Observer:
         self._seen = False
         self._cut: set[str] = set()
         """Running behaviors that have lost a device."""
+        self._gave_way: set[str] = set()
+        """Behaviors that were interrupted and have neither started again nor ended."""
         self._now = 0.0
         self._events: dict[int, AwaitingEvent] = {}
         """The latest events, by serial number."""
@@ -71,7 +73,7 @@ class Observer:
             del self._waits[next(iter(self._waits))]
 
     def _interrupt(self, record: Entry) -> None:
-        self.found.restarts += 1
+        self._gave_way.add(record.behavior.partition(".")[0])
         self._end(record, again=True)
 
     def result(self) -> Criteria:
@@ -95,7 +97,6 @@ class Observer:
         if not record.leaves:
             tree.topics.add(record.behavior)
         self._of[record.behavior] = tree
-        tree.asks = tree.asks or record.command == "q-and-a"
 
     def _forget(self, name: str) -> None:
         """Drop a stream that is over, or one of too many."""
@@ -109,6 +110,10 @@ class Observer:
         if tree is None:
             return
         request = tree.pending.get(name, record)
+        tree.asks = tree.asks or request.command == "q-and-a"
+        if name in self._gave_way:
+            self._gave_way.remove(name)
+            self.found.restarts += 1
         if record.cause is not None and record.cause in self._events:
             self._react(tree, record.cause, self._events[record.cause])
         if record.reactive:
@@ -190,10 +195,8 @@ class Observer:
             self.found.broken += 1
             self.broken_since = tree.since
         tree.broken_by = ""
-        if speaks:
-            tree.spoken, tree.spoken_into = True, False
-        elif broken:
-            tree.spoken = False
+        if speaks or broken:
+            tree.spoken, tree.spoken_into = speaks, False
 
     def _react(self, tree: PerceivedStream, serial: int, event: AwaitingEvent) -> None:
         """An application starts something in reaction to an event: the first time counts."""
@@ -237,8 +240,9 @@ class Observer:
         if speaks and other.spoken and not other.spoken_into:
             self._speak_into(other, tree)
         idle = not other.running and not tree.running
+        first = not other.broken_by or (other.by_reaction and tree.reacting < 0)
         # A stream that only has to drive away has no topic to break.
-        if other.topics and idle and not other.broken_by:
+        if other.topics and idle and first:
             other.broken_by, other.since = tree.app, self._now
             other.by_reaction = tree.reacting >= 0
             other.reacting = -1.0  # its continuation does not count as a reaction any more
@@ -282,6 +286,7 @@ class Observer:
             tree.topics.discard(name)
             del self._of[name]
             self._cut.discard(name)
+            self._gave_way.discard(name)
 
     def _event(self, record: Entry, name: str) -> None:
         if name in ("human.found", "human.lost"):
@@ -289,7 +294,7 @@ class Observer:
         event = AwaitingEvent(name, self._now)
         if record.serial:
             self._events[record.serial] = event
-            if len(self._events) > MOST_EVENTS:
+            if len(self._events) > MOST_EVENTS + 1:
                 del self._events[next(iter(self._events))]
         for kind in ("reply.", "error.service."):
             service = name.removeprefix(kind)

@@ -46,7 +46,7 @@ class PerceivedStream:
     reacting: float = -1.0
     """When its latest reaction started, if no other application has entered since; else below 0."""
     asks: bool = False
-    """Whether it has asked or will ask the user something."""
+    """Whether it has asked the user something."""
     faced: bool | None = None
     """Whether robot and user faced each other at its first word, if that has been said."""
 

@@ -1,4 +1,4 @@
-"""Measures of records that no short run has."""
+"""Measures of records, made up one by one."""
 
 from __future__ import annotations
 
@@ -47,3 +47,72 @@ def test_an_answer_exactly_three_seconds_after_a_timeout_is_late(end: float, cou
         *question("fa", 1, 1.4, end, "filled"),
     ]
     assert observe(records).misanswered == count
+
+
+def records_of(
+    app: str, number: int, phases: dict[str, float], command: str = "speak", **more: Any
+) -> list[Record]:
+    """The records of a Command, by phase and time; a text makes it speak."""
+    common: dict[str, Any] = {
+        "actor": "robot",
+        "app": app,
+        "behavior": f"{app}#{number}",
+        "tree": f"{app}:1",
+        "command": command,
+        "devices": ["speaker"] if "text" in more else ["neck"],
+    }
+    return [{"time": at, "phase": phase, **common, **more} for phase, at in phases.items()]
+
+
+def in_time(*commands: list[Record]) -> list[Record]:
+    return sorted((one for records in commands for one in records), key=lambda one: one["time"])
+
+
+def whole(begin: float, end: float, requested: float = 0.0) -> dict[str, float]:
+    return {"request": requested, "start": begin, "end": end}
+
+
+@pytest.mark.parametrize(
+    ("later", "count"), [({}, 0), ({"cancel": 5.0}, 0), ({"start": 5.0}, 1)], ids=str
+)
+def test_what_gave_way_counts_when_it_starts_again(later: dict[str, float], count: int) -> None:
+    gave_way = records_of("ea", 1, {"request": 0.0, "start": 0.0, "interrupt": 1.0}, text="One.")
+    assert observe(in_time(gave_way, records_of("ea", 1, later, text="One."))).restarts == count
+
+
+@pytest.mark.parametrize(("phases", "count"), [({"start": 2.0}, 1), ({"cancel": 2.0}, 0)], ids=str)
+def test_who_never_asks_begins_no_conversation(phases: dict[str, float], count: int) -> None:
+    asks = records_of("ea", 2, {"request": 0.0, **phases}, "q-and-a", text="Well?")
+    assert observe(in_time(records_of("ea", 1, whole(0, 1), text="Hi."), asks)).unfaced == count
+
+
+def test_a_reaction_that_came_first_hides_no_break() -> None:
+    topic = [records_of("ea", 1, whole(0, 1), text="1"), records_of("ea", 2, whole(4, 5), text="2")]
+    reaction = records_of("fa", 1, whole(1.3, 2, 1), text="Ouch.", reactive=True, cause=1)
+    other = records_of("third", 1, whole(2.2, 3, 1), text="By the way.")
+    assert observe(in_time(*topic, reaction)).broken == 0
+    assert observe(in_time(*topic, reaction, other)).broken == 1
+
+
+def test_a_break_by_words_and_a_turn_counts_once() -> None:
+    topic = [
+        records_of("ea", 1, whole(0, 1), text="1"),
+        records_of("ea", 2, whole(1, 3), "move-head"),
+        records_of("ea", 3, whole(4.7, 7.9), "face-human"),
+        records_of("ea", 4, whole(7.9, 9), text="2"),
+    ]
+    others = [
+        records_of("fa", 1, whole(1.3, 2), text="I say."),
+        records_of("fa", 2, whole(3.3, 4.7), "turn"),
+    ]
+    assert observe(in_time(*topic, *others)).broken == 1
+
+
+@pytest.mark.parametrize(("between", "count"), [(999, 1), (1000, 1), (1001, 0)])
+def test_a_reaction_counts_after_a_thousand_other_events(between: int, count: int) -> None:
+    common = {"phase": "event", "actor": "user", "event": "touch.head"}
+    events: list[Record] = [
+        {"time": number / 1000, "serial": number, **common} for number in range(1, between + 2)
+    ]
+    reaction = records_of("ea", 1, whole(3, 4, 3), text="Ouch.", reactive=True, cause=1)
+    assert observe(in_time(events, reaction)).reactions == count
