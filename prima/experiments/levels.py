@@ -12,13 +12,16 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from prima.errors import UsageError, did_you_mean
 from prima.language.distributions import MEASURED, RANGE, Distributions, Quantile, written
 from prima.language.values import read_value
 from prima.sim.paths import ScenarioValue
+
+Read = TypeVar("Read")
 
 MOST_LEVELS = 100_000
 """Maximum number of levels of a factor."""
@@ -88,7 +91,7 @@ class _Levels:
         self.count(len(pieces))
         if kind not in MEASURED:
             return Factor(path, kind, self.checked(pieces))
-        if len(pieces) == 1 and (drawn := self.distribution(pieces[0].strip())):
+        if len(pieces) == 1 and (drawn := self.read_by(self.values.read, pieces[0].strip())):
             return Factor(path, kind, (), drawn)
         levels: list[str] = []
         for piece in pieces:
@@ -134,24 +137,16 @@ class _Levels:
             raise self.wrong(f'There is no "{text}" here. {hint}')
         if self.kind not in MEASURED:
             return 0.0
-        return self.measured(text)
+        return self.read_by(self.values.value, text)
 
-    def measured(self, text: str) -> float:
-        try:
-            return self.values.value(text)
-        except ValueError as error:
-            raise self.wrong(str(error)) from None
+    def read_by(self, read: Callable[[str], Read], text: str) -> Read:
+        """A text as a value, a difference or a distribution.
 
-    def step(self, text: str) -> float:
+        Raises:
+            UsageError: it is not one.
+        """
         try:
-            return self.values.difference(text)
-        except ValueError as error:
-            raise self.wrong(str(error)) from None
-
-    def distribution(self, piece: str) -> Quantile | None:
-        """The quantiles of a distribution, if it is one."""
-        try:
-            return self.values.read(piece)
+            return read(text)
         except ValueError as error:
             raise self.wrong(str(error)) from None
 
@@ -163,7 +158,7 @@ class _Levels:
         if match["step"] is None:
             raise self.wrong(f'The range "{piece}" has no step: write {piece}/STEP.')
         low, high = (self.value(match[name].strip()) for name in ("low", "high"))
-        step = self.step(match["step"].strip())
+        step = self.read_by(self.values.difference, match["step"].strip())
         if step <= 0 or low > high:
             why = "its step is not above 0" if low <= high else "it ends before it begins"
             raise self.wrong(f'The range "{piece}" is empty: {why}.')
