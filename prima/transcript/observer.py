@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from prima.messages import Record
 from prima.transcript.criteria import Criteria, ReactionDelay
-from prima.transcript.perceived import AwaitedAnswer, AwaitingEvent, PerceivedStream
+from prima.transcript.perceived import AwaitedAnswer, AwaitingEvent, PerceivedStream, does_speak
 from prima.transcript.record import Entry
 
 LATE_REACTION = 3.0
@@ -110,10 +110,8 @@ class Observer:
         if tree is None:
             return
         request = tree.pending.get(name, record)
-        tree.asks = tree.asks or request.command == "q-and-a"
-        if name in self._gave_way:
-            self._gave_way.remove(name)
-            self.found.restarts += 1
+        self.found.restarts += name in self._gave_way
+        self._gave_way.discard(name)
         if record.cause is not None and record.cause in self._events:
             self._react(tree, record.cause, self._events[record.cause])
         if record.reactive:
@@ -123,14 +121,8 @@ class Observer:
         again = not record.resumed and record.behavior.partition(".")[2] not in ("", "1")
         if not again:
             self._begin(tree, record, request)
-        self._go_on(tree, not again and _speaks(request))
-        tree.begun = True
-        tree.running.add(name)
-        if request.leaves:
-            tree.leaving.add(name)
-        if request.feedback:
-            tree.looping.add(name)
-        tree.engaged = tree.engaged or bool(request.engages)
+        self._go_on(tree, not again and does_speak(request))
+        tree.run(name, request)
 
     def _talk(self, tree: PerceivedStream, record: Entry) -> None:
         """Something is said: a waiting application is noticed, or a conversation begins."""
@@ -141,7 +133,7 @@ class Observer:
 
     def _begin(self, tree: PerceivedStream, record: Entry, request: Entry) -> None:
         """A behavior begins or resumes: note its effects on others, and whether it responds."""
-        speaks = _speaks(request)
+        speaks = does_speak(request)
         self._come_in(tree, speaks)
         if request.leaves:
             self._leave(tree, record.behavior)
@@ -164,7 +156,7 @@ class Observer:
         """An application speaks: note whether it resumes its topic after others, and says so."""
         request = tree.pending.get(record.behavior.partition(".")[0], record)
         marked = request.inserted == RESUMES
-        if tree.talked_over and not marked and not _reacts(tree, request):
+        if tree.talked_over and not marked and not tree.reacts(request):
             self.found.wordless += 1
         tree.has_spoken, tree.talked_over = True, False
         for other in self._trees.values():
@@ -325,19 +317,6 @@ class Observer:
         "collision": _collide,
         "interrupt": _interrupt,
     }
-
-
-def _speaks(request: Entry) -> bool:
-    """Whether an AB says something: a question may only listen, and of a unit its parts speak."""
-    return bool(request.text) and "speaker" in request.devices and request.command != "iu"
-
-
-def _reacts(tree: PerceivedStream, request: Entry) -> bool:
-    """Whether an AB of a stream, or a unit around it, reacts to an event."""
-    around: Entry | None = request
-    while around is not None and around.cause is None:
-        around = tree.pending.get(around.unit)
-    return around is not None
 
 
 def _mean(parts: int, number: int) -> float | None:

@@ -55,6 +55,29 @@ class PerceivedStream:
         """Whether it is a conversation that was begun without the channel."""
         return self.asks and self.faced is False
 
+    def run(self, name: str, request: Entry) -> None:
+        """One of its ABs starts."""
+        self.begun = True
+        self.running.add(name)
+        if request.leaves:
+            self.leaving.add(name)
+        if request.feedback:
+            self.looping.add(name)
+        self.engaged = self.engaged or bool(request.engages)
+        self.asks = self.asks or request.command == "q-and-a"
+
+    def reacts(self, request: Entry) -> bool:
+        """Whether one of its ABs, or a unit around it, reacts to an event."""
+        around: Entry | None = request
+        while around is not None and around.cause is None:
+            around = self.pending.get(around.unit)
+        return around is not None
+
+
+def does_speak(request: Entry) -> bool:
+    """Whether an AB says something: a question may only listen, and of a unit its parts speak."""
+    return bool(request.text) and "speaker" in request.devices and request.command != "iu"
+
 
 @dataclass(slots=True)
 class AwaitedAnswer:
