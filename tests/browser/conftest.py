@@ -52,6 +52,12 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 
 
 @pytest.fixture(scope="session")
+def short_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run of 500 rows, as a file."""
+    return written(tmp_path_factory.mktemp("pages"), "short", make([long_run(500)]))
+
+
+@pytest.fixture(scope="session")
 def long_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run of 5,000 rows, as a file."""
     return written(tmp_path_factory.mktemp("pages"), "long", make([long_run(5000)]))
