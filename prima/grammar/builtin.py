@@ -183,18 +183,30 @@ def _boolean(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
         pressed = {given.get("y", "1"): True, given.get("n", "2"): False}
         return pressed.get(text.strip())
     said = fold(text)
-    answers = (value for value in (True, False) if _answers(value, lang).fullmatch(said))
-    return next(answers, None)
+    return next((value for value in (True, False) if _repeats(_answer(value, lang), said)), None)
+
+
+def _repeats(answer: re.Pattern[str], said: str) -> bool:
+    """Whether an utterance is one or more answers of the same sense, as in "Yes, of course"."""
+    at = 0
+    while found := answer.match(said, at):
+        at = found.end()
+        if at == len(said):
+            return True
+        if said[at] == " ":
+            at += 1
+        elif said[at - 1].isascii():
+            return False
+    return False
 
 
 @lru_cache(32)
-def _answers(value: bool, lang: str) -> re.Pattern[str]:
-    """One or more folded answers of the same sense, as in "Yes, of course"."""
+def _answer(value: bool, lang: str) -> re.Pattern[str]:
+    """A folded answer of one sense; the longest is taken first."""
     words = YES if value else NO
     spoken = [words["en"], words.get(lang, "")] if lang else words.values()
     folded = {fold(one) for one in "|".join(spoken).split("|")} - {""}
-    one = "|".join(map(re.escape, sorted(folded, key=len, reverse=True)))
-    return re.compile(rf"(?>{one})(?:(?: |(?<=[^\x00-\x7f]))(?>{one}))*+")
+    return re.compile("|".join(map(re.escape, sorted(folded, key=len, reverse=True))))
 
 
 def _digits(given: dict[str, str], lang: str, text: str, mode: str) -> Json:

@@ -38,7 +38,7 @@ _SLOT = re.compile(
     rf"(?s)\s*([A-Za-z_]\w*(?:\.[A-Za-z_]\w*){{0,{MOST_PARENTS}}})\s*=(?!=)\s*(.+?)\s*"
 )
 _GSL = re.compile(r"<\s*+([A-Za-z_]\w*+)\s++([^<>]++)>")
-_ALL_GSL = re.compile(rf"(?:\s*+{_GSL.pattern})++\s*+")
+_ALL_GSL = re.compile(rf"(?:\s*+{_GSL.pattern})+\s*+")
 _PIECE = re.compile(rf"{_STRING}|(?P<open>[\[{{(])|(?P<close>[\]}})])|(?P<end>;)|[^\s]|\s+")
 _WORDS = re.compile(r"[^\W\d][\w' -]*")
 _CONSTANTS = {"true", "false", "null", "undefined"}

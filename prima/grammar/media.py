@@ -27,7 +27,7 @@ RIGHT_TYPES: dict[Form, str] = {"XML": "application/srgs+xml", "ABNF": "applicat
 NO_HEADER = "The header of the ABNF form is missing."
 FIRST_LINE = 'Begin with "#ABNF 1.0 UTF-8;" in the first line.'
 _LOOKS = re.compile(
-    r"(?:\s|//[^\n]*\n|/\*.*?\*/)*+(?:#?\s*ABNF\b|(?:public\s|private\s)?\s*\$\w+\s*="
+    r"(?:\s++|//[^\n]*+\n|/\*[^*]*+\*++(?:[^/*][^*]*+\*++)*/)*(?:#?\s*ABNF\b|(?:public\s|private\s)?\s*\$\w+\s*="
     r"|(?:language|mode|root|tag-format|base|lexicon|meta|http-equiv)\s[^;\n]*;)",
     re.DOTALL,
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 BOMS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
-DOCTYPE = re.compile(rb"<!DOCTYPE(?:\"[^\"]*\"|'[^']*'|[^\[>\"'])*+(?:\[.*?\]\s*)?>", re.DOTALL)
+DOCTYPE = re.compile(rb"<!DOCTYPE(?:\"[^\"]*+\"|'[^']*+'|[^\[>\"']++)*(?:\[.*?\]\s*)?>", re.DOTALL)
 PIECES = ((b"<?", b"?>"), (b"<!--", b"-->"))
 """Delimiters of processing instructions and comments."""
 

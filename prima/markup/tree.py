@@ -11,8 +11,8 @@ from itertools import islice
 from prima.errors import Place, Span
 
 MARKUP = re.compile(
-    r"""<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<[!/](?:[^>"']|"[^"]*"|'[^']*')*+>"""
-    r"""|(?P<start><)(?:[^>"']|"[^"]*"|'[^']*')*+>""",
+    r"""<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<[!/](?:[^>"']++|"[^"]*+"|'[^']*+')*>"""
+    r"""|(?P<start><)(?:[^>"']++|"[^"]*+"|'[^']*+')*>""",
     re.DOTALL,
 )
 """A piece of markup of a well-formed document; a start tag has its group."""
