@@ -4,7 +4,8 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
-LOCK := $(BIN)/uv pip compile pyproject.toml --universal --generate-hashes --upgrade --quiet \
+UV := $(BIN)/uv pip install --quiet --python $(BIN)/python
+LOCK := $(BIN)/uv pip compile --universal --generate-hashes --upgrade --quiet \
   --custom-compile-command "make lock"
 # Tests wait for half of their time: for processes, for real time in live runs.
 WORKERS ?= $(shell expr 2 \* $$(getconf _NPROCESSORS_ONLN))
@@ -68,9 +69,10 @@ build: $(VENV)/.dev
 	$(BIN)/python -m release.sbom dist
 
 lock: $(VENV)/.dev
-	$(LOCK) -o release/runtime.txt
-	$(LOCK) $(EXTRAS:%=--extra %) -c release/runtime.txt -o release/dev.txt
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r release/dev.txt
+	$(LOCK) pyproject.toml -o release/runtime.txt
+	$(LOCK) pyproject.toml $(EXTRAS:%=--extra %) -c release/runtime.txt -o release/dev.txt
+	echo uv | $(LOCK) - -c release/dev.txt -o release/uv.txt
+	$(UV) --require-hashes -r release/dev.txt
 	$(BIN)/python -m release.licences
 
 clean:
@@ -85,7 +87,12 @@ $(VENV)/.runtime: pyproject.toml release/runtime.txt | $(BIN)/python
 	$(PIP) --no-deps -e .
 	touch $@
 
-$(VENV)/.dev: pyproject.toml release/dev.txt | $(BIN)/python
-	$(PIP) --require-hashes -r release/dev.txt
-	$(PIP) --no-deps --no-build-isolation -e .
+$(BIN)/uv: release/uv.txt | $(BIN)/python
+	$(PIP) --require-hashes -r release/uv.txt
+	touch $@
+
+# uv installs in a third of pip's time.
+$(VENV)/.dev: pyproject.toml release/dev.txt $(BIN)/uv
+	$(UV) --require-hashes -r release/dev.txt
+	$(UV) --no-deps --no-build-isolation -e .
 	touch $@ $(VENV)/.runtime

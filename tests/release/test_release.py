@@ -93,8 +93,16 @@ def test_continuous_integration_installs_what_is_locked() -> None:
     assert "--no-deps --no-build-isolation -e ." in made
     run = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
     assert {"test", "check", "test-live"} <= set(re.findall(r"\bmake ([a-z-]+)", run))
-    installs = re.findall(r"\$\(PIP\) .*", made)
+    installs = re.findall(r"\$\((?:PIP|UV)\) .*", made)
+    assert len(installs) >= 6
     assert all("--require-hashes" in one or "--no-deps" in one for one in installs)
+
+
+def test_the_installer_is_one_of_what_it_installs() -> None:
+    there = {one.name: (one.version, one.hashes) for one in locked("dev")}
+    installer = locked("uv")
+    assert installer != []
+    assert [one for one in installer if there[one.name] != (one.version, one.hashes)] == []
 
 
 def test_what_security_md_points_to_is_there() -> None:
