@@ -2,43 +2,13 @@
 
 from __future__ import annotations
 
-import re
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests.parties.bench import ROS_HOME, Driven, Process, Visit, in_order
-from tests.parties.checked import checked
-
-HERE = Path(__file__).parent
-ROBOT = HERE / "robot.xml"
-APART_S = 2
-"""How long after another node one may begin."""
-
-
-def made_robot() -> Process:
-    robot = Process("ros2", str(HERE / "robot.py"), **ROS_HOME)
-    robot.expect("ready")
-    return robot
-
-
-def made_again() -> Process:
-    """A robot in the place of one that is gone, once the driver looks for it.
-
-    Two nodes of one machine that begin at the same moment may be given the same port: then one of
-    them never hears anything.
-    """
-    time.sleep(APART_S)
-    return made_robot()
-
-
-@pytest.fixture
-def robot() -> Iterator[Process]:
-    process = made_robot()
-    yield process
-    process.kill()
+from tests.parties.bench import ROS_HOME, Driven, Process
+from tests.parties.ros2.nodes import ROBOT, made_again
 
 
 @pytest.fixture
@@ -217,59 +187,3 @@ def test_a_document_that_does_not_fit_is_told(
         assert told in driver.expect("closed")["error"]
     finally:
         driver.kill()
-
-
-def test_two_applications_run_to_their_end(robot: Process, tmp_path: Path) -> None:
-    visit = Visit("ros2", ROBOT, tmp_path / "visit.jsonl", **ROS_HOME)
-    try:
-        robot.expect("goes")
-        robot.write("touch on")
-        robot.expect("go canceled")
-        robot.expect("turns")
-        robot.expect("stands")
-        robot.expect("goes")
-        robot.expect("go over")
-        rows = visit.rows()
-    finally:
-        visit.kill()
-    parts = ("Topological Move", "touch", "Turn", "ends dodge", "resumes", "ends walk: exit")
-    assert in_order(rows, *parts), rows
-
-
-def test_the_robot_goes_and_comes_back_in_the_midst_of_a_run(
-    robot: Process, tmp_path: Path
-) -> None:
-    visit = Visit("ros2", ROBOT, tmp_path / "visit.jsonl", **ROS_HOME)
-    back: Process | None = None
-    try:
-        robot.expect("goes")
-        robot.kill()
-        visit.until_printed("the robot is lost")
-        back = made_again()
-        visit.until_printed("the robot is back")
-        back.write("touch on")
-        back.expect("says", text="Oh!")
-        rows = visit.rows(code=3)
-    finally:
-        visit.kill()
-        if back is not None:
-            back.kill()
-    fails = ("Topological Move fails", "ends walk: error.device.")
-    parts = (*fails, "Turn", "Oh!", "ends dodge: exit")
-    assert in_order(rows, *parts), rows
-
-
-def test_the_check_before_a_run_tries_to_cancel(robot: Process) -> None:
-    code, lines = checked("ros2", ROBOT, **ROS_HOME)
-    for what in ("topological-move", "set-position", "turn", "say", "listen", "gesture nod"):
-        assert re.match(r"ok .* \d+ ms +\d+ ms$", lines[what]), lines
-    assert "by /emergency" in lines["emergency stop"]
-    robot.expect("go canceled")
-    lacking = {what for what, line in lines.items() if line.startswith("FAILS")}
-    assert code == 3
-    assert "refuses the goal" in lines["gesture hop"]
-    lacking.remove("gesture hop")
-    assert all("no driver carries it out" in lines[what] for what in lacking), lines
-    robot.write("stubborn")
-    _, lines = checked("ros2", ROBOT, **ROS_HOME)
-    assert lines["topological-move"].endswith("stops late: does it heed a cancel?")
