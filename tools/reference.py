@@ -37,6 +37,7 @@ from prima.interpreter import (
     speaking,
     transfers,
 )
+from prima.interpreter.units import ARRANGING
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.interpreter.vocabulary.names import CONTENT, HANDLERS, SPEAKING
 from prima.interpreter.vocabulary.questions import PROPERTIES
@@ -53,7 +54,7 @@ from prima.sim.vocabulary.world import WORLD
 from prima.transcript import lines
 from prima.transcript.phases import PHASES
 from prima.transcript.record import model
-from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
+from prima.voicexml.arranging import UNIT, UNIT_HOLDS
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, VALUES, VOICEXML
 from tools.guests import Guests, OpenVocabulary
 from tools.rnc import make_rnc

@@ -19,6 +19,7 @@ from prima.interpreter.diagnoses import (
     SPEAKS_TOO_LONG,
     TURN_TOO_LONG,
 )
+from prima.interpreter.units import leading
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.language.arguments import (
     alternatives,
@@ -188,7 +189,8 @@ class AttributeReader:
 
     @staticmethod
     def is_now(node: Node) -> bool:
-        """Whether a Command is wanted now."""
+        """Whether a Command is wanted now, or the first one of several (O2)."""
+        node = leading(node)
         row = TABLE_4_2.get(node.tag)
         return node.get("order") == "now" or (row is not None and row.now)
 

@@ -159,9 +159,9 @@ class ContentBuilder(AttributeReader):
         """Commands and units around them as steps."""
         arranged: Flattened[CommandTemplate | GroupTemplate] = arrange(nodes, self.step)
         steps = tuple(StepTemplate(what, after) for what, after in arranged)
-        for one in steps[1:]:
-            if isinstance(one.what, CommandTemplate) and self.is_now(one.what.node):
-                self.problems.append(now_inside(one.what.node))
+        for first in (run_commands((one,))[0].node for one in steps[1:]):
+            if self.is_now(first):
+                self.problems.append(now_inside(first))
         return steps
 
     def step(self, node: Node) -> CommandTemplate | GroupTemplate | None:

@@ -44,6 +44,8 @@ NOW_BEHIND_OTHERS = NOW_INSIDE.says(
 )
 CANNOT_BE_IN_UNIT = NOT_IN_UNIT.says("{why}; it is not allowed in a unit.", "{remedy}")
 
+ARRANGING = ("par", "seq", "iu")
+"""Elements around Commands."""
 LONGEST_UNIT_MS = 60_000
 """The default of ``longest``, a unit's longest duration."""
 QUESTION = "q-and-a"
@@ -129,6 +131,13 @@ def unit_problem(
             f"Name the event as a text, x ? 'this' : 'that', or leave the {iu} with <goto> first."
         )
     return CANNOT_BE_IN_UNIT.at(one.command.node.place, why=message, remedy=remedy)
+
+
+def leading(node: Node) -> Node:
+    """The Command that a ``par``, ``seq`` or ``iu`` begins with, or the Command itself."""
+    while node.tag in ARRANGING and node.nodes:
+        node = node.nodes[0]
+    return node
 
 
 def now_inside(node: Node, prefix: str = "") -> Problem:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from prima.devices.vocabulary.robot import ROBOT
 from prima.devices.vocabulary.services import SERVICES
 from prima.grammar.builtin import TYPES
+from prima.interpreter.units import ARRANGING
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.lsp.scan import ScannedTag, ScannedText
 from prima.markup.vocabulary import (
@@ -19,7 +20,7 @@ from prima.scheduler.policy import BASELINES
 from prima.sim.vocabulary.scenario import SCENARIO
 from prima.sim.vocabulary.user import USER
 from prima.sim.vocabulary.world import WORLD
-from prima.voicexml.arranging import ARRANGING, UNIT, UNIT_HOLDS
+from prima.voicexml.arranging import UNIT, UNIT_HOLDS
 from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, HOLDING, SRGS, VALUES, VOICEXML
 
 _PARTS = ("one-of", "item", "ruleref", "tag", "token")

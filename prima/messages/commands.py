@@ -104,6 +104,11 @@ class Group:
     source: str = ""
     restartable: bool = False
 
+    @property
+    def now(self) -> bool:
+        """Whether the unit is wanted now, as its first Command is (rule O2)."""
+        return bool(self.steps) and self.steps[0].what.now
+
 
 @dataclass(slots=True)
 class Step:

@@ -166,6 +166,13 @@ def group_devices(group: Group, table: Table) -> frozenset[str]:
     return NO_DEVICES.union(*occupied)
 
 
+def occupied_by(what: Command | Group, table: Table) -> frozenset[str]:
+    """The devices that an AB occupies (U1, U4)."""
+    if isinstance(what, Group):
+        return group_devices(what, table)
+    return table[what.type].occupied(what.text)
+
+
 class Maker:
     """Makes ABs and streams, and assigns their names and serial numbers."""
 
@@ -197,13 +204,12 @@ class Maker:
         self.serial += 1
         number = self._behaviors[app.name] = self._behaviors.get(app.name, 0) + 1
         name, serial = f"{app.name}#{number}", self.serial
+        devices = occupied_by(what, self.table)
         if isinstance(what, Group):
-            devices = group_devices(what, self.table)
             made = Behavior(name, serial, app, stream, None, None, devices, now, state)
             made.group, made.inside = what, Inside()
         else:
             row = self.table[what.type]
-            devices = row.occupied(what.text)
             made = Behavior(name, serial, app, stream, row, what, devices, now, state)
             made.motion = row.motion if self.composing and unit is None else ""
         made.run, made.unit = run, unit

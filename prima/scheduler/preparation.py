@@ -112,7 +112,7 @@ def join_first(mediation: Mediation) -> None:
 
 def wanted_now(ab: Behavior) -> bool:
     """O2: whether an AB waits for nothing of its own application."""
-    return ab.command is not None and ab.command.now
+    return ab.what.now
 
 
 def first_of(stream: Stream) -> Behavior | None:

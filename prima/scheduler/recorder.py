@@ -136,5 +136,6 @@ def _asked_by_author(ab: Behavior) -> Record:
     if (command := ab.command) is not None:
         fields["args"], fields["extra"] = command.args or None, command.extra or None
         fields["cues"] = shown_cues(command.cues) if command.cues else None
-        fields["order"] = "now" if command.now else None
+    if ab.what.now and not ab.in_group:  # otherwise its unit is
+        fields["order"] = "now"
     return fields

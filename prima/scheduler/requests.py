@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from prima.messages import NO_DEVICES, Command, LeaveState, Notice, OpenUnit, Request, line_of
+from prima.messages import NO_DEVICES, LeaveState, Notice, OpenUnit, Request, line_of
 from prima.scheduler.admission import (
     CommandRefused,
     check_command,
     check_number,
     check_steps,
     link,
+    occupied_by,
     parent_in,
     substitute,
 )
@@ -38,8 +39,9 @@ def _take_in(mediation: Mediation, app: Application, asked: Request, unit: Behav
     """U3: make ABs of valid Commands in the stream to which they belong."""
     first = asked.steps[0].what
     reaction = asked.cause if unit is None else None
-    if isinstance(first, Command) and first.now:
-        stream, parent = o2(mediation, app, first, reaction, unit), None
+    if first.now:
+        devices = occupied_by(first, mediation.table)
+        stream, parent = o2(mediation, app, devices, reaction, unit), None
     else:
         stream, parent = place(mediation, app, reaction, unit)
     x3(mediation, stream, asked)
@@ -199,17 +201,16 @@ def _at_once(unit: Behavior, devices: frozenset[str]) -> list[Behavior]:
 def o2(
     mediation: Mediation,
     app: Application,
-    command: Command,
+    devices: frozenset[str],
     reaction: int | None,
     unit: Behavior | None,
 ) -> Stream:
-    """O2: cancel this application's trees that need a device of the new Command.
+    """O2: cancel this application's trees that need a device of the new Command or unit.
 
     Returns:
         The stream that goes on: one of those cancelled, or one that is held (X3), though not
         in a window: no event that such a stream waits for has come.
     """
-    devices = mediation.table[command.type].occupied(command.text)
     if unit is not None:
         cancel(mediation, _at_once(unit, devices), devices)
         return unit.stream

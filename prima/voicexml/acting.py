@@ -19,8 +19,9 @@ from prima.interpreter.acts import (
     Text,
     Throw,
 )
+from prima.interpreter.units import ARRANGING
 from prima.markup.tree import Node
-from prima.voicexml.arranging import ARRANGING, type_of
+from prima.voicexml.arranging import type_of
 from prima.voicexml.cues import break_ms
 from prima.voicexml.elements import SILENT
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN

@@ -12,7 +12,14 @@ from prima.errors.diagnoses.reading import TOO_DEEP
 from prima.errors.diagnoses.structure import EMPTY, MISPLACED_ELEMENT, STRAY_TEXT, UNKNOWN_ATTRIBUTE
 from prima.errors.diagnoses.values import BAD_VALUE
 from prima.interpreter.acts import CommandTemplate, arrange
-from prima.interpreter.units import LONGEST_UNIT_MS, Reached, now_inside, unit_problem
+from prima.interpreter.units import (
+    ARRANGING,
+    LONGEST_UNIT_MS,
+    Reached,
+    leading,
+    now_inside,
+    unit_problem,
+)
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.language.values import BadValue, milliseconds, read_value
@@ -21,7 +28,6 @@ from prima.markup.tree import Node
 from prima.messages import Command, Cue, Step
 from prima.voicexml.vocabulary import COMMANDS, HANDLERS, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
-ARRANGING = ("par", "seq", "iu")
 UNIT = "iu-items"
 """The key of a ``p:iu`` around form items (U5), as PRIMA's own language has it."""
 UNIT_ITEMS = ("block", "field", "initial", "record")
@@ -244,7 +250,7 @@ def _fits(child: Node, node: Node, problems: list[Problem]) -> bool:
 
 def _check_now(node: Node, problems: list[Problem]) -> None:
     """O2: a Command that is wanted now waits for nothing, so it must come first."""
-    for command, _ in arrange(node.nodes, lambda one: one)[1:]:
+    for command in (leading(one) for one, _ in arrange(node.nodes, lambda one: one)[1:]):
         row = TABLE_4_2.get(command.tag) if command.namespace == PRIMA_NAMESPACE else None
         if row is not None and row.now:
             problems.append(now_inside(command, "p:"))

@@ -86,6 +86,23 @@ def test_now_inside_content_comes_after_what_stands_before_it() -> None:
     assert bench.saying() == ["There."]
 
 
+@pytest.mark.parametrize("around", ["par", "seq", "iu"])
+def test_what_begins_with_a_command_wanted_now_is_wanted_now(around: str) -> None:
+    bench = Bench(
+        f"""<form id="a">
+          <block><topological-move to="x"/><speak>Here.</speak></block>
+          <on event="touch">
+            <gesture name="nod"/><{around}><stop-moving/><speak>Stopped.</speak></{around}>
+          </on>
+        </form>"""
+    )
+    assert bench.saying() == ["topological-move"]
+    bench.event("touch")
+    bench.finish("gesture")
+    gone = [one["command"] for one in bench.phases("cancel") if one["rule"] == "O2"]
+    assert sorted(gone) == ["speak", "topological-move"]
+
+
 def test_cancelled_content_is_given_up_and_the_form_waits() -> None:
     bench = Bench(
         """<form id="a">

@@ -144,6 +144,30 @@ def test_o2_a_unit_that_runs_on_other_devices_is_finished_whole() -> None:
     assert stage.told("ea") == ["cancel.point-by-hand", "cancel.iu"]
 
 
+def test_o2_a_unit_is_wanted_now_if_its_first_command_is() -> None:
+    stage = Stage()
+    stage.request("ea", move(), cause=EVENT)
+    stage.request("ea", say("Here."))
+    stage.select()
+    inner = Group(chain(command("stop-moving"), say("Stopped.")))
+    stage.at(10).request("ea", Group([Step(inner), *chain(say("Well."))]))
+    assert stage.select()[0] == "ea#3"
+    assert sorted(stage.told("ea")) == ["cancel.speak", "cancel.topological-move"]
+    asked = [one for one in stage.records if one["phase"] == "request" and one.get("order")]
+    assert [one["behavior"] for one in asked] == ["ea#3"]
+
+
+def test_o2_a_unit_cancels_what_needs_any_of_its_devices() -> None:
+    stage = Stage()
+    stage.request("ea", say("One."), cause=EVENT)
+    stage.request("ea", command("point-by-hand", angle=0))
+    stage.select()
+    now = replace(command("point-by-hand", angle=9), now=True)
+    stage.at(10).request("ea", Group(chain(now, say("There."))))
+    stage.select()
+    assert sorted(stage.told("ea")) == ["cancel.point-by-hand", "cancel.speak"]
+
+
 def test_o2_a_unit_that_is_left_ends_with_what_is_cancelled_in_it() -> None:
     stage = Stage()
     stage.open("ea", 1, "speaker")

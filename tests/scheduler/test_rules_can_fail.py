@@ -16,7 +16,7 @@ import pytest
 from prima.interpreter.application import Interpreter
 from prima.interpreter.handling import Handling
 from prima.language.commands import CommandType
-from prima.messages import Command, Data
+from prima.messages import Data
 from prima.scheduler import (
     admission,
     emergency,
@@ -142,7 +142,7 @@ def ended_is_active(patch: pytest.MonkeyPatch) -> None:
 def only_placed(
     mediation: Mediation,
     app: Application,
-    command: Command,
+    devices: frozenset[str],
     reaction: int | None,
     unit: Behavior | None,
 ) -> Stream:

@@ -9,11 +9,12 @@ from prima.errors.diagnoses.names import UNSUPPORTED_COMMAND
 from prima.errors.diagnoses.structure import MISPLACED_ELEMENT, UNKNOWN_ATTRIBUTE, UNKNOWN_ELEMENT
 from prima.errors.diagnoses.values import EXCLUSIVE, NOTHING_TO_SAY
 from prima.interpreter.checks import given_to
+from prima.interpreter.units import ARRANGING
 from prima.language.arguments import excluding_arguments
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.spans import name_spans, similar_attribute, value_span
 from prima.markup.tree import Node
-from prima.voicexml.arranging import ARRANGING, arguments_of, check_arranged
+from prima.voicexml.arranging import arguments_of, check_arranged
 from prima.voicexml.vocabulary import COMMANDS, HOLDING, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
 UNKNOWN_COMMAND = UNKNOWN_ELEMENT.says("PRIMA has no Command <{tag}>.")

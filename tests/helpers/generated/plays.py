@@ -337,6 +337,8 @@ class Author:
         if self.chance(3):
             second = self.one((*PLAIN, NESTED, NESTED, NESTED))
             inside.append(f"<par>{self.one(PLAIN)}{second}</par>")
+        if self.chance(6):
+            inside.insert(0, self.one(NOW[:3]))
         longest = f' longest="{self.some(1, 3000)}ms"' if self.chance(4) else ""
         return self.restart(f"<iu{longest}>{''.join(inside)}</iu>")
 
