@@ -245,9 +245,9 @@ class Executor(Evaluator):
         self.owner.count_output(len(text or ""), template.node)
         args = self.named([*template.args.items()], fiber, template.node)
         extra = self.named(template.extra, fiber, template.node)
-        own = self.owner.arguments.get(template.type, frozenset())
-        for name in [name for name in extra if name in own]:
-            args[name] = extra.pop(name)
+        if template.node.tag == "command":  # which has no attributes for them
+            own = self.owner.arguments.get(template.type, frozenset())
+            args |= {name: extra.pop(name) for name in list(extra) if name in own}
         command = Command(
             template.type,
             args,

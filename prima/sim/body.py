@@ -183,6 +183,8 @@ class Body:
                 effort.ends = now + max(round(angle / self.profile.head_speed * 1000), 1)
             case "point-by-hand":
                 effort.ends = now + POINTING_MS
+                if "toward" in args and self.locomotion.turn_needed(begin.command) is None:
+                    self._refuse_place(now, effort, "arm")
             case "gesture":
                 self._gesture(now, effort, str(args["name"]))
             case other:
@@ -199,7 +201,7 @@ class Body:
         else:
             left = self.locomotion.turn_needed(effort.begin.command)
         if left is None:
-            self._refuse(now, effort, "localization", f'there is no place "{args["toward"]}"')
+            self._refuse_place(now, effort, "localization")
             return
         effort.plan.turn_left = left
         effort.control = partial(self.locomotion.turn, effort.plan)
@@ -210,6 +212,10 @@ class Body:
             self._refuse(now, effort, "arm", f'the robot knows no gesture "{name}"')
         else:
             effort.ends = now + (lasts or 1)
+
+    def _refuse_place(self, now: int, effort: Effort, device: str) -> None:
+        place = effort.begin.command.args["toward"]
+        self._refuse(now, effort, device, f'there is no place "{place}"')
 
     @staticmethod
     def _refuse(now: int, effort: Effort, device: str, why: str) -> None:

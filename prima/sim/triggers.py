@@ -11,7 +11,7 @@ PHASES = {
     "said": ("listening", "end"),
     "doing": ("start",),
     "done": ("end",),
-    "on": ("event",),
+    "on": ("event", "emergency"),
 }
 """The phases of the records that can fire each trigger."""
 
@@ -33,7 +33,14 @@ def fires(trigger: str, what: str, record: Entry, said: str) -> bool:
             return record.first and record.command == what
         case "done":
             return record.outcome != "again" and record.command == what
-    return takes(what, record.event)
+    return takes(what, _event_of(record))
+
+
+def _event_of(record: Entry) -> str:
+    """The event that applications get when a record is made."""
+    if record.phase == "emergency":
+        return f"emergency.{'stop' if record.outcome == 'pressed' else 'release'}"
+    return record.event
 
 
 def holds(what: str, said: str) -> bool:

@@ -41,7 +41,7 @@ MATCHES: dict[str, Callable[[str, Fact], bool]] = {
     "says": lambda word, fact: fact.phase == "start" and holds(word, fact.said),
     "does": lambda word, fact: fact.phase == "start" and fact.record.command == word,
     "finishes": lambda word, fact: fires("done", word, fact.record, fact.said),
-    "event": lambda word, fact: fact.phase == "event" and takes(word, fact.record.event),
+    "event": lambda word, fact: fires("on", word, fact.record, fact.said),
     "logs": lambda word, fact: fact.phase == "log" and fold(word) in fold(fact.record.message),
     "sends": lambda word, fact: (
         fact.phase == "send" and _to(word, str(fact.record.data.get("to") or ""))

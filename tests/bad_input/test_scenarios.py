@@ -151,6 +151,8 @@ NUMBER = '<argument name="n" kind="number" low="5"/>'
         ('<speak>x<param name="voic" value="1"/></speak>', "", 1, 'Did you mean "voice"?'),
         ('<topological-move to="moon"/>', "", 3, 'a: error.device.localization: app.xml:2:21: there is no way to "moon"'),
         ('<gesture name="jump"/>', "", 3, 'the robot knows no gesture "jump"'),
+        ('<point-by-hand toward="moon"/>', "", 3, 'error.device.arm: app.xml:2:21: there is no place "moon"'),
+        ('<turn angle="4"><param name="angle" value="9"/></turn>', "", 1, 'turn has no additional argument "angle". Write it as the attribute angle of <turn>.'),
         ('<turn angle-expr="0/0"/>', "", 3, "error.semantic: app.xml:2:21: angle"),
         ('<turn angle-expr="1/0"/>', "", 3, "error.semantic: app.xml:2:21: angle"),
         ('<turn angle-expr="[]"/>', "", 3, "is not a number"),

@@ -71,6 +71,17 @@ def test_what_a_subdialog_throws_does_not_reach_its_callers_handlers(
     assert len(bench.session.failures) == 1
 
 
+def test_a_param_is_a_variable_of_the_form_that_is_called_alone() -> None:
+    bench = Bench(
+        """<form id="a"><subdialog name="r" src="#sub"><param name="p" expr="5"/></subdialog></form>
+        <form id="sub"><var name="p" expr="1"/><block>
+          <log><value expr="p"/></log><goto next="#more"/></block></form>
+        <form id="more"><var name="p" expr="2"/><block>
+          <log><value expr="p"/></log><return/></block></form>"""
+    )
+    assert bench.logs() == ["5", "2"]
+
+
 def test_a_param_that_fails_is_an_error_of_the_caller() -> None:
     bench = Bench(
         """<var name="no"/>

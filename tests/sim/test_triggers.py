@@ -13,6 +13,7 @@ START = {"phase": "start", "command": "speak", "behavior": "guide#3"}
 END = {"phase": "end", "command": "speak", "behavior": "guide#3", "outcome": "done"}
 HEARD = {"phase": "listening", "behavior": "guide#3"}
 TOUCH = {"phase": "event", "event": "touch.head"}
+PRESSED = {"phase": "emergency", "outcome": "pressed"}
 CASES: list[tuple[str, str, dict[str, Any], bool]] = [
     ("doing", "speak", START, True),
     ("doing", "speak", START | {"behavior": "guide#3.1"}, True),
@@ -34,6 +35,9 @@ CASES: list[tuple[str, str, dict[str, Any], bool]] = [
     ("on", "touch", TOUCH, True),
     ("on", "tou", TOUCH, False),
     ("on", "touch", START, False),
+    ("on", "emergency.stop", PRESSED, True),
+    ("on", "emergency", PRESSED | {"outcome": "released"}, True),
+    ("on", "emergency.stop", PRESSED | {"outcome": "released"}, False),
 ]
 
 

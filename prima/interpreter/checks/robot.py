@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from prima.errors import Problem, few, suggestion
+from prima.errors import Hint, Problem, few, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_ARGUMENT, UNSUPPORTED_COMMAND
 from prima.interpreter.acts import CommandTemplate, GroupTemplate, run_commands
 from prima.interpreter.checks.arguments import given_to
@@ -68,18 +68,21 @@ def _cannot(
 
 def _arguments(command: CommandTemplate, row: CommandType) -> Iterator[Problem]:
     """The problems of arguments of a Command that only a robot's profile defines."""
+    by_params = command.node.tag == "command"  # arguments of others are attributes, checked already
     for name, _ in command.extra:
-        if name not in row.extra and name not in row.arguments:
-            yield _no_argument(command, row, name)
-    if command.node.tag == "command":  # arguments of others are attributes, checked already
+        if name not in row.extra and not (by_params and name in row.arguments):
+            yield _no_argument(command, row, name, by_params)
+    if by_params:
         given = dict(command.extra)
         yield from given_to(command.node, row, given, bool(command.text))
 
 
-def _no_argument(command: CommandTemplate, row: CommandType, name: str) -> Problem:
+def _no_argument(command: CommandTemplate, row: CommandType, name: str, by_params: bool) -> Problem:
     params = [one for one in command.node.all("param") if one.get("name") == name]
     spans = [span for one in params[:1] for span in value_span(one, "name")]
-    hint = suggestion(name, row.extra | set(row.arguments), *spans)
+    hint = suggestion(name, row.extra | set(row.arguments if by_params else ()), *spans)
+    if name in row.arguments and not by_params:
+        hint = Hint(f"Write it as the attribute {name} of <{command.node.tag}>.")
     return NO_ARGUMENT.at(command.node.place, hint, command=command.type, name=name)
 
 
