@@ -263,7 +263,11 @@ class KnownEvents:
             return None if self.dynamic else self._missing(name, service, self.services, wrong)
         if first == "touch" or name.startswith(("error.unsupported.", "error.badfetch.")):
             return None
-        if first in self.services and rest in ANSWERS:
+        device = name.removeprefix("error.device.")
+        if device != name:  # it may be one of the robot's own
+            nearest = slip_of(device, DEVICES)
+            nearest = f"error.device.{nearest}" if nearest else ""
+        elif first in self.services and rest in ANSWERS:
             nearest = f"{ANSWERS[rest]}.{first}"
         else:
             nearest = HABITS.get(name, "") or slip_of(name, self._known)

@@ -71,6 +71,18 @@ def test_the_remedy_for_an_undeclared_variable_can_be_followed(
 
 
 @pytest.mark.parametrize(
+    ("device", "meant"), [("camera", ""), ("gripper", ""), ("speeker", "speaker"), ("arm", "")]
+)
+def test_a_robot_may_have_a_device_of_its_own(device: str, meant: str, tmp_path: Path) -> None:
+    handler = f'<on event="error.device.{device}"><exit/></on>'
+    text = app(f'<form id="m"><block><speak>A</speak></block>{handler}</form>')
+    found = problems(tmp_path, text, "unknown-event")
+    assert [one["remedy"] for one in found] == (
+        [f'Did you mean "error.device.{meant}"?'] if meant else []
+    )
+
+
+@pytest.mark.parametrize(
     ("code", "says"),
     [
         ("event.text", "Write event.data.text."),

@@ -11,7 +11,13 @@ _ASKING = TABLE_4_2["q-and-a"].arguments
 PROPERTIES = {
     item.name: item
     for item in (
-        attribute("timeout", "duration", _ASKING["timeout"].doc),
+        attribute(
+            "timeout",
+            "duration",
+            _ASKING["timeout"].doc,
+            low=_ASKING["timeout"].low,
+            high=_ASKING["timeout"].high,
+        ),
         attribute("bargein", "boolean", _ASKING["bargein"].doc),
         attribute(
             "confidencelevel",
