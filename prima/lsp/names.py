@@ -31,7 +31,8 @@ LONGEST_CODE = 100_000
 class Mark:
     """A name in a text; ``scope`` is the start of the form or grammar in which it is visible.
 
-    ``file`` is the relative path of another document that defines the name.
+    ``file`` is the relative path of another document that defines the name; ``short`` says that
+    it is a property's name as well, as in ``{x}``.
     """
 
     kind: tuple[str, ...]
@@ -42,6 +43,7 @@ class Mark:
     tag: ScannedTag
     scope: int = -1
     file: str = ""
+    short: bool = False
 
     def names(self, other: Mark) -> bool:
         """Whether this and another mark of the same document mean the same thing."""
@@ -153,9 +155,9 @@ def _code(code: str, first: int, tag: ScannedTag) -> Iterator[Mark]:
     home = _home("variable", tag)
     for use in expression_names(code).uses:
         if use.name not in KNOWN:
-            at = first + use.start
+            at, end = first + use.start, first + use.start + len(use.name)
             scope = -1 if use.holder in OF_DOCUMENT else home
-            yield Mark(("variable",), use.name, at, at + len(use.name), False, tag, scope)
+            yield Mark(("variable",), use.name, at, end, False, tag, scope, short=use.short)
 
 
 def _content(code: str) -> str:
@@ -198,7 +200,8 @@ def _script(code: str, tag: ScannedTag) -> Iterator[Mark]:
         if use.holder or name in KNOWN:
             continue
         defines = name in names.declared and name not in defined
-        yield Mark(("variable",), name, at, at + len(name), defines, tag, home)
+        end = at + len(name)
+        yield Mark(("variable",), name, at, end, defines, tag, home, short=use.short)
         defined.add(name)
 
 

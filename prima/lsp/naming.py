@@ -131,8 +131,15 @@ def rename(
     uses = workspace.uses(path, mark)
     if new != mark.name and _is_taken(workspace, [one for one in uses if one.mark.defines], new):
         raise RenameError(f'There is {with_article(kind)} "{new}" already.')
-    edits = [NameEdit(one.path, one.mark.start, one.mark.end, new) for one in uses]
+    edits = [
+        NameEdit(one.path, one.mark.start, one.mark.end, _replacement(one.mark, new)) for one in uses
+    ]
     return sorted(set(edits), key=lambda edit: (edit.path, edit.start)), None
+
+
+def _replacement(mark: Mark, new: str) -> str:
+    """The text in place of a name; the property in ``{x}`` keeps its name."""
+    return f"{mark.name}: {new}" if mark.short else new
 
 
 def _check_new(kind: str, new: str) -> None:

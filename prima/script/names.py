@@ -32,6 +32,8 @@ class Use:
     """Whether it is a scope's member whose own member is read, an error if undefined."""
     part: tuple[int, str] | None = None
     """The offset and name of its member that is used and not called, if any."""
+    short: bool = False
+    """Whether it is a property's name as well: ``{x}`` for ``{x: x}``."""
 
 
 @dataclass(slots=True)
@@ -127,7 +129,8 @@ def _add(
         return
     if how != "change":  # also read there
         part = walk.parts.get(start)
-        made.uses.append(Use(name, start, declares=how == "declare", part=part))
+        declares, short = how == "declare", start in walk.short
+        made.uses.append(Use(name, start, declares=declares, part=part, short=short))
     if home is not None:
         return
     if how == "read" or (how == "write" and not script):

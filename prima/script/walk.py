@@ -72,6 +72,8 @@ class Walk:
         """Offsets of scopes' members whose own members are read."""
         self.called: set[int] = set()
         """Offsets of names that are called."""
+        self.short: set[int] = set()
+        """Offsets of names that are also a property's: ``{x}``."""
         self.parts: dict[int, tuple[int, str]] = {}
         """By the offset of a name, the offset and name of its member that is used, not called."""
         self._methods: set[int] = set()
@@ -86,7 +88,10 @@ class Walk:
 
     def tell(self, node: Node, how: str, scope: CodeScope) -> None:
         """Note a name."""
-        self.found.append((self.code.start(node), self.code.name(node), how, scope))
+        start = self.code.start(node)
+        self.found.append((start, self.code.name(node), how, scope))
+        if node.type.startswith("shorthand_"):
+            self.short.add(start)
 
     def push(self, node: Node | None, scope: CodeScope) -> None:
         """Visit a node in a scope."""

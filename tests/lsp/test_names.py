@@ -26,6 +26,11 @@ SCRIPT = (
     BEGIN + "<script>function twice(x) { return 2 * x; }</script>"
     '<form id="a"><block cond="|twice(1) &gt; 1"/></form></prima>'
 )
+SHORT = (
+    BEGIN + '<var name="|n" expr="1"/><script>const {m, n: o} = {m: {n}}; ({n} = o);'
+    ' const {p = n} = m;</script><form id="a"><block cond="{n}.n"/></form></prima>'
+)
+SHORT_GIVEN = BEGIN + "<script>const {|n} = obj; const {x, y = n} = {x: n, n};</script></prima>"
 RULE = (
     VOICE + '<form id="a"><field name="f"><grammar root="r"><rule id="|r"><item>x</item></rule>'
     '<rule id="s"><ruleref uri="#r"/></rule></grammar></field>'
@@ -39,9 +44,11 @@ RULE = (
         (FORMS, "fa/x.xml", 3, {"#c": 2, 'id="c"': 1}),
         (SCOPES, "fa/x.xml", 5, {'<var name="n"/><form id="a"><var name="c"/>': 1, "document.n": 1, "dialog.c": 1, 'cond="n"': 1}),
         (SCRIPT, "fa/x.xml", 2, {"function c(": 1, "c(1)": 1}),
+        (SHORT, "fa/x.xml", 5, {"{m: {n: c}}": 1, "({n: c} = o)": 1, "{m, n: o}": 1, "{p = c}": 1, 'cond="{n: c}.n"': 1}),
+        (SHORT_GIVEN, "fa/x.xml", 4, {"const {n: c} = obj; const {x, y = c} = {x: c, n: c};": 1}),
         (RULE, "ea/x.vxml", 3, {'root="c"': 1, 'uri="#c"': 1, 'root="r"': 1}),
     ],
-    ids=["form", "variable", "function", "rule"],
+    ids=["form", "variable", "function", "property", "pattern", "rule"],
 )  # fmt: skip
 def test_names_of_a_document(
     editor: Editor, text: str, name: str, uses: int, renamed: dict[str, int]
