@@ -11,8 +11,8 @@ from prima.sim.vocabulary.scenario import NAMING_APPLICATIONS
 class ReferenceUse:
     """The reference in an attribute's value: the kinds of names, and the notation.
 
-    ``how`` is empty, ``#`` (behind a ``#``), ``list`` (several with spaces) or ``uri``
-    (a file, a ``#`` and a name).
+    ``how`` is empty, ``#`` (behind a ``#``), ``list`` (several with spaces), ``uri``
+    (a file, a ``#`` and a name) or ``code``. Variables of a list are code, too: ``document.x``.
     """
 
     kinds: tuple[str, ...]

@@ -141,7 +141,7 @@ def _references(
             if not sign or (path and use.how == "#"):
                 continue
             file, start = path, start + len(path) + 1
-        if use.how == "code":
+        if use.how and use.kinds == ("variable",):
             yield from _code(page.text[start:end], start, tag)
         else:
             name = page.text[start:end]
