@@ -32,7 +32,8 @@ class Mark:
     """A name in a text; ``scope`` is the start of the form or grammar in which it is visible.
 
     ``file`` is the relative path of another document that defines the name; ``short`` says that
-    it is a property's name as well, as in ``{x}``.
+    it is a property's name as well, as in ``{x}``. ``form`` is the start of the form that would
+    come first if it had a variable of the name.
     """
 
     kind: tuple[str, ...]
@@ -44,6 +45,7 @@ class Mark:
     scope: int = -1
     file: str = ""
     short: bool = False
+    form: int | None = None
 
     def names(self, other: Mark) -> bool:
         """Whether this and another mark of the same document mean the same thing."""
@@ -222,7 +224,7 @@ def _scoped(found: list[Mark]) -> list[Mark]:
     """Give names of variables that no form declares the document's scope."""
     own = {(mark.name, mark.scope) for mark in found if mark.defines and "variable" in mark.kind}
     return [
-        replace(mark, scope=-1)
+        replace(mark, scope=-1, form=mark.scope if mark.scope >= 0 else None)
         if mark.kind == ("variable",) and (mark.name, mark.scope) not in own
         else mark
         for mark in found

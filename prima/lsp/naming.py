@@ -129,10 +129,11 @@ def rename(
     kind = next(kind for kind in mark.kind if kind in RENAMED)
     _check_new(kind, new)
     uses = workspace.uses(path, mark)
-    if new != mark.name and _is_taken(workspace, [one for one in uses if one.mark.defines], new):
+    if new != mark.name and _is_taken(workspace, uses, new):
         raise RenameError(f'There is {with_article(kind)} "{new}" already.')
     edits = [
-        NameEdit(one.path, one.mark.start, one.mark.end, _replacement(one.mark, new)) for one in uses
+        NameEdit(one.path, one.mark.start, one.mark.end, _replacement(one.mark, new))
+        for one in uses
     ]
     return sorted(set(edits), key=lambda edit: (edit.path, edit.start)), None
 
@@ -158,13 +159,20 @@ def _check_new(kind: str, new: str) -> None:
         raise RenameError(f'"{new}" is a word of ECMAScript\'s own. Choose another name.')
 
 
-def _is_taken(workspace: Workspace, given: list[FoundName], new: str) -> bool:
-    """Whether a name is already taken where one of some definitions is."""
-    places = {(one.path, one.mark.scope, kind) for one in given for kind in one.mark.kind}
-    for path in {one.path for one in given}:
-        for one in workspace.marks(path):
-            taken = one.defines and one.name == new
-            if taken and any((path, one.scope, kind) in places for kind in one.kind):
+def _is_taken(workspace: Workspace, uses: list[FoundName], new: str) -> bool:
+    """Whether a name is already taken where some uses are, or used where they define it."""
+    given = {
+        (one.path, one.mark.scope, kind)
+        for one in uses
+        if one.mark.defines
+        for kind in one.mark.kind
+    }
+    read = {(one.path, one.mark.form, kind) for one in uses for kind in one.mark.kind}
+    for path in {one.path for one in uses}:
+        for one in (mark for mark in workspace.marks(path) if mark.name == new):
+            defined = {(path, one.scope, kind) for kind in one.kind if one.defines}
+            used = {(path, one.form, kind) for kind in one.kind}
+            if defined & (given | read) or used & given:
                 return True
     return False
 

@@ -109,6 +109,30 @@ def test_a_name_that_is_none_or_taken_is_refused(editor: Editor) -> None:
     editor.close("fa/x.xml")
 
 
+@pytest.mark.parametrize(
+    ("uses", "old", "refused"),
+    [
+        ('cond="n + m"', "n", True),
+        ('cond="n + m"', "m", True),
+        ('cond="document.n + m"', "n", False),
+        ('cond="document.n + m"', "m", False),
+    ],
+)
+def test_a_variable_is_not_renamed_to_one_that_would_hide_it(
+    tmp_path: Path, uses: str, old: str, refused: bool
+) -> None:
+    text = BEGIN + f'<var name="n"/><form id="a"><var name="m"/><block {uses}/></form></prima>'
+    workspace, new = Workspace(), "m" if old == "n" else "n"
+    path = workspace.put((tmp_path / "x.xml").as_uri(), text)
+    assert path is not None
+    where = text.index(f'name="{old}"') + 6
+    if not refused:
+        assert len(naming.rename(workspace, path, where, new)[0]) == 2
+        return
+    with pytest.raises(naming.RenameError, match=f'There is a variable "{new}" already'):
+        naming.rename(workspace, path, where, new)
+
+
 def test_a_place_is_renamed_everywhere(editor: Editor) -> None:
     world = (editor.folder / "worlds/office.xml").read_text(encoding="utf-8")
     where = editor.at("worlds/office.xml", world.replace('id="kidode-room"', 'id="|kidode-room"'))
