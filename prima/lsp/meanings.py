@@ -20,7 +20,7 @@ class ReferenceUse:
 
 
 _FORM, _POINT = ReferenceUse(("form",), "#"), ReferenceUse(("place", "thing"))
-_DIALOG = ReferenceUse(("form",), "uri")
+_DIALOG, _RULE = ReferenceUse(("form",), "uri"), ReferenceUse(("rule",), "uri")
 _VARIABLES = ReferenceUse(("variable",), "list")
 _EXPECTED = {
     "state": ReferenceUse(("form",)),
@@ -84,6 +84,7 @@ REFERS: dict[tuple[str, str, str], ReferenceUse] = {
     **{("dialogue", key, "namelist"): _VARIABLES for key in ("clear", "return", "filled")},
     ("dialogue", "ruleref", "uri"): ReferenceUse(("rule",), "#"),
     ("dialogue", "grammar", "root"): ReferenceUse(("rule",)),
+    ("dialogue", "grammar", "src"): _RULE,
     ("dialogue", "on", "event"): ReferenceUse(("event",), "list"),
     ("dialogue", "topological-move", "to"): ReferenceUse(("place",)),
     **{
@@ -124,8 +125,9 @@ REFERS: dict[tuple[str, str, str], ReferenceUse] = {
         )
     },
     ("voicexml", "catch", "event"): ReferenceUse(("event",), "list"),
-    ("srgs", "ruleref", "uri"): ReferenceUse(("rule",), "uri"),
+    ("srgs", "ruleref", "uri"): _RULE,
     ("voicexml", "grammar", "root"): ReferenceUse(("rule",)),
+    ("voicexml", "grammar", "src"): _RULE,
     ("srgs", "grammar", "root"): ReferenceUse(("rule",)),
 }
 """Attributes that refer to a name, by vocabulary and key of the element."""

@@ -45,6 +45,11 @@ RULE = (
     '<field name="g"><grammar root="r"><rule id="r"/></grammar></field></form></vxml>'
 )
 
+GRAMMAR = (
+    '<grammar xmlns="http://www.w3.org/2001/06/grammar" version="1.0" xml:lang="en" root="r">'
+    '<rule id="r" scope="public">x</rule></grammar>'
+)
+
 
 @pytest.mark.parametrize(
     ("text", "name", "uses", "renamed"),
@@ -194,6 +199,21 @@ def test_definitions_lead_to_other_files(editor: Editor) -> None:
         path = Path(found[0].uri.removeprefix("file://"))
         assert path.name == file
         assert cut(path.read_text(encoding="utf-8"), found[0].range) == words
+
+
+@pytest.mark.parametrize("begin", [BEGIN, VOICE], ids=["prima", "voicexml"])
+def test_a_rule_is_renamed_where_a_document_names_its_file(tmp_path: Path, begin: str) -> None:
+    workspace, rules = Workspace(), tmp_path.resolve() / "cities.grxml"
+    text = begin + '<form id="a"><field name="f"><grammar src="cities.grxml#r"/></field></form>'
+    rules.write_text(GRAMMAR, encoding="utf-8")
+    path = workspace.put((rules.parent / "x.xml").as_uri(), text)
+    assert path is not None
+    where = text.index("#r") + 1
+    at = GRAMMAR.index('id="r"') + 4
+    assert naming.definitions(workspace, path, where) == [naming.NameSpot(rules, at, at + 1)]
+    edits, _ = naming.rename(workspace, rules, at, "k")
+    assert edits == naming.rename(workspace, path, where, "k")[0]
+    assert naming.NameEdit(path, where, where + 1, "k") in edits and len(edits) == 3
 
 
 def test_files_are_found_and_renamed(editor: Editor) -> None:
