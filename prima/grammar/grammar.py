@@ -214,7 +214,8 @@ class Grammar:
         rule = self._document.rules.get(self.root)
         if rule is None:
             message = "This grammar names no root rule, so it takes nothing by itself."
-            remedy = 'Write root="...", or name a rule: grammar.rule("...").'
+            root = '"root $name;"' if self._document.form == "ABNF" else 'root="..."'
+            remedy = f'Write {root}, or name a rule: grammar.rule("...").'
             raise refuse(GrammarError, self._where(), "no-root", message, remedy)
         return Reference(f"#{self.root}", self._where, "", self._document, self.root)
 

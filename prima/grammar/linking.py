@@ -201,8 +201,9 @@ class Library:
             note(reference.where, "no-such-rule", f'There is no rule "{name[:80]}" there.', hint)
         elif named and not rule.public and found is not document:
             message = f'The rule "{name}" is private to its grammar.'
-            remedy = f"Refer to {found.uri}" if name == found.root else 'Write scope="public" there'
-            note(reference.where, "private-rule", message, f"{remedy}.")
+            public = f'"public ${name} = ...;"' if found.form == "ABNF" else 'scope="public"'
+            remedy = f"Refer to {found.uri}." if name == found.root else f"Write {public} there."
+            note(reference.where, "private-rule", message, remedy)
             return None
         return rule
 

@@ -158,6 +158,37 @@ def test_references_that_lead_to_no_rule(uri: str, code: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("other", "remedy"),
+    [
+        (ABNF + "$r = a; $p = b;", 'Write "public $p = ...;" there.'),
+        (xml('<rule id="r">a</rule><rule id="p">b</rule>'), 'Write scope="public" there.'),
+    ],
+    ids=["abnf", "xml"],
+)
+def test_a_rule_is_made_public_as_its_form_has_it(other: str, remedy: str) -> None:
+    for text in (ABNF + "$r = $<b#p>;", xml('<rule id="r"><ruleref uri="b#p"/></rule>')):
+        with pytest.raises(GrammarError) as error:
+            load(text, fetch=lambda _: other.encode())
+        assert [problem.remedy for problem in error.value.problems] == [remedy]
+
+
+@pytest.mark.parametrize(
+    ("text", "root"),
+    [
+        ("#ABNF 1.0;\nlanguage en;\n$a = x;", '"root $name;"'),
+        (xml('<rule id="a">x</rule>').replace(' root="r"', ""), 'root="..."'),
+    ],
+    ids=["abnf", "xml"],
+)
+def test_a_root_is_written_as_the_form_has_it(text: str, root: str) -> None:
+    with pytest.raises(GrammarError) as error:
+        load(text).match("x")
+    assert [problem.remedy for problem in error.value.problems] == [
+        f'Write {root}, or name a rule: grammar.rule("...").'
+    ]
+
+
+@pytest.mark.parametrize(
     ("uri", "remedy"),
     [
         ("cities.grxml#FAR", 'Did you mean "far"?'),
