@@ -34,15 +34,19 @@ MAX_DEPTH = 100
 _REPEAT = re.compile(r"<\s*([^/\s]+)\s*(?:/([^/]*)/\s*)?>")
 
 
-def read_abnf(source: Source, document: GrammarDocument, problems: Problems, where: Where) -> None:
+def read_abnf(
+    source: Source, document: GrammarDocument, problems: Problems, where: Where, lenient: bool
+) -> None:
     """Read a text in the ABNF form into a document.
+
+    ``lenient`` warns of a missing language.
 
     Raises:
         GrammarError: the text is not of this form.
     """
     document.where = where
     header = header_end(source)
-    reader = _AbnfReader(source, document, problems)
+    reader = _AbnfReader(source, document, problems, lenient)
     before = _reader.set(reader)
     try:
         _parser().parse(TextSlice(source.text, header, len(source.text)))
@@ -59,10 +63,13 @@ class _AbnfReader:
     the parts of a whole rule of that grammar.
     """
 
-    def __init__(self, source: Source, document: GrammarDocument, problems: Problems) -> None:
+    def __init__(
+        self, source: Source, document: GrammarDocument, problems: Problems, lenient: bool
+    ) -> None:
         self.source = source
         self.document = document
         self.problems = problems
+        self.lenient = lenient
         self.declared: set[str] = set()
         self.root: Token | None = None
         self.depth = 0
@@ -112,10 +119,12 @@ class _AbnfReader:
         self.document.meta[found[1][1:-1]] = found[3][1:-1]
 
     def header(self, found: list[Any]) -> None:
-        if not self.document.lang and self.document.mode == "voice":
+        lang = self.document.lang
+        known = "language" in self.declared or (lang and not self.lenient)
+        if not known and self.document.mode == "voice":
+            tell = self.problems.warn if lang else self.problems.note
             remedy = 'Write "language en-US;" or the like.'
-            where = self.document.where
-            self.problems.note(where, "missing-attribute", "It has no language.", remedy)
+            tell(self.document.where, "missing-attribute", "It has no language.", remedy)
 
     def _once(self, kind: str, token: Token) -> None:
         if kind in self.declared:

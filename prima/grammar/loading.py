@@ -139,7 +139,7 @@ def _element(
         from prima.grammar.abnf import read_abnf
 
         document.form = "ABNF"
-        read_abnf(Inner(node), document, library.problems, where)
+        read_abnf(Inner(node), document, library.problems, where, lenient=False)
     else:
         read_xml(node, document, library.problems, inline=True)
         document.base = ""  # the URI includes it already
@@ -205,14 +205,14 @@ def _document(
         raise GrammarError(too_large(file, len(data)).problems)
     begin = _beginning(data)
     check_known(media, Place(file), begin)
-    document = GrammarDocument(uri, partial(Place, file))
+    document = GrammarDocument(uri, partial(Place, file), lang=lang if lenient else "")
     if begin.startswith("#ABNF") or (media in ABNF_TYPES and not begin.startswith("<")):
         from prima.grammar.abnf import read_abnf
         from prima.grammar.abnfheader import decode_abnf
 
         source = Source(file, decode_abnf(file, data))
         document.form = "ABNF"
-        read_abnf(source, document, library.problems, document.where)
+        read_abnf(source, document, library.problems, document.where, lenient)
         return document
     check_no_text(file, begin)
     try:
@@ -220,7 +220,6 @@ def _document(
     except DocumentError as error:
         raise GrammarError(error.problems) from None
     document.where = partial(node.place_of, "")
-    document.lang = lang if lenient else document.lang
     read_xml(node, document, library.problems, inline=False, lenient=lenient)
     return document
 

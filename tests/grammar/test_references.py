@@ -237,6 +237,23 @@ def test_a_file_without_a_namespace_is_taken_where_that_is_wanted() -> None:
         load(text)
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        ABNF.replace("language en;\n", "") + "$r = a;",
+        xml('<rule id="r">a</rule>').replace(' xml:lang="en"', ""),
+    ],
+    ids=["abnf", "xml"],
+)
+def test_a_file_without_a_language_has_the_given_one_where_that_is_wanted(text: str) -> None:
+    grammar = load(text, lang="fr", lenient=True)
+    assert grammar.match("a") and grammar.lang == "fr"
+    assert [one.code for one in grammar.warnings()] == ["missing-attribute"]
+    with pytest.raises(GrammarError) as error:
+        load(text)
+    assert codes(error) == ["missing-attribute"]
+
+
 def test_documents_without_end() -> None:
     def endless(uri: str) -> bytes:
         number = int(uri.rpartition("/")[2]) + 1
