@@ -199,12 +199,13 @@ def _script(code: str, tag: ScannedTag) -> Iterator[Mark]:
     defined: set[str] = set()
     for use in names.uses:
         name, at = use.name, tag.end + use.start
-        if use.holder or name in KNOWN:
+        if name in KNOWN:
             continue
-        defines = name in names.declared and name not in defined
-        end = at + len(name)
-        yield Mark(("variable",), name, at, end, defines, tag, home, short=use.short)
-        defined.add(name)
+        defines = not use.holder and name in names.declared and name not in defined
+        end, scope = at + len(name), -1 if use.holder in OF_DOCUMENT else home
+        yield Mark(("variable",), name, at, end, defines, tag, scope, short=use.short)
+        if defines:
+            defined.add(name)
 
 
 def _given(page: ScannedText, tag: ScannedTag, attr: Attr) -> Iterator[Mark]:

@@ -31,6 +31,10 @@ SHORT = (
     ' const {p = n} = m;</script><form id="a"><block cond="{n}.n"/></form></prima>'
 )
 SHORT_GIVEN = BEGIN + "<script>const {|n} = obj; const {x, y = n} = {x: n, n};</script></prima>"
+HELD = (
+    BEGIN + '<var name="|n"/><form id="a"><var name="n"/><script>document.n = n; dialog.n = o.n;'
+    " var o = {n: document.n};</script></form></prima>"
+)
 LISTED = (
     BEGIN + '<var name="|n"/><form id="a"><var name="n"/><block><clear namelist="n document.n"/>'
     "</block></form></prima>"
@@ -59,11 +63,12 @@ GRAMMAR = (
         (SCRIPT, "fa/x.xml", 2, {"function c(": 1, "c(1)": 1}),
         (SHORT, "fa/x.xml", 5, {"{m: {n: c}}": 1, "({n: c} = o)": 1, "{m, n: o}": 1, "{p = c}": 1, 'cond="{n: c}.n"': 1}),
         (SHORT_GIVEN, "fa/x.xml", 4, {"const {n: c} = obj; const {x, y = c} = {x: c, n: c};": 1}),
+        (HELD, "fa/x.xml", 3, {"document.c = n; dialog.n = o.n; var o = {n: document.c};": 1}),
         (LISTED, "fa/x.xml", 2, {'<var name="c"/><form': 1, '"n document.c"': 1}),
         (LISTED_IN_VOICE, "ea/x.vxml", 3, {'"document.n dialog.c"': 1, '"application.n c.x"': 1}),
         (RULE, "ea/x.vxml", 3, {'root="c"': 1, 'uri="#c"': 1, 'root="r"': 1}),
     ],
-    ids=["form", "variable", "function", "property", "pattern", "list", "list of VoiceXML", "rule"],
+    ids=["form", "variable", "function", "property", "pattern", "script", "list", "list of VoiceXML", "rule"],
 )  # fmt: skip
 def test_names_of_a_document(
     editor: Editor, text: str, name: str, uses: int, renamed: dict[str, int]
