@@ -32,8 +32,8 @@ class Mark:
     """A name in a text; ``scope`` is the start of the form or grammar in which it is visible.
 
     ``file`` is the relative path of another document that defines the name; ``short`` says that
-    it is a property's name as well, as in ``{x}``. ``form`` is the start of the form that would
-    come first if it had a variable of the name.
+    it is a property's name as well, as in ``{x}``. ``holder`` is the scope that is written before
+    the name. ``nearer`` are the scopes that would come first if they had the name.
     """
 
     kind: tuple[str, ...]
@@ -45,11 +45,12 @@ class Mark:
     scope: int = -1
     file: str = ""
     short: bool = False
-    form: int | None = None
+    holder: str = ""
+    nearer: tuple[int, ...] = ()
 
     def names(self, other: Mark) -> bool:
         """Whether this and another mark of the same document mean the same thing."""
-        return self.scope == other.scope and self.is_like(other)
+        return (self.scope, self.file) == (other.scope, other.file) and self.is_like(other)
 
     def is_like(self, other: Mark) -> bool:
         """Whether this and another mark of different documents may mean the same thing."""
@@ -59,6 +60,12 @@ class Mark:
     def is_state(self) -> bool:
         """Whether it is a form of an application that a scenario's expectation names."""
         return self.kind == ("form",) and self.tag.key in ("expect", "never")
+
+    @property
+    def inherited(self) -> bool:
+        """Whether the leaves of a VoiceXML application may use it, if the document is its root."""
+        own = self.kind == ("variable",) and self.scope < 0 and not self.file
+        return own and self.tag.vocabulary is not None and self.tag.vocabulary.name == "voicexml"
 
     @property
     def shared(self) -> bool:
@@ -74,7 +81,8 @@ def plain(code: str) -> str:
 def marks(page: ScannedText) -> list[Mark]:
     """All names of a page, in the order of the text."""
     found = [mark for tag in page.tags if tag.element for mark in _of_tag(page, tag)]
-    return sorted(_linked(_scoped(found)), key=lambda mark: mark.start)
+    own = list(_linked(_scoped(found)))
+    return sorted(_rooted(page, own), key=lambda mark: mark.start)
 
 
 def _of_tag(page: ScannedText, tag: ScannedTag) -> Iterator[Mark]:
@@ -159,7 +167,17 @@ def _code(code: str, first: int, tag: ScannedTag) -> Iterator[Mark]:
         if use.name not in KNOWN:
             at, end = first + use.start, first + use.start + len(use.name)
             scope = -1 if use.holder in OF_DOCUMENT else home
-            yield Mark(("variable",), use.name, at, end, False, tag, scope, short=use.short)
+            yield Mark(
+                ("variable",),
+                use.name,
+                at,
+                end,
+                False,
+                tag,
+                scope,
+                short=use.short,
+                holder=use.holder,
+            )
 
 
 def _content(code: str) -> str:
@@ -203,7 +221,9 @@ def _script(code: str, tag: ScannedTag) -> Iterator[Mark]:
             continue
         defines = not use.holder and name in names.declared and name not in defined
         end, scope = at + len(name), -1 if use.holder in OF_DOCUMENT else home
-        yield Mark(("variable",), name, at, end, defines, tag, scope, short=use.short)
+        yield Mark(
+            ("variable",), name, at, end, defines, tag, scope, short=use.short, holder=use.holder
+        )
         if defines:
             defined.add(name)
 
@@ -218,18 +238,34 @@ def _given(page: ScannedText, tag: ScannedTag, attr: Attr) -> Iterator[Mark]:
         for start, end in _words(attr, 1):
             defines = tag.vocabulary is DIALOGUE
             name = page.text[start:end]
-            yield Mark(("variable",), name, start, end, defines, tag, form.start)
+            yield Mark(("variable",), name, start, end, defines, tag, form.start, holder="dialog")
 
 
 def _scoped(found: list[Mark]) -> list[Mark]:
     """Give names of variables that no form declares the document's scope."""
     own = {(mark.name, mark.scope) for mark in found if mark.defines and "variable" in mark.kind}
     return [
-        replace(mark, scope=-1, form=mark.scope if mark.scope >= 0 else None)
+        replace(mark, scope=-1, nearer=() if mark.scope < 0 or mark.holder else (mark.scope,))
         if mark.kind == ("variable",) and (mark.name, mark.scope) not in own
         else mark
         for mark in found
     ]
+
+
+def _rooted(page: ScannedText, found: list[Mark]) -> Iterator[Mark]:
+    """The names; those of variables of the application's root with its file (VoiceXML 2.0, 5.1.2)."""
+    file = page.root.get("application").strip() if page.root and dialect(page) == "voicexml" else ""
+    variables = [mark for mark in found if mark.kind == ("variable",) and mark.scope < 0]
+    own = {mark.name for mark in variables if mark.defines}
+    for mark in found:
+        if not file or mark.kind != ("variable",) or mark.scope >= 0:
+            yield mark
+        elif mark.holder == "application":
+            yield replace(mark, file=file)
+        elif mark.holder or mark.name in own:
+            yield mark
+        else:
+            yield replace(mark, file=file, nearer=(*mark.nearer, -1))
 
 
 def mark_at(found: list[Mark], offset: int) -> Mark | None:

@@ -167,12 +167,12 @@ def _is_taken(workspace: Workspace, uses: list[FoundName], new: str) -> bool:
         if one.mark.defines
         for kind in one.mark.kind
     }
-    read = {(one.path, one.mark.form, kind) for one in uses for kind in one.mark.kind}
+    nearer = {(one.path, scope, *one.mark.kind) for one in uses for scope in one.mark.nearer}
     for path in {one.path for one in uses}:
         for one in (mark for mark in workspace.marks(path) if mark.name == new):
             defined = {(path, one.scope, kind) for kind in one.kind if one.defines}
-            used = {(path, one.form, kind) for kind in one.kind}
-            if defined & (given | read) or used & given:
+            used = {(path, scope, *one.kind) for scope in one.nearer}
+            if defined & (given | nearer) or used & given:
                 return True
     return False
 

@@ -222,16 +222,19 @@ class Workspace:
 
     def uses(self, path: Path, mark: Mark, *, all_scenes: bool = True) -> list[FoundName]:
         """All uses of a name, including its definition; or those in scenarios of a document."""
-        if mark.file:
-            return self._elsewhere(path, mark)
+        found = self._elsewhere(path, mark) if mark.file else []
+        if found or (mark.file and "variable" not in mark.kind):
+            return found
         if mark.is_state:
             form = self._form_of(path, mark)
             return self.uses(form.path, form.mark) if form is not None else []
         own = [FoundName(path, one) for one in self.marks(path) if one.names(mark)]
         if mark.shared:
             return own + self._shared(path, mark, all_scenes)
+        if mark.inherited:
+            own += self._from_others(path, mark, mark.name, "application")
         if "form" in mark.kind or "rule" in mark.kind:
-            own += self._from_others(path, mark)
+            own += self._from_others(path, mark, f"#{mark.name}")
         if "form" in mark.kind:
             own += self._expected(path, mark)
         return own
@@ -256,15 +259,15 @@ class Workspace:
         if target is None:
             return []
         own = (one for one in self.marks(target) if one.defines and one.is_like(mark))
-        found = next(own, None)
+        found = next((one for one in own if one.scope < 0 or "variable" not in one.kind), None)
         return self.uses(target, found) if found is not None else []
 
-    def _from_others(self, path: Path, mark: Mark) -> list[FoundName]:
-        """Where other documents go to a dialog of this one."""
+    def _from_others(self, path: Path, mark: Mark, *words: str) -> list[FoundName]:
+        """Where other documents, with some words, name something of this one."""
         found = []
         for other in self.files():
             text = self.text(other)
-            if text is None or f"#{mark.name}" not in text.text:
+            if text is None or not all(word in text.text for word in words):
                 continue
             for one in text.marks:
                 if one.file and one.is_like(mark) and self.target(other, one.file) == path:

@@ -221,6 +221,48 @@ def test_a_rule_is_renamed_where_a_document_names_its_file(tmp_path: Path, begin
     assert naming.NameEdit(path, where, where + 1, "k") in edits and len(edits) == 3
 
 
+def test_a_variable_of_a_root_is_renamed_in_its_leaves(tmp_path: Path) -> None:
+    workspace, folder = Workspace(), tmp_path.resolve()
+    leaf = VOICE.replace("<vxml", '<vxml application="root.vxml"')
+    texts = {
+        "root": VOICE + '<var name="g"/><form><var name="k"/></form></vxml>',
+        "leaf": leaf
+        + '<var name="j"/><form><var name="f"/><block cond="g + application.g"/></form>',
+        "own": leaf + '<var name="g"/><form><block cond="g + application.g + k"/></form>',
+        "other": VOICE + '<form><block cond="g + application.g"/></form>',
+    }
+    paths = {}
+    for name, text in texts.items():
+        made = workspace.put((folder / f"{name}.vxml").as_uri(), text)
+        assert made is not None
+        paths[name] = made
+
+    def renamed(name: str, words: str, new: str) -> list[tuple[str, str]]:
+        edits, _ = naming.rename(workspace, paths[name], texts[name].index(words), new)
+        found = ((one.path.stem, texts[one.path.stem][one.start - 7 : one.end]) for one in edits)
+        return sorted(found)
+
+    everywhere = [
+        ("leaf", ' cond="g'),
+        ("leaf", "cation.g"),
+        ("own", "cation.g"),
+        ("root", ' name="g'),
+    ]
+    assert sorted(renamed("root", 'g"/>', "h")) == sorted(everywhere)
+    assert renamed("leaf", "g + ", "h") == renamed("own", "g + k", "h") == sorted(everywhere)
+    assert renamed("own", 'g"/>', "h") == [("own", ' cond="g'), ("own", ' name="g')]
+    at = texts["root"].index('g"/>')
+    there = naming.definitions(workspace, paths["leaf"], texts["leaf"].index("g + "))
+    assert there == [naming.NameSpot(paths["root"], at, at + 1)]
+    assert naming.definitions(workspace, paths["own"], texts["own"].index('k"/>')) == []
+    for name, words, new in (
+        *(("root", 'g"/>', taken) for taken in "jf"),
+        *(("leaf", f'{old}"/>', "g") for old in "jf"),
+    ):
+        with pytest.raises(naming.RenameError, match=f'a variable "{new}" already'):
+            renamed(name, words, new)
+
+
 def test_files_are_found_and_renamed(editor: Editor) -> None:
     text = SCENE + '<robot at="entrance"/><application src="../fa/fol|low.xml"/></scenario>'
     where = editor.at("scenarios/x.xml", text)
