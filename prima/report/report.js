@@ -679,7 +679,7 @@
     const run = runs[index], why = run.whys[number], [time] = run.rows[number];
     const made = make("div", {});
     made.append(make("h3", {}, changes ? `Why in run ${"AB"[index]}: row ${number}, ${seconds(time)}` : `Why row ${number} came at ${seconds(time)}`));
-    if (why.outside) made.append(make("p", {}, "It came from outside; no rule decided when."));
+    if (why.origin) made.append(make("p", {}, why.origin));
     if (why.source) made.append(make("p", {}, "Requested at ", make("code", {}, why.source), "."));
     if (why.cause !== undefined) {
       made.append(make("p", {}, "It reacts to ", linkTo(index, why.cause, `row ${why.cause}`), ": ", spoken(index, why.cause), "."));
@@ -710,7 +710,7 @@
     if (waits.length) {
       made.append(make("p", {}, "What waits at that moment:"), make("ul", {}, ...waits.map((text) => make("li", {}, text))));
     }
-    if (!why.outside && !why.source && !why.reasons && !waits.length) made.append(make("p", {}, "The transcript holds no decision about it."));
+    if (!why.origin && !why.source && !why.reasons && !waits.length) made.append(make("p", {}, "The transcript holds no decision about it."));
     return made;
   }
 

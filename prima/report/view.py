@@ -17,7 +17,7 @@ from prima.transcript.row import Row, describe
 from prima.transcript.run import Run
 from prima.transcript.spans import base
 from prima.transcript.table import LONGEST_SHOWN
-from prima.transcript.why import Reason, reasons
+from prima.transcript.why import Reason, origin, reasons
 
 if TYPE_CHECKING:
     from prima.api import Transcript
@@ -225,8 +225,8 @@ def _why(
     why: dict[str, Json] = {}
     if row.source:
         why["source"] = _short(row.source)
-    if row.actor != "R":
-        why["outside"] = True
+    if text := origin(row):
+        why["origin"] = shown(text)
     if asked is not None and asked.cause and asked.cause in events:
         why["cause"] = events[asked.cause]
     if explained:

@@ -49,6 +49,8 @@ class Row:
     behavior: str = ""
     source: str = ""
     number: int = 0
+    own: bool = False
+    """Whether the application itself raised the event."""
 
     @property
     def key(self) -> tuple[str, str, str, str]:
@@ -220,7 +222,8 @@ def _event_row(record: Entry, handled: set[int]) -> Row | None:
         return Row(record.time, "R", "", "sees the user", event=True, kind=name)
     letter = {"user": "U", "robot": "R"}.get(record.actor, "E")
     what = _event_text(name, data, letter == "U")
-    return Row(record.time, letter, record.app, what, event=True, kind=name)
+    own = bool(record.app) and not record.inbound
+    return Row(record.time, letter, record.app, what, event=True, kind=name, own=own)
 
 
 def _event_text(name: str, data: Record, by_user: bool) -> str:

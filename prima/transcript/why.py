@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from prima.errors.visible import visible
 from prima.transcript.record import Entry
 from prima.transcript.row import Row
+from prima.transcript.rules import RULES
 from prima.transcript.run import Run
 from prima.transcript.spans import base
 
@@ -28,6 +29,15 @@ class Reason:
 
 def reasons(run: Run, row: Row, most: int = 0) -> list[Reason]:
     """The reasons for a row, in order; with ``most``, only the latest ones of each kind."""
+    found = _recorded(run, row, most)
+    if row.rule and all(one.rule != row.rule for one in found):  # of an end, which needs none
+        meaning = RULES.get(row.rule)
+        found.append(Reason(row.time, f"rule {row.rule}" + (f": {meaning}." if meaning else ".")))
+    return found
+
+
+def _recorded(run: Run, row: Row, most: int) -> list[Reason]:
+    """The reasons that records about a row's AB or its unit give."""
     name = base(row.behavior)
     if not name:
         return []
@@ -46,10 +56,18 @@ def explained(run: Run, row: Row) -> list[str]:
     lines = [f"Row {row.number}, {row.time:.3f} s: " + " ".join(filter(None, (row.app, row.what)))]
     if row.source:
         lines.append(f"Requested at {row.source}.")
-    if row.actor != "R":
-        lines.append("It came from outside; no rule decided its time.")
+    if text := origin(row):
+        lines.append(text)
     lines += [f"{reason.time:.3f} s: {reason.text}" for reason in reasons(run, row)]
     return [visible(line) for line in lines]
+
+
+def origin(row: Row) -> str:
+    """Where an event came from whose time no rule decided; empty for what the robot does."""
+    if row.actor == "R":
+        return ""
+    source = f"{row.app} raised it itself" if row.own else "It came from outside"
+    return f"{source}; no rule decided its time."
 
 
 def _reason(entry: Entry, row: Row) -> Reason | None:

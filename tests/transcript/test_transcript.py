@@ -210,4 +210,4 @@ def test_no_name_or_word_of_a_transcript_begins_a_line_of_its_own() -> None:
     lines = transcript.table(why=True).splitlines()
     assert len(lines) == 2 and "\x1b" not in lines[1]
     assert lines[0].index("Behavior") == lines[1].index('"x 1 s')
-    assert len(api.explain_row(transcript, 0).splitlines()) == 3
+    assert len(api.explain_row(transcript, 0).splitlines()) == 4
