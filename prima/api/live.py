@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from prima.api.rehearsing import Sink, check_numbers, fetcher
-from prima.api.transcripts import Transcript, check_transcripts
+from prima.api.transcripts import Transcript, check_transcripts, outcome_of
 from prima.errors import UsageError
 from prima.language.values import LONGEST_MS
 from prima.loading import Loaded, load_scenario
-from prima.loading.files import paths_of
+from prima.loading.files import check_path, paths_of
 from prima.loading.heads import check_files
 from prima.messages import Record
 
@@ -59,7 +59,8 @@ def replay(transcript: Transcript, scenario: str | Path | Loaded | None = None) 
         transcript.records, cast.documents, robot.commands, robot.absence, transcript.name
     )
     again = list(islice(made, most))
-    return Transcript([finished(record) for record in again], transcript.name)
+    records = [finished(record) for record in again]
+    return Transcript(records, transcript.name, outcome=outcome_of(records))
 
 
 def run_live(
@@ -128,12 +129,14 @@ def run_live(
     from prima.live.visit import LiveSettings
     from prima.transcript.lines import finished, line
 
-    def name(path: str | Path | None) -> str:
-        return "" if path is None else str(path)
+    def name(path: str | Path | None, argument: str) -> str:
+        check_path("" if path is None else path, argument)
+        return str(path or "")
 
     chosen = Chosen(
-        name(robot), name(scenario), name(world),
-        tuple(paths_of(fas)), tuple(paths_of(eas)), tuple(maps), name(services),
+        name(robot, "robot"), name(scenario, "scenario"), name(world, "world"),
+        tuple(paths_of(fas, "fas")), tuple(paths_of(eas, "eas")), tuple(maps),
+        name(services, "services"),
     )  # fmt: skip
     check_numbers(bound=bound)
     check_numbers(0, until=until, late=late)
@@ -141,13 +144,14 @@ def run_live(
     if not 0 < speed <= FASTEST:
         raise UsageError(f"The speed is {speed:g}: write a number above 0, up to {FASTEST:g}.")
     web = fetcher(hosts, len(chosen.fas) + len(chosen.eas) + 1)
-    named = tuple(paths_of(drivers))
+    named = tuple(paths_of(drivers, "drivers"))
     settings = LiveSettings(
         policy, bound, patience, isolate, speed, until, sync, late, redact, named, web
     )
     given = [None if path is None else str(path) for path in (output, resume)]
     visit = prepared(chosen, settings, *given)
-    made = Transcript(list(visit.before) if keep else [], given[0] or given[1] or "")
+    called = given[0] or given[1] or chosen.scenario or chosen.robot
+    made = Transcript(list(visit.before) if keep else [], called)
 
     def take(records: list[Record]) -> None:
         if keep:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -31,13 +31,13 @@ class Transcript:
     """Empty if they were not kept."""
     name: str = ""
     failures: list[str] = field(default_factory=list)
-    """Applications that ended by an error, as ``NAME: ERROR``."""
+    """Applications that ended by an error, as ``NAME: ERROR``; empty after ``read`` and ``replay``."""
     defects: list[Exception] = field(default_factory=list)
-    """Defects of PRIMA that ended applications."""
+    """Defects of PRIMA that ended applications; empty after ``read`` and ``replay``."""
     outcome: str = ""
-    """How the run ended: ``over``, ``quiet``, ``until`` or ``limit``."""
+    """How the run ended: ``over``, ``quiet``, ``until`` or ``limit``; empty if the records are cut off."""
     unfinished: list[str] = field(default_factory=list)
-    """If the run was stopped at ``until``, the activity of each application still running."""
+    """If a rehearsal was stopped at ``until``, the activity of each application still running."""
     cut: str = ""
     """The error in the line at which a partial transcript ends."""
     visits: list[ElementVisit] = field(default_factory=list)
@@ -142,6 +142,12 @@ def ends_early(name: str, seconds: float) -> str:
     return f"{name}: the transcript ends at {seconds:.3f} s, before its run did."
 
 
+def outcome_of(records: Sequence[Record]) -> str:
+    """How a run ended, by its last record; empty if that is not the end of the run."""
+    last = records[-1] if records else {}
+    return str(last.get("outcome", "")) if last.get("phase") == "over" else ""
+
+
 def read(path: str | Path, partial: bool = False) -> Transcript:
     """Read a transcript; with ``partial``, up to its first unreadable line.
 
@@ -150,7 +156,7 @@ def read(path: str | Path, partial: bool = False) -> Transcript:
     """
     cut: list[str] | None = [] if partial else None
     records = list(records_of(path, cut))
-    return Transcript(records, str(path), cut=" ".join(cut or ()))
+    return Transcript(records, str(path), outcome=outcome_of(records), cut=" ".join(cut or ()))
 
 
 def skim(path: str | Path) -> Transcript:
@@ -177,7 +183,9 @@ def skim(path: str | Path) -> Transcript:
             yield entry
 
     rows = rows_of(str(path), entries())
-    return Transcript(kept, str(path), cut=" ".join(cut), measure=measure, made=rows)
+    return Transcript(
+        kept, str(path), outcome=outcome_of(kept), cut=" ".join(cut), measure=measure, made=rows
+    )
 
 
 def records_of(path: str | Path, cut: list[str] | None) -> Iterator[Record]:

@@ -17,6 +17,7 @@ from prima.experiments.studyfile import Level, levels_text, question_of
 from prima.experiments.sweep import Output, Sweep
 from prima.experiments.table import arrow_table
 from prima.language.values import LONGEST_MS
+from prima.loading.files import paths_of
 from prima.messages import Json
 from prima.script.isolated import check_isolation
 
@@ -72,9 +73,9 @@ def sweep(
     if isolate is not None:
         check_isolation(isolate)
     question = question_of(
-        _names(scenarios),
+        paths_of(scenarios, "scenarios"),
         {path: levels_text(levels) for path, levels in (vary or {}).items()},
-        policies=None if policies is None else _names(policies),
+        policies=None if policies is None else _words(policies),
         seeds=seeds,
         design=design,
         runs=runs,
@@ -151,7 +152,5 @@ def _table(made: Sweep, output: str | Path | None, pool: Pool, resume: bool) -> 
     return arrow_table(out.read(), made.columns)
 
 
-def _names(scenarios: str | Path | Iterable[str | Path]) -> tuple[str, ...]:
-    if isinstance(scenarios, str | Path):
-        return (os.fspath(scenarios),)
-    return tuple(os.fspath(one) for one in scenarios)
+def _words(given: str | Iterable[str]) -> tuple[str, ...]:
+    return (given,) if isinstance(given, str) else tuple(given)

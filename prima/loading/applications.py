@@ -82,7 +82,7 @@ def read_native(
 
 
 def load(path: str | Path) -> Document:
-    """Load an application.
+    """Load an application in PRIMA's language.
 
     Raises:
         DocumentError: with all problems, if any is an error.

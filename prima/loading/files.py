@@ -92,11 +92,28 @@ def check_folder(path: str | Path, remedy: str) -> None:
         raise UsageError(f"{path}: cannot be read: it is a folder. {remedy}")
 
 
-def paths_of(given: str | Path | Iterable[str | Path]) -> list[str]:
-    """Paths as texts; one that is given alone is one, and not its letters."""
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        return [str(given)]
-    return [str(path) for path in given]
+def check_path(path: object, argument: str) -> None:
+    """Refuse what is no path, such as bytes.
+
+    Raises:
+        UsageError: it is neither a text nor a path; the argument is named.
+    """
+    if not isinstance(path, str | os.PathLike):
+        raise UsageError(f"{argument}={path!r:.80}: write a path, as a text or a Path.")
+
+
+def paths_of(given: str | Path | Iterable[str | Path], argument: str) -> list[str]:
+    """Paths as texts; one that is given alone is one, and not its letters.
+
+    Raises:
+        UsageError: one is neither a text nor a path; the argument is named.
+    """
+    if isinstance(given, str | bytes) or not isinstance(given, Iterable):
+        given = [given]
+    paths = list(given)
+    for path in paths:
+        check_path(path, argument)
+    return [str(path) for path in paths]
 
 
 def absolute(path: str | Path) -> Path:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from prima.errors import DocumentError, Problem, UsageError
 from prima.loading.applications import read_application
-from prima.loading.files import path_of, paths_of, read_file
+from prima.loading.files import check_path, path_of, paths_of, read_file
 from prima.loading.folders import documents_folder
 from prima.loading.reading import STAGE, other_kind
 from prima.loading.scenarios import Loaded, load_whole, without_ignored
@@ -48,7 +48,9 @@ def stage(
         DocumentError: with the problems of all files, if any is an error.
         UsageError: a file cannot be read, or two of the applications have one id.
     """
-    given = [*zip(repeat("fa"), paths_of(fas)), *zip(repeat("ea"), paths_of(eas))]
+    given = [*zip(repeat("fa"), paths_of(fas, "fas")), *zip(repeat("ea"), paths_of(eas, "eas"))]
+    for name, one in (("world", world), ("robot", robot)):
+        check_path(one or "", name)
     for path in (*(path for _, path in given), *filter(None, (robot, world))):
         read_file(str(path))  # a missing file is a wrong option, not a wrong document
     demo = documents_folder()

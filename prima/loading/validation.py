@@ -45,7 +45,7 @@ def validate(paths: str | Path | Iterable[str | Path], maps: Iterable[str] = ())
     Raises:
         UsageError: a file cannot be read, or a mapping is invalid.
     """
-    named = paths_of(paths)
+    named = paths_of(paths, "paths")
     validation = Validation(mappings(maps, named))
     problems = [problem for path in named for problem in validation.problems(path)]
     return listed(sorted(once([*problems, *validation.ignored()])), LIMITS.problems)

@@ -11,6 +11,7 @@ from prima.markup.tree import Node
 from prima.markup.vocabulary import Vocabulary
 
 APPLICATION, GRAMMAR = "an application", "a grammar"
+NATIVE = "an application in PRIMA's language"
 VOICEXML = "a VoiceXML document"
 DOCUMENTS = {
     "urn:prima:dialogue:1": APPLICATION,
@@ -55,6 +56,8 @@ def _other_document(root: Node, vocabularies: Sequence[Vocabulary]) -> Problem |
     if not own:
         return None
     wanted = one_of(DOCUMENTS.get(one.namespace, VOICEXML) for one in vocabularies)
+    if (own, wanted) == (VOICEXML, APPLICATION):
+        wanted = NATIVE  # as a VoiceXML document is an application, too
     return OTHER_DOCUMENT.at(root.place, Hint(_use(root, own, wanted)), own=own, wanted=wanted)
 
 

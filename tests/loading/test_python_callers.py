@@ -165,3 +165,47 @@ def test_a_loaded_scenario_finds_its_files_from_every_folder(
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
     assert prima.rehearse(loaded, isolate="none").dumps() == made.dumps()
+
+
+@pytest.mark.parametrize(
+    ("call", "argument"),
+    [
+        (lambda: prima.validate(b"x"), "paths"),  # type: ignore[arg-type]
+        (lambda: prima.validate([b"x"]), "paths"),  # type: ignore[list-item]
+        (lambda: prima.stage(b"x", []), "fas"),  # type: ignore[arg-type]
+        (lambda: prima.stage([], b"x"), "eas"),  # type: ignore[arg-type]
+        (lambda: prima.stage(FOLLOW, [], world=b"x"), "world"),  # type: ignore[arg-type]
+        (lambda: prima.stage(FOLLOW, [], robot=b"x"), "robot"),  # type: ignore[arg-type]
+        (lambda: prima.run_live(b"x"), "scenario"),  # type: ignore[arg-type]
+        (lambda: prima.sweep(b"x", workers=1), "scenarios"),  # type: ignore[arg-type]
+    ],
+)
+def test_bytes_are_no_path(call: Callable[[], object], argument: str) -> None:
+    with pytest.raises(prima.UsageError) as caught:
+        call()
+    assert str(caught.value) == f"{argument}=b'x': write a path, as a text or a Path."
+
+
+def test_a_voicexml_document_is_told_from_an_application_in_primas_language() -> None:
+    with pytest.raises(prima.DocumentError) as caught:
+        prima.load(DOCUMENTS / "ea" / "pizza.vxml")
+    told = "This is a VoiceXML document; an application in PRIMA's language is needed here."
+    assert caught.value.problems[0].message == told
+
+
+def test_a_transcript_that_is_read_or_replayed_says_how_its_run_ended(tmp_path: Path) -> None:
+    made = prima.rehearse(SCENARIO)
+    path = tmp_path / "t.jsonl"
+    path.write_text(made.dumps(), encoding="utf-8")
+    assert made.outcome == "quiet"
+    assert prima.read(path).outcome == prima.replay(made, SCENARIO).outcome == made.outcome
+    lines = made.dumps().splitlines(keepends=True)
+    path.write_text("".join(lines[:-1]), encoding="utf-8")
+    assert prima.read(path).outcome == ""
+
+
+def test_records_of_a_live_run_that_were_not_kept_are_named() -> None:
+    made = prima.run_live(SCENARIO, speed=1000, keep=False)
+    with pytest.raises(prima.UsageError) as caught:
+        made.summary()
+    assert str(caught.value) == f"{SCENARIO}: its records were not kept: run it with keep=True."
