@@ -191,25 +191,17 @@ def skim(path: str | Path) -> Transcript:
 def records_of(path: str | Path, cut: list[str] | None) -> Iterator[Record]:
     """A transcript's records one by one; see :func:`read`."""
     from prima.loading.files import at_once, check_folder, check_name
-    from prima.transcript.lines import INCOMPLETE, MAX_LINE, read_lines
+    from prima.transcript.lines import MAX_LINE, read_lines
 
     check_name(path)
-    count = 0
     try:
         check_folder(path, "Name a transcript in it.")
-        with open(path, encoding="utf-8-sig", opener=at_once) as stream:
+        with open(path, encoding="utf-8-sig", errors="surrogateescape", opener=at_once) as stream:
             lines = iter(lambda: stream.readline(MAX_LINE + 2), "")
-            for record in read_lines(str(path), lines, cut):
-                count += 1
-                yield record
+            yield from read_lines(str(path), lines, cut)
     except FileNotFoundError:
         raise MissingFile(path) from None
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
-    except UnicodeDecodeError as error:
-        if cut is None or count == 0 or error.reason != "unexpected end of data":
-            raise UsageError(f"{path}: not a transcript: it is not UTF-8.") from None
-        message = f"the record is cut off within a character; {INCOMPLETE}"
-        cut.append(f"{path}:{count + 1}: {message}")
     except ValueError:
         raise UsageError(f"{path!r} is not a file's name.") from None

@@ -142,7 +142,8 @@ def _closely(text: str) -> Record:
         ValueError: it is not a record.
         RecursionError: its values are nested too deeply.
     """
-    record: Record = json.loads(text, parse_constant=_no_number)
+    text.encode()  # what was not UTF-8 has been read as halves of letters
+    record: Record = json.loads(text, parse_constant=_no_number, parse_int=_integer)
     model().model_validate(record)
     if "\\ud" in text.lower():
         json.dumps(record, ensure_ascii=False).encode()  # half a letter is invalid
@@ -151,6 +152,13 @@ def _closely(text: str) -> Record:
 
 def _no_number(word: str) -> None:
     raise ValueError(f"{word} is not a JSON number")
+
+
+def _integer(digits: str) -> int:
+    try:
+        return int(digits)
+    except ValueError:
+        raise _TooMuch("a number is too large") from None
 
 
 class _Backward(ValueError):
@@ -191,6 +199,10 @@ def _why(error: Exception, text: str, invalid: type[Exception]) -> str:
         return f"{error}."
     if isinstance(error, _Backward):
         return f"{error}; lines have been moved, or are of two transcripts."
+    if isinstance(error, UnicodeEncodeError):
+        if text.endswith("\n") or error.end < len(text):
+            return "not a transcript's record: it is not UTF-8."
+        return f"the record is cut off within a character; {INCOMPLETE}"
     if isinstance(error, invalid):
         first = error.errors()[0]  # type: ignore[attr-defined]
         if first["type"] == "less_than_equal":

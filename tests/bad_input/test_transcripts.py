@@ -31,7 +31,7 @@ from tests.helpers.bad_input import (
 NOT_TRANSCRIPTS: list[Any] = [
     ("empty", b"", "it has no records"),
     ("blank", b"\n\n", "it has no records"),
-    ("binary", bytes(range(256)), "it is not UTF-8"),
+    ("binary", bytes(range(256)), "t.jsonl:1: this is not a line of JSON"),
     ("utf-16", record("run").encode("utf-16"), "it is not UTF-8"),
     ("xml", b"<a/>\n", "t.jsonl:1: this is not a line of JSON"),
     ("foreign", b'{"a":1}\n', "t.jsonl:1: not a transcript's record: time"),
@@ -39,7 +39,7 @@ NOT_TRANSCRIPTS: list[Any] = [
     ("phase", record("zzz").encode(), "t.jsonl:1: not a transcript's record: phase"),
     ("second-line", (record("over") + "x\n").encode(), "t.jsonl:2: this is not a line"),
     ("deep", b"[" * 100_000 + b"\n", "t.jsonl:1: this is not a line of JSON"),
-    ("number", b'{"time":' + b"9" * 5000 + b"}\n", "t.jsonl:1: this is not a line of JSON"),
+    ("number", b'{"time":' + b"9" * 5000 + b"}\n", "t.jsonl:1: a number is too large"),
     ("negative", record("over", time=-1).encode(), "t.jsonl:1: not a transcript's record"),
     ("nan", b'{"time":NaN,"phase":"over","actor":"user"}\n', "t.jsonl:1: this is no"),
     ("field", record("run", colour="red").encode(), "t.jsonl:1: not a transcript's record"),

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from prima import api
+from prima.errors import UsageError
 from tests import ROOT
 from tests.helpers.here import prima
 
@@ -49,6 +50,27 @@ def test_what_stands_before_a_cut_line_is_shown(folder: Path, words: list[str]) 
     assert done.returncode == 2, done.stderr
     assert "t.jsonl:151: the record is cut off" in done.stderr
     assert done.stdout or (folder / "made").stat().st_size
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        (b"t", b"\xff", "not a transcript's record: it is not UTF-8."),
+        (b"{", b'{"serial":' + b"1" * 5000 + b",", "a number is too large."),
+    ],
+)
+def test_a_line_that_was_damaged_is_named_and_those_above_are_read(
+    folder: Path, old: bytes, new: bytes, told: str
+) -> None:
+    whole = (folder / "whole.jsonl").read_bytes().splitlines(keepends=True)
+    damaged = whole[150].replace(old, new, 1)
+    path = folder / "damaged.jsonl"
+    path.write_bytes(b"".join([*whole[:150], damaged, *whole[151:]]))
+    made = api.read(path, partial=True)
+    assert len(made.records) == 150 and made.cut == f"{path}:151: {told}"
+    with pytest.raises(UsageError) as caught:
+        api.read(path)
+    assert str(caught.value) == made.cut
 
 
 @pytest.mark.parametrize("words", COMMANDS.values(), ids=COMMANDS)
