@@ -24,7 +24,7 @@ from prima.devices import loop
 from prima.devices.vocabulary.robot import ROBOT
 from prima.devices.vocabulary.services import SERVICES
 from prima.errors import LONGEST_TEXT, UsageError
-from prima.grammar import builtin, chart
+from prima.grammar import assent, chart
 from prima.grammar.answers import TYPES
 from prima.grammar.types import read
 from prima.handbook import examples
@@ -470,7 +470,7 @@ def _any_language(words: dict[str, str]) -> str:
 ACCEPTED = {
     "boolean": (
         "One or more words of assent, or of refusal: "
-        + "; ".join(_any_language(words) for words in (builtin.YES, builtin.NO)),
+        + "; ".join(_any_language(words) for words in (assent.YES, assent.NO)),
         ("Yes, please.", "OK, sure!", "No, thank you.", "はい"),
     ),
     "number": (

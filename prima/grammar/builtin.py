@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from functools import lru_cache, partial
+from functools import partial
 from typing import TYPE_CHECKING, Literal
 from urllib.parse import unquote
 
 from prima.grammar import dates
+from prima.grammar.assent import assent
 from prima.grammar.model import BuiltIn
 from prima.grammar.numbers import cardinal, dialled, digits, number
 from prima.grammar.text import AROUND, fold, wide
@@ -19,26 +20,6 @@ from prima.grammar.text import AROUND, fold, wide
 if TYPE_CHECKING:
     from prima.messages import Json
 
-YES = {  # by language; without one, all count
-    "en": "yes|yeah|yep|yup|yes i do|yes you may|yes it is|yes sir|yes maam|yes thats right|sure"
-    "|of course|ok|okay|correct|right|thats right|thats correct|that is right|that is correct"
-    "|true|affirmative|absolutely|definitely|certainly|uh huh|i do|it is",
-    "ja": "はい|ええ|うん|そうです|はいそうです|お願いします|もちろん|いいよ|いいですよ|オーケー",
-    "fr": "oui|ouais|volontiers|avec plaisir|daccord|bien sûr",
-    "de": "ja|ja gern|ja gerne|gern|gerne|jawohl|klar|ja klar|genau|natürlich|richtig|stimmt",
-    "es": "sí|si|claro|por supuesto",
-    "it": "sì|si|certo|volentieri",
-}
-NO = {
-    "en": "no|nope|nah|no i dont|no i do not|no it isnt|no it is not|no sir"
-    "|no maam|not now|wrong|incorrect|thats wrong|thats not right|false|negative|no way|not really"
-    "|of course not|i dont|it isnt|never",
-    "ja": "いいえ|いえ|いや|ううん|違います|いいえ違います|結構です|いいえ結構です|だめ|ダメ|嫌",
-    "fr": "non",
-    "de": "nein|nee|falsch",
-    "es": "no",
-    "it": "no",
-}
 CURRENCIES = {
     "$": "USD", "dollar": "USD", "dollars": "USD", "buck": "USD", "bucks": "USD",
     "€": "EUR", "euro": "EUR", "euros": "EUR", "£": "GBP", "pound": "GBP", "pounds": "GBP",
@@ -182,31 +163,7 @@ def _boolean(given: dict[str, str], lang: str, text: str, mode: str) -> Json:
     if mode == "dtmf":
         pressed = {given.get("y", "1"): True, given.get("n", "2"): False}
         return pressed.get(text.strip())
-    said = fold(text)
-    return next((value for value in (True, False) if _repeats(_answer(value, lang), said)), None)
-
-
-def _repeats(answer: re.Pattern[str], said: str) -> bool:
-    """Whether an utterance is one or more answers of the same sense, as in "Yes, of course"."""
-    at = 0
-    while found := answer.match(said, at):
-        at = found.end()
-        if at == len(said):
-            return True
-        if said[at] == " ":
-            at += 1
-        elif said[at - 1].isascii():
-            return False
-    return False
-
-
-@lru_cache(32)
-def _answer(value: bool, lang: str) -> re.Pattern[str]:
-    """A folded answer of one sense; the longest is taken first."""
-    words = YES if value else NO
-    spoken = [words["en"], words.get(lang, "")] if lang else words.values()
-    folded = {fold(one) for one in "|".join(spoken).split("|")} - {""}
-    return re.compile("|".join(map(re.escape, sorted(folded, key=len, reverse=True))))
+    return assent(fold(text), lang)
 
 
 def _digits(given: dict[str, str], lang: str, text: str, mode: str) -> Json:

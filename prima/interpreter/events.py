@@ -116,6 +116,10 @@ def near(word: str, known: Iterable[str]) -> str:
 
 def slip_of(name: str, known: Iterable[str]) -> str:
     """The event whose name another one most likely misspells, or nothing."""
+    device = name.removeprefix("error.device.")
+    if device != name:  # it may be one of the robot's own
+        meant = near(device, DEVICES)
+        return f"error.device.{meant}" if meant else ""
     if found := near(name, known):
         return found
     first, _, rest = name.partition(".")
@@ -263,11 +267,7 @@ class KnownEvents:
             return None if self.dynamic else self._missing(name, service, self.services, wrong)
         if first == "touch" or name.startswith(("error.unsupported.", "error.badfetch.")):
             return None
-        device = name.removeprefix("error.device.")
-        if device != name:  # it may be one of the robot's own
-            nearest = slip_of(device, DEVICES)
-            nearest = f"error.device.{nearest}" if nearest else ""
-        elif first in self.services and rest in ANSWERS:
+        if first in self.services and rest in ANSWERS:
             nearest = f"{ANSWERS[rest]}.{first}"
         else:
             nearest = HABITS.get(name, "") or slip_of(name, self._known)

@@ -56,6 +56,14 @@ class Frame:
         self.document = document
         self.dialog = dialog
 
+    @property
+    def params(self) -> list[str]:
+        """The params of the call, if this is the form that is called and not one it went to."""
+        call = self.called_by
+        if call is None or call.form != self.form.id:
+            return []
+        return [name for name, _ in call.params]
+
     def inside(self, unit: int) -> list[Fiber]:
         """The content that is under way in a unit (U5)."""
         return [one for one in self.fibers if one.unit == unit]

@@ -304,13 +304,8 @@ class States(App["AnyEngine | PythonEngine"]):
         return None
 
     def initialise(self, frame: Frame, fiber: Fiber) -> None:
-        """Declare the form's variables and items (the algorithm's initialisation).
-
-        The params of a call are variables of the form that is called, not of those it goes to.
-        """
-        call = frame.called_by
-        called = call is not None and call.form == frame.form.id
-        given = [name for name, _ in call.params] if call is not None and called else []
+        """Declare the form's variables and items (the algorithm's initialisation)."""
+        given = frame.params
         if given:
             self.engine.unset(frame.dialog, *given)
             self.engine.fill(frame.dialog, frame.given)

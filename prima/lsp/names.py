@@ -62,9 +62,14 @@ class Mark:
         return self.kind == ("form",) and self.tag.key in ("expect", "never")
 
     @property
+    def of_document(self) -> bool:
+        """Whether it is a variable of no form."""
+        return self.kind == ("variable",) and self.scope < 0
+
+    @property
     def inherited(self) -> bool:
         """Whether the leaves of a VoiceXML application may use it, if the document is its root."""
-        own = self.kind == ("variable",) and self.scope < 0 and not self.file
+        own = self.of_document and not self.file
         return own and self.tag.vocabulary is not None and self.tag.vocabulary.name == "voicexml"
 
     @property
@@ -255,10 +260,9 @@ def _scoped(found: list[Mark]) -> list[Mark]:
 def _rooted(page: ScannedText, found: list[Mark]) -> Iterator[Mark]:
     """The names; those of variables of the application's root with its file (VoiceXML 2.0, 5.1.2)."""
     file = page.root.get("application").strip() if page.root and dialect(page) == "voicexml" else ""
-    variables = [mark for mark in found if mark.kind == ("variable",) and mark.scope < 0]
-    own = {mark.name for mark in variables if mark.defines}
+    own = {mark.name for mark in found if mark.of_document and mark.defines}
     for mark in found:
-        if not file or mark.kind != ("variable",) or mark.scope >= 0:
+        if not file or not mark.of_document:
             yield mark
         elif mark.holder == "application":
             yield replace(mark, file=file)

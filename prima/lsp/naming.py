@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from os.path import exists
 from pathlib import Path
@@ -161,20 +162,30 @@ def _check_new(kind: str, new: str) -> None:
 
 def _is_taken(workspace: Workspace, uses: list[FoundName], new: str) -> bool:
     """Whether a name is already taken where some uses are, or used where they define it."""
-    given = {
-        (one.path, one.mark.scope, kind)
-        for one in uses
-        if one.mark.defines
+    named = [
+        FoundName(path, mark)
+        for path in {one.path for one in uses}
+        for mark in workspace.marks(path)
+        if mark.name == new
+    ]
+    given, taken = _defined(uses), _defined(named)
+    return bool(given & (taken | _sought(named)) or taken & _sought(uses))
+
+
+def _defined(names: Iterable[FoundName]) -> set[tuple[Path, int, str]]:
+    """Where names are defined: the file, the scope and the kind."""
+    defining = (one for one in names if one.mark.defines)
+    return {(one.path, one.mark.scope, kind) for one in defining for kind in one.mark.kind}
+
+
+def _sought(names: Iterable[FoundName]) -> set[tuple[Path, int, str]]:
+    """Where names are looked for before the scope that has them."""
+    return {
+        (one.path, scope, kind)
+        for one in names
+        for scope in one.mark.nearer
         for kind in one.mark.kind
     }
-    nearer = {(one.path, scope, *one.mark.kind) for one in uses for scope in one.mark.nearer}
-    for path in {one.path for one in uses}:
-        for one in (mark for mark in workspace.marks(path) if mark.name == new):
-            defined = {(path, one.scope, kind) for kind in one.kind if one.defines}
-            used = {(path, scope, *one.kind) for scope in one.nearer}
-            if defined & (given | nearer) or used & given:
-                return True
-    return False
 
 
 def _move(

@@ -231,13 +231,18 @@ class Workspace:
         own = [FoundName(path, one) for one in self.marks(path) if one.names(mark)]
         if mark.shared:
             return own + self._shared(path, mark, all_scenes)
+        return own + self._beyond(path, mark)
+
+    def _beyond(self, path: Path, mark: Mark) -> list[FoundName]:
+        """Uses in other documents of what only this document defines."""
+        found = []
         if mark.inherited:
-            own += self._from_others(path, mark, mark.name, "application")
+            found += self._from_others(path, mark, mark.name, "application")
         if "form" in mark.kind or "rule" in mark.kind:
-            own += self._from_others(path, mark, f"#{mark.name}")
+            found += self._from_others(path, mark, f"#{mark.name}")
         if "form" in mark.kind:
-            own += self._expected(path, mark)
-        return own
+            found += self._expected(path, mark)
+        return found
 
     def _shared(self, path: Path, mark: Mark, all_scenes: bool) -> list[FoundName]:
         """The uses in documents of a scenario with it, or with one of these that has the name."""

@@ -182,9 +182,7 @@ class Body:
                 angle = abs(float(args["pan"]) - self.world.pan)
                 effort.ends = now + max(round(angle / self.profile.head_speed * 1000), 1)
             case "point-by-hand":
-                effort.ends = now + POINTING_MS
-                if "toward" in args and self.locomotion.turn_needed(begin.command) is None:
-                    self._refuse_place(now, effort, "arm")
+                self._point(now, effort)
             case "gesture":
                 self._gesture(now, effort, str(args["name"]))
             case other:
@@ -205,6 +203,12 @@ class Body:
             return
         effort.plan.turn_left = left
         effort.control = partial(self.locomotion.turn, effort.plan)
+
+    def _point(self, now: int, effort: Effort) -> None:
+        command = effort.begin.command
+        effort.ends = now + POINTING_MS
+        if "toward" in command.args and self.locomotion.turn_needed(command) is None:
+            self._refuse_place(now, effort, "arm")
 
     def _gesture(self, now: int, effort: Effort, name: str) -> None:
         lasts = self.profile.gestures.get(name)

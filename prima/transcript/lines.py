@@ -161,6 +161,12 @@ def _integer(digits: str) -> int:
         raise _TooMuch("a number is too large") from None
 
 
+def _not_utf8(error: UnicodeEncodeError, text: str) -> str:
+    if text.endswith("\n") or error.end < len(text):
+        return "not a transcript's record: it is not UTF-8."
+    return f"the record is cut off within a character; {INCOMPLETE}"
+
+
 class _Backward(ValueError):
     """A record is earlier than the one above it."""
 
@@ -200,9 +206,7 @@ def _why(error: Exception, text: str, invalid: type[Exception]) -> str:
     if isinstance(error, _Backward):
         return f"{error}; lines have been moved, or are of two transcripts."
     if isinstance(error, UnicodeEncodeError):
-        if text.endswith("\n") or error.end < len(text):
-            return "not a transcript's record: it is not UTF-8."
-        return f"the record is cut off within a character; {INCOMPLETE}"
+        return _not_utf8(error, text)
     if isinstance(error, invalid):
         first = error.errors()[0]  # type: ignore[attr-defined]
         if first["type"] == "less_than_equal":

@@ -114,6 +114,7 @@ INSIDE = {
         {"abnferrors", "errors", "text", "numbers"},
         {"media"},
         {"abnfheader", "dates", "model"},
+        {"assent"},
         {"builtin", "chart", "legacy", "prefixes", "values"},
         {"abnf", "ranking", "xmlcheck"},
         {"semantics", "tags", "types", "xmlform"},
