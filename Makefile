@@ -9,6 +9,7 @@ LOCK := $(BIN)/uv pip compile --universal --generate-hashes --upgrade --quiet \
   --custom-compile-command "make lock"
 # Tests wait for half of their time: for processes, for real time in live runs.
 WORKERS ?= $(shell expr 2 \* $$(getconf _NPROCESSORS_ONLN))
+PARTIES := $(wildcard tests/parties/test_*.py tests/parties/*/test_*.py)
 # Without those for robots (naoqi, rosbridge), which tests/parties installs.
 EXTRAS := dev experiments cluster export editor bench reachy
 
@@ -31,7 +32,7 @@ test: $(VENV)/.dev
 # wait, so each file has a worker.
 test-live: $(VENV)/.dev
 	$(BIN)/python -m tools.environments
-	$(BIN)/python -m pytest -n 8 --dist loadfile tests/parties
+	$(BIN)/python -m pytest -n $(words $(PARTIES)) --dist loadfile tests/parties
 
 check: $(VENV)/.dev
 	$(BIN)/ruff format --check .
