@@ -11,7 +11,7 @@ from prima.lsp.meanings import DEFINES, REFERS, SHARED, ReferenceUse
 from prima.lsp.scan import Attr, ScannedTag, ScannedText
 from prima.lsp.tables import is_code
 from prima.script.globals import GLOBALS, RESERVED
-from prima.script.names import expression_names, script_names
+from prima.script.names import Use, expression_names, script_names
 
 ENTITY = re.compile(r"&(?:lt|gt|amp|quot|apos|#[0-9]{1,7}|#x[0-9a-fA-F]{1,6});")
 LETTERS = {"&lt;": "<", "&gt;": ">", "&amp;": "&", "&quot;": '"', "&apos;": "'"}
@@ -170,19 +170,16 @@ def _code(code: str, first: int, tag: ScannedTag) -> Iterator[Mark]:
     home = _home("variable", tag)
     for use in expression_names(code).uses:
         if use.name not in KNOWN:
-            at, end = first + use.start, first + use.start + len(use.name)
-            scope = -1 if use.holder in OF_DOCUMENT else home
-            yield Mark(
-                ("variable",),
-                use.name,
-                at,
-                end,
-                False,
-                tag,
-                scope,
-                short=use.short,
-                holder=use.holder,
-            )
+            yield _variable(use, first, False, tag, home)
+
+
+def _variable(use: Use, first: int, defines: bool, tag: ScannedTag, home: int) -> Mark:
+    """A variable's name in code that begins at ``first``."""
+    start, scope = first + use.start, -1 if use.holder in OF_DOCUMENT else home
+    end = start + len(use.name)
+    return Mark(
+        ("variable",), use.name, start, end, defines, tag, scope, short=use.short, holder=use.holder
+    )
 
 
 def _content(code: str) -> str:
@@ -221,16 +218,12 @@ def _script(code: str, tag: ScannedTag) -> Iterator[Mark]:
     home, names = _home("variable", tag), script_names(inner)
     defined: set[str] = set()
     for use in names.uses:
-        name, at = use.name, tag.end + use.start
-        if name in KNOWN:
+        if use.name in KNOWN:
             continue
-        defines = not use.holder and name in names.declared and name not in defined
-        end, scope = at + len(name), -1 if use.holder in OF_DOCUMENT else home
-        yield Mark(
-            ("variable",), name, at, end, defines, tag, scope, short=use.short, holder=use.holder
-        )
+        defines = not use.holder and use.name in names.declared and use.name not in defined
+        yield _variable(use, tag.end, defines, tag, home)
         if defines:
-            defined.add(name)
+            defined.add(use.name)
 
 
 def _given(page: ScannedText, tag: ScannedTag, attr: Attr) -> Iterator[Mark]:

@@ -225,8 +225,13 @@ def test_five_thousand_rows_stay_usable(
 ) -> None:
     """Ten times as many rows cost at most five times as much: most of them are out of sight."""
     short, long = spent(browser, short_page, 500), spent(browser, long_page, 5000)
-    timed = ("open", "scroll", "play")
-    assert {what: (short[what], long[what]) for what in timed if long[what] > 5 * short[what]} == {}
+    most = {"open": 3, "scroll": 60 * 0.1, "play": 4}  # s: 0.1 s for each step
+    slow = {
+        what: (short[what], long[what])
+        for what, bound in most.items()
+        if long[what] > min(5 * short[what], bound)
+    }
+    assert slow == {}
 
 
 HOSTILE = "</script><script>window.bad=1</script><img src=x onerror='window.bad=1'>\u2028\"'&\u202e"
