@@ -33,14 +33,7 @@ def fires(trigger: str, what: str, record: Entry, said: str) -> bool:
             return record.first and record.command == what
         case "done":
             return record.outcome != "again" and record.command == what
-    return takes(what, _event_of(record))
-
-
-def _event_of(record: Entry) -> str:
-    """The event that applications get when a record is made."""
-    if record.phase == "emergency":
-        return f"emergency.{'stop' if record.outcome == 'pressed' else 'release'}"
-    return record.event
+    return takes(what, record.notice)
 
 
 def holds(what: str, said: str) -> bool:

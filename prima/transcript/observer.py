@@ -280,7 +280,8 @@ class Observer:
             self._cut.discard(name)
             self._gave_way.discard(name)
 
-    def _event(self, record: Entry, name: str) -> None:
+    def _event(self, record: Entry) -> None:
+        name = record.notice
         if name in ("human.found", "human.lost"):
             self._seen = name == "human.found"
         event = AwaitingEvent(name, self._now)
@@ -309,10 +310,8 @@ class Observer:
         "cancel": _end,
         "fail": _fail,
         "stream-end": lambda self, record: self._forget(record.tree),
-        "event": lambda self, record: self._event(record, record.event),
-        "emergency": lambda self, record: self._event(
-            record, f"emergency.{'stop' if record.outcome == 'pressed' else 'release'}"
-        ),
+        "event": _event,
+        "emergency": _event,
         "send": _send,
         "collision": _collide,
         "interrupt": _interrupt,

@@ -51,6 +51,13 @@ class Entry:
         """Whether it is about neither a further loop of a feedback Command nor a resumption."""
         return self.behavior.partition(".")[2] in ("", "1") and not self.resumed
 
+    @property
+    def notice(self) -> str:
+        """The event that applications get; the emergency stop and its release are events, too."""
+        if self.phase == "emergency":
+            return f"emergency.{'stop' if self.outcome == 'pressed' else 'release'}"
+        return self.event
+
     def only(self, names: Iterable[str]) -> Entry:
         """The record with only some of its fields."""
         return Entry({name: self.__dict__[name] for name in names if name in self.__dict__})
