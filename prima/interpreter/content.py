@@ -221,7 +221,7 @@ class Executor(Evaluator):
             fiber.commands = (notice.command.hook if notice.command else None) or ()
             place = notice.command.source if notice.command else ""
             message = f"{place}: {notice.message}" if place else notice.message
-            data = {"command": notice.command.type} if notice.command else {}
+            data = {"command": notice.command.asked} if notice.command else {}
             raise Thrown(notice.event, message, place, data)
         if notice.what == "cancelled":
             raise Abandoned

@@ -158,7 +158,7 @@ class Handling:
         frame, command = self.owner.frame, notice.command
         if frame is None:
             return
-        name = f"{kind}.{command.type if command is not None else 'iu'}"
+        name = f"{kind}.{command.asked if command is not None else 'iu'}"
         event = Event(name, 0, dict(notice.data), reactive=False)
         fiber = Fiber(frame, commands=(command.hook if command is not None else None) or ())
         candidates = self._candidates(frame, fiber, frame.item, name)

@@ -89,6 +89,13 @@ class Command:
     """Pauses, rates and marks of its text."""
     hook: Any = None
     """Data that the application keeps with the Command; nothing else uses it."""
+    replaces: str = ""
+    """The type that its application asked for, if the robot lacks that one (rule X6)."""
+
+    @property
+    def asked(self) -> str:
+        """The type that its application asked for, as in the names of its events."""
+        return self.replaces or self.type
 
     def cued(self, *kinds: str) -> bool:
         """Whether its text has a cue of one of these kinds."""

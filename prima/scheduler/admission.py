@@ -74,14 +74,14 @@ def silence(command: Command) -> float:
     return sum(time for time in times if isinstance(time, int | float))
 
 
-def substitute(steps: list[Step], table: Table) -> list[tuple[Command, str]]:
-    """X6: substitute other Commands for those that the robot lacks; returns the originals."""
+def substitute(steps: list[Step], table: Table) -> list[Command]:
+    """X6: substitute other Commands for those that the robot lacks; returns them."""
     made = []
     for command in commands_of(steps):
         row = table.get(command.type)
         if row is not None and row.substitute:
-            made.append((command, command.type))
-            command.type = row.substitute
+            command.replaces, command.type = command.type, row.substitute
+            made.append(command)
     return made
 
 

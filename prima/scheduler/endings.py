@@ -149,7 +149,7 @@ def cancel(mediation: Mediation, behaviors: list[Behavior], devices: frozenset[s
 def tell_cancelled(mediation: Mediation, ab: Behavior) -> None:
     """Notify an application that one of its ABs was deleted."""
     if ab.run is not None:
-        name = ab.command.type if ab.command else "iu"
+        name = ab.command.asked if ab.command else "iu"
         notice = Notice("cancelled", ab.run.number, ab.command, event=f"cancel.{name}")
         mediation.tell(ab.app, None, notice)
 

@@ -88,7 +88,7 @@ def _notices(ab: Behavior, run: AwaitedRun, last: bool) -> list[Notice]:
     """The notices that an AB has expired and, after the last one, that its request is done."""
     command = ab.command or Command("iu")
     fate: Literal["cancelled", "expired"] = "expired" if run.left or run.begun else "cancelled"
-    notices = [Notice(fate, run.number, command, event=f"expired.{command.type}")]
+    notices = [Notice(fate, run.number, command, event=f"expired.{command.asked}")]
     if last and run.left == 0 and run.begun:
         notices.append(Notice("done", run.number, command))
     return notices

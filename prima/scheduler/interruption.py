@@ -127,7 +127,7 @@ def _tell(mediation: Mediation, ab: Behavior, data: Data) -> None:
     if ab.run is None or ab.state is GONE:  # its state has been left meanwhile (O3)
         return
     command = ab.command or Command("iu")
-    event = f"interrupted.{command.type}"
+    event = f"interrupted.{command.asked}"
     mediation.tell(ab.app, None, Notice("interrupted", ab.run.number, command, data, event))
 
 

@@ -89,13 +89,13 @@ def x6(mediation: Mediation, app: Application, asked: Request) -> None:
     """X6: substitute other Commands for those that the robot lacks."""
     if "x6" not in mediation.policy.extensions:
         return
-    for command, lacking in substitute(asked.steps, mediation.table):
+    for command in substitute(asked.steps, mediation.table):
         mediation.recorder.add(
             "substitute",
             "mediator",
             app=app.name,
             rule="X6",
-            command=lacking,
+            command=command.replaces,
             by=command.type,
             source=line_of(command.source),
         )

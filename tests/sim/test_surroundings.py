@@ -260,6 +260,23 @@ def test_x6_the_same_ea_runs_on_robots_that_differ(tmp_path: Path) -> None:
     assert '"I cannot point."' in said(LASER, "prima")
 
 
+@pytest.mark.parametrize("more", [ARM, LASER])
+def test_x6_events_name_the_command_that_the_document_asks_for(more: str, tmp_path: Path) -> None:
+    inside = '<on event="end.point-by-hand"><speak>There it is.</speak></on>'
+    content = f'<point-by-hand toward="far">{inside}</point-by-hand>'
+    wave = '<on event="wave"><point-by-hand toward="street" order="now"/></on>'
+    outside = '<on event="cancel.point-by-hand"><speak>Not there.</speak></on>'
+    happens = '<when at="100ms"><event name="wave"/></when>'
+
+    def said(*apps: str, happens: str = "") -> list[str]:
+        made = play(tmp_path, *apps, more=more, happens=happens, policy="prima+x6")
+        return [what for what in whats(made) if what.startswith('"')]
+
+    assert said(document("ea", "ea", block(content))) == ['"There it is."']
+    moved = document("fa", "fa", block(content) + wave + outside)
+    assert said(moved, happens=happens) == ['"Not there."']
+
+
 @pytest.mark.parametrize(
     ("more", "message"),
     [
