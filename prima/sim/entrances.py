@@ -41,17 +41,23 @@ class Entrances:
             at, far = self._compared
             if distance(at, here) < far:
                 return []
-        crossed: list[Crossing] = []
-        nearest = inf
-        for area, name in self.offers:
-            inside = area.id in self._inside
-            beyond = area.beyond(here, THRESHOLD if inside else 0.0)
-            if not inside and beyond <= 0.0:
-                self._inside.add(area.id)
-                crossed.append(ApplicationLoaded(name, area.title))
-            elif inside and beyond > 0.0:
-                self._inside.discard(area.id)
-                crossed.append(ApplicationUnloaded(name, area.title))
+        before, now, nearest = self._inside, set[str](), inf
+        for area, _ in self.offers:
+            beyond = area.beyond(here, THRESHOLD if area.id in before else 0.0)
+            if beyond <= 0.0:
+                now.add(area.id)
             nearest = min(nearest, abs(beyond))
-        self._compared = here, nearest - EPSILON
-        return crossed
+        self._compared, self._inside = (here, nearest - EPSILON), now
+        return self._crossings(before, now) if before != now else []
+
+    def _crossings(self, before: set[str], now: set[str]) -> list[Crossing]:
+        """What to load and unload; an application that several areas offer stays in all of them."""
+        had = {name for area, name in self.offers if area.id in before}
+        has = {name for area, name in self.offers if area.id in now}
+        crossed: dict[str, Crossing] = {}
+        for area, name in self.offers:
+            if name not in had and area.id in now:
+                crossed.setdefault(name, ApplicationLoaded(name, area.title))
+            elif name not in has and area.id in before:
+                crossed.setdefault(name, ApplicationUnloaded(name, area.title))
+        return list(crossed.values())

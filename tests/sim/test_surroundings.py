@@ -118,6 +118,30 @@ def test_the_robot_loads_what_an_area_offers_and_unloads_it_on_leaving(tmp_path:
     assert len(names) == len(set(names)), "no name is given out twice"
 
 
+@pytest.mark.parametrize("middle", ["4", "9"], ids=["touching", "overlapping"])
+def test_an_application_runs_on_from_one_of_its_areas_into_another(
+    tmp_path: Path, middle: str
+) -> None:
+    here = f'<area id="here" title="the hall" application="shop.xml" x1="-1" y1="-2" x2="{middle}" y2="2"/>'
+    on = '<area id="on" title="the wing" application="shop.xml" x1="4" y1="-2" x2="11" y2="2"/>'
+    away = form('<on event="out"><topological-move to="far"/><topological-move to="street"/></on>')
+    transcript = play(
+        tmp_path,
+        document("fa", "fa", away),
+        areas=here + on,
+        happens='<when at="8s"><event name="out"/></when>',
+        shop=KEEPER,
+    )
+    crossings = [what for what in whats(transcript) if "shop" in what or "the " in what]
+    assert crossings == [
+        "enters the hall",
+        "starts shop",
+        '"Welcome to the shop."',
+        "leaves the hall",
+        "ends shop: unloaded",
+    ]
+
+
 def test_replay_of_entrances_gives_the_same_bytes(tmp_path: Path) -> None:
     happens = '<when at="8s"><event name="out"/></when>'
     transcript = play(tmp_path, WANDERER, areas=SHOP, happens=happens, shop=KEEPER)
