@@ -235,6 +235,8 @@ class ContentBuilder(AttributeReader):
         """A return."""
         for name in self.names(node):
             self.code(name, node, "namelist")
+        if "event" in node.attributes and "namelist" in node.attributes:
+            self.exclusive(node, "namelist", "event")
         return Return(self.names(node), node.get("event"), node)
 
     def assign(self, node: Node) -> Assign:

@@ -124,12 +124,17 @@ def read_when(draws: Draws, node: Node) -> When:
             'Put into it what happens then, such as <say>Hello.</say> or <touch sensor="head"/>.'
         )
         reader.problem(node, "empty", message, "", remedy)
+    times, count = reader.get(node, "times") or 1, reader.get(node, "count") or 1
+    if trigger == "at" and max(times, count) > 1:
+        name = "count" if count > 1 else "times"
+        message = f"<when> has both at and {name}, but a point in time comes once."
+        reader.problem(node, "exclusive", message, name, f"Remove {name}.")
     return When(
         trigger,
         draws.amount(node, "at") if trigger == "at" else reader.get(node, trigger),
         draws.amount(node, "after"),
-        reader.get(node, "times") or 1,
-        reader.get(node, "count") or 1,
+        times,
+        count,
         [_doing(draws, child) for child in node.nodes if child.key],
         draws.chance(node),
         node.get("person"),
