@@ -129,7 +129,7 @@ class Conductor:
 
     def _loop(self, command: Command) -> int:
         """How long (ms) a loop of a feedback Command takes."""
-        return self.profile.durations.get(command.type, self.profile.loop)
+        return self.profile.lasts(command.type) or self.profile.loop
 
     def _begin(self, task: Task) -> None:
         """Make the goals of an AB: its motion, its text, and the answer it listens for."""

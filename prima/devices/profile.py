@@ -14,10 +14,6 @@ from prima.language.commands import ABSENCE_MS, DEVICES, TABLE_4_2, Argument, Co
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
-POINTING_MS = 1000
-"""How long the robot holds its arm out."""
-BRAKING_MS = 200
-"""How long the robot takes to stop."""
 NAMED = [("device", "name"), ("touch", "sensor"), ("gesture", "name"), ("voice", "lang")]
 """Parts of a profile that are there once each, with the attribute that names them."""
 
@@ -41,13 +37,17 @@ class Profile:
     touch: frozenset[str] = frozenset()
     gestures: dict[str, int] = field(default_factory=dict)
     commands: dict[str, CommandType] = field(default_factory=dict)
-    durations: dict[str, int] = field(default_factory=dict)
     motions: dict[str, Motion] = field(default_factory=dict)
     drivers: list[DriverSettings] = field(default_factory=list)
     warnings: list[Problem] = field(default_factory=list)
     """The warnings about its document."""
     place: Place = field(default_factory=lambda: Place("robot.xml"))
     """The position at which its document begins."""
+
+    def lasts(self, kind: str) -> int:
+        """How long (ms) a Command takes by itself, if that is fixed; else 0."""
+        row = self.commands.get(kind)
+        return row.lasts if row is not None else 0
 
 
 @dataclass(slots=True)
@@ -171,18 +171,15 @@ def _add(reader: Reader, node: Node, rows: dict[str, CommandType], profile: Prof
     if name in rows:
         message = f'There is a Command "{name}" already.'
         reader.problem(node, "duplicate-id", message, "command")
-    rows[name] = _added(reader, node)
+    motion = _motion(reader, node)
+    if motion is not None:
+        profile.motions[name] = motion
+    rows[name] = _added(reader, node, motion)
     lacking = set(node.get("devices").split()) - profile.devices
     if lacking:
         device = min(lacking)
         message = f'"{name}" needs the device "{device}", which the robot lacks.'
         _lacks(reader, node, device, profile, message)
-    profile.durations[name] = max(reader.get(node, "duration") or 1, 1)
-    motion = _motion(reader, node)
-    if motion is not None:
-        profile.motions[name] = motion
-        if "duration" not in node.attributes:
-            profile.durations[name] = motion.duration
 
 
 def _allow(reader: Reader, rows: dict[str, CommandType]) -> None:
@@ -244,7 +241,7 @@ def _motion(reader: Reader, node: Node) -> Motion | None:
     return Motion(steps, reader.get(node, "stray")) if steps else None
 
 
-def _added(reader: Reader, node: Node) -> CommandType:
+def _added(reader: Reader, node: Node, motion: Motion | None) -> CommandType:
     """A Command of the profile's own (thesis 5.3 (6))."""
     arguments = {
         child.get("name"): Argument(
@@ -260,6 +257,9 @@ def _added(reader: Reader, node: Node) -> CommandType:
         low, high = reader.get(child, "low"), reader.get(child, "high")
         if low is not None and high is not None and low > high:
             reader.problem(child, "out-of-range", "low is greater than high.", "low")
+    lasts = reader.get(node, "duration")
+    if motion is not None and "duration" not in node.attributes:
+        lasts = motion.duration
     return CommandType(
         name=node.get("command"),
         title=node.get("title", node.get("command")),
@@ -271,4 +271,5 @@ def _added(reader: Reader, node: Node) -> CommandType:
         text="optional" if reader.get(node, "says") else "none",
         motion="faithful" if node.all("step") else "",
         arguments=arguments,
+        lasts=max(lasts or 1, 1),
     )

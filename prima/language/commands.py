@@ -83,6 +83,8 @@ class CommandType:
     """For a Command that the robot lacks: the one that takes its place (rule X6)."""
     extra: frozenset[str] = frozenset()
     """Additional arguments that the robot's maker offers to an FA (Table 4.1)."""
+    lasts: int = 0
+    """How long (ms) it takes without its speech, or each of its loops; 0 where that varies."""
 
     @property
     def priority(self) -> int:
@@ -103,6 +105,7 @@ def _row(
     marks: str = "",
     effects: str = "",
     text: Literal["none", "optional", "required"] = "none",
+    lasts: int = 0,
     **arguments: Argument,
 ) -> CommandType:
     return CommandType(
@@ -118,6 +121,7 @@ def _row(
         relative="relative" in marks,
         motion="free" if "leaves" in marks else "",
         text=text,
+        lasts=lasts,
         arguments={key.rstrip("_").replace("_", "-"): value for key, value in arguments.items()},
     )
 
@@ -237,6 +241,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 "Stops the body; it is requested now by nature and cancels what the same"
                 " application's streams wanted of the same devices.",
                 marks="now",
+                lasts=200,
             ),
             _row("speak", "Speak", "speaker", "Says its text.", text="required"),
             _row(
@@ -260,6 +265,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 "Point by Hand",
                 "arm",
                 "Points with the hand, toward a place or at an angle to the body.",
+                lasts=1000,
                 angle=Argument(
                     "number", "degrees from the body's front", -180, 180, choice="direction"
                 ),

@@ -52,8 +52,8 @@ class MappedDriver(TaskDriver):
         if turn is not None:
             return abs(turn) / profile.turn_speed
         known = profile.gestures.get(str(command.args.get("name", "")))
-        known = known or profile.durations.get(goal.kind)
-        return None if known is None else known / 1000
+        known = known or profile.lasts(goal.kind)
+        return known / 1000 if known else None
 
     def values(self, goal: Begin) -> dict[str, Json]:
         """Add values that robots need: times in seconds, radians, and quaternions."""

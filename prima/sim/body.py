@@ -8,7 +8,7 @@ from functools import partial
 
 from prima.devices.goals import SAY, Again, Begin, Broke, Cancel, Done, Report, Stand, Stopped
 from prima.devices.goals import Call as Told
-from prima.devices.profile import BRAKING_MS, POINTING_MS, Profile
+from prima.devices.profile import Profile
 from prima.messages import Occurred
 from prima.messages.times import earliest
 from prima.sim.locomotion import Locomotion, LocomotionMemory
@@ -177,7 +177,8 @@ class Body:
                 self.world.drive = (float(args["speed"]), float(args["turn-speed"]))
                 effort.ends = now + int(args["time"])
             case "stop-moving":
-                effort.ends = now + (BRAKING_MS if self.world.drive != STANDING else 1)
+                drives = self.world.drive != STANDING
+                effort.ends = now + (self.profile.lasts(begin.kind) if drives else 1)
             case "move-head":
                 angle = abs(float(args["pan"]) - self.world.pan)
                 effort.ends = now + max(round(angle / self.profile.head_speed * 1000), 1)
@@ -189,7 +190,7 @@ class Body:
                 if other in self.profile.motions:
                     effort.control = partial(self._dance, effort)
                     effort.control()
-                lasts = self.profile.durations.get(other, 1)
+                lasts = self.profile.lasts(other)
                 effort.ends = max(begin.spoken, now + lasts, now + 1)
 
     def _turn(self, now: int, effort: Effort) -> None:
@@ -206,7 +207,7 @@ class Body:
 
     def _point(self, now: int, effort: Effort) -> None:
         command = effort.begin.command
-        effort.ends = now + POINTING_MS
+        effort.ends = now + self.profile.lasts(command.type)
         if "toward" in command.args and self.locomotion.turn_needed(command) is None:
             self._refuse_place(now, effort, "arm")
 
@@ -308,7 +309,7 @@ class Body:
         if kind == "active-sensing-human":
             reached = self._search_on(now, effort)
         else:
-            reached = kind in self.profile.durations or plan.goal
+            reached = bool(self.profile.lasts(kind)) or plan.goal
         if reached:
             return self._end(effort)
         if plan.path is not None and self.locomotion.blocked(plan):

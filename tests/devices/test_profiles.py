@@ -17,4 +17,4 @@ def test_a_duration_is_what_is_written(duration: str, gesture: int) -> None:
     )
     profile = read_robot("r.xml", text.encode())
     assert profile.gestures["nod"] == gesture
-    assert profile.durations["wave"] == max(gesture, 1), "an AB takes an instant"
+    assert profile.lasts("wave") == max(gesture, 1), "an AB takes an instant"

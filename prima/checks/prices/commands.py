@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from prima.checks.prices.model import Price, devices_of
-from prima.devices.profile import BRAKING_MS, POINTING_MS, Profile
+from prima.devices.profile import Profile
 from prima.language.arguments import check_argument
 from prima.language.commands import TABLE_4_2, Argument, CommandType
 from prima.markup.tree import Node
@@ -41,11 +41,7 @@ def command_price(
     if row is None:
         return Price(node, name, frozenset(), 1, unknown)
     devices = row.occupied("x" if speech else None)
-    if row.feedback:
-        moves = profile.durations.get(name, profile.loop)
-    else:
-        moves = max(_motion(row, args, profile), 1)
-    lasts = max(said, moves)
+    lasts = max(said, _motion(row, args, profile), 1)
     return Price(node, name, devices, lasts, unknown, row.leaves, row.engages, row.feedback)
 
 
@@ -96,7 +92,9 @@ def _together(prices: Sequence[Price], afters: Sequence[tuple[int, ...]]) -> int
 def _motion(row: CommandType, args: Mapping[str, Value], profile: Profile) -> int:
     """The longest movement of a Command (ms), by its arguments or their bounds."""
     moves = MOTIONS.get(row.name)
-    return profile.durations.get(row.name, 1) if moves is None else moves(row, args, profile)
+    if moves is not None:
+        return moves(row, args, profile)
+    return row.lasts or (profile.loop if row.feedback else 1)
 
 
 def _turn(row: CommandType, args: Mapping[str, Value], profile: Profile) -> int:
@@ -144,8 +142,6 @@ def _most(argument: Argument, value: Value) -> float:
 
 MOTIONS: Mapping[str, Callable[[CommandType, Mapping[str, Value], Profile], int]] = {
     "speak": lambda *_: 1,
-    "stop-moving": lambda *_: BRAKING_MS,
-    "point-by-hand": lambda *_: POINTING_MS,
     "gesture": _gesture,
     "move-head": _head,
     "pause": _for_a_time,
@@ -156,4 +152,4 @@ MOTIONS: Mapping[str, Callable[[CommandType, Mapping[str, Value], Profile], int]
     "face-human": _face,
     "face-human-and-speak": _face,
 }
-"""The duration (ms) of movements without feedback; others follow from the robot's profile."""
+"""The duration (ms) of movements without feedback that varies."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from prima.devices.goals import Begin
-from prima.devices.profile import POINTING_MS
+from prima.language.commands import TABLE_4_2
 from prima.live.driver import Refused
 from prima.live.drivers.reachy.pose import HeadPose, wrapped
 
@@ -41,7 +41,7 @@ def _point(goal: Begin, at: HeadPose, direction: float | None) -> list[Step]:
     angle = number(goal, "angle") if direction is None else wrapped(direction - at.body)
     side = "left" if angle >= 0 else "right"
     out, back = {side: OUT, "time": 0.5}, {side: getattr(HeadPose(), side), "time": 0.5}
-    return [out, {"time": POINTING_MS / 1000}, back]
+    return [out, {"time": TABLE_4_2["point-by-hand"].lasts / 1000}, back]
 
 
 WAYS: dict[str, Callable[[Begin, HeadPose, float | None], list[Step]]] = {
