@@ -9,6 +9,7 @@ from typing import Any
 from prima.certificate.model import Certificate, Delay, Starving
 from prima.checks.prices import Gap, Price
 from prima.language.commands import PATIENCE_MS
+from prima.transcript.table import pad, width
 
 RESPONSE = "first word or movement towards the user"
 MOST_REASONS = 5
@@ -18,8 +19,10 @@ MOST_REASONS = 5
 def format_certificate(one: Certificate) -> str:
     """A certificate as text."""
     lines = [f"What {one.ea} can do to {one.fa}, on {one.robot}, under the policy prima"]
-    lines += ["", "Devices", f"  both use      {_list(one.both)}"]
-    lines += [f"  {one.fa} alone  {_list(one.only_fa)}", f"  {one.ea} alone  {_list(one.only_ea)}"]
+    who = {"both use": one.both, f"{one.fa} alone": one.only_fa, f"{one.ea} alone": one.only_ea}
+    widest = max(map(width, who))
+    lines += ["", "Devices"]
+    lines += [f"  {pad(name, widest)}  {_list(used)}" for name, used in who.items()]
     lines += _reasons(one.gaps, "not known")
     lines += ["", f"How long reactions of {one.fa} may wait for {one.ea}"]
     lines += _delays(one)

@@ -30,7 +30,8 @@ def width(text: str) -> int:
     return sum(map(columns_of, text))
 
 
-def _pad(text: str, columns: int) -> str:
+def pad(text: str, columns: int) -> str:
+    """A text with spaces after it, up to a number of columns."""
     return text + " " * max(columns - width(text), 0)
 
 
@@ -86,8 +87,8 @@ def shape_of(rows: list[Row], why: bool = False, columns: int = COLUMNS) -> Colu
 
 def format_head(shape: ColumnWidths) -> str:
     """The table's head."""
-    head = f"{'No.':>{6 + shape.numbers}}  {_pad('Time', shape.times - 1)}  Who"
-    head += f"  {_pad('App', shape.apps)}  {_pad('Behavior', shape.behavior)}  Event"
+    head = f"{'No.':>{6 + shape.numbers}}  {pad('Time', shape.times - 1)}  Who"
+    head += f"  {pad('App', shape.apps)}  {pad('Behavior', shape.behavior)}  Event"
     return head + ("  Rule" if shape.why else "")
 
 
@@ -95,11 +96,11 @@ def format_row(row: Row, shape: ColumnWidths) -> list[str]:
     """The lines of one row."""
     mark = f"{'*' if row.star else ' '}{row.bracket or ' '}"
     left = f"  {mark}  {row.number:>{shape.numbers}} {row.time:>{shape.times}.2f}"
-    left += f"  {row.actor:<3}  {_pad(visible(row.app), shape.apps)}  "
+    left += f"  {row.actor:<3}  {pad(visible(row.app), shape.apps)}  "
     pieces = _wrap(visible(row.what), shape.behavior)
     event = "o" if row.event else " "
     tail = f"  {event}      {visible(row.rule)}" if shape.why else f"  {event}"
-    first = (left + _pad(pieces[0], shape.behavior) + tail).rstrip()
+    first = (left + pad(pieces[0], shape.behavior) + tail).rstrip()
     return [first, *(" " * width(left) + piece for piece in pieces[1:])]
 
 
