@@ -12,6 +12,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import psutil
 import pytest
 
 from prima.experiments.batch import run_batch
@@ -93,22 +94,14 @@ def test_how_the_death_of_a_process_is_told(stage: Path, monkeypatch: pytest.Mon
 
 def children(parent: int) -> set[int]:
     """The processes below one, however deep."""
-    pairs = re.findall(
-        r"(\d+) +(\d+)",
-        subprocess.run(
-            ["ps", "-Ao", "pid=,ppid="], capture_output=True, text=True, check=True
-        ).stdout,
-    )
-    found = {parent}
-    for _ in range(5):
-        found |= {int(pid) for pid, above in pairs if int(above) in found}
-    return found - {parent}
+    return {one.pid for one in psutil.Process(parent).children(recursive=True)}
 
 
 def alive(processes: set[int]) -> set[int]:
-    shown = subprocess.run(["ps", "-Ao", "pid=,stat="], capture_output=True, text=True, check=True)
-    now = {int(pid) for pid, state in re.findall(r"(\d+) +(\S)", shown.stdout) if state != "Z"}
-    return processes & now
+    states = {one.pid: one.info["status"] for one in psutil.process_iter(["status"])}
+    return {
+        one for one in processes if states.get(one, psutil.STATUS_ZOMBIE) != psutil.STATUS_ZOMBIE
+    }
 
 
 def test_ctrl_c_ends_all_at_once(stage: Path) -> None:
