@@ -130,7 +130,7 @@ def _not_there(
 
     listed: dict[Path, list[Path]] = {}
     for node, name, file in _files_named(page, answered):
-        if not file.startswith(("/", "../")) and exists(folder / file):
+        if not file.startswith("../") and exists(folder / file):
             continue
         spans = value_span(node, name, file.rpartition("/")[2])
         missing.add(node.index)
@@ -156,7 +156,7 @@ def _files_named(page: Page, answered: tuple[str, ...]) -> Iterator[tuple[Node, 
             if node.tag not in tags or not uri or uri.startswith("#"):
                 continue
             whole = page.resolve(uri, node)
-            file = unquote(whole.partition("#")[0].partition("?")[0])
+            file = unquote(whole.partition("#")[0].partition("?")[0]).lstrip("/")
             if file and not _is_elsewhere(whole, page, answered):
                 yield node, name, file
 

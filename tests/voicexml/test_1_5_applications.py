@@ -363,6 +363,37 @@ def test_nothing_is_fetched_from_outside_the_folder(tmp_path: Path, uri: str) ->
     assert Bench(found).logs() == ["refused"]  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(
+    ("uri", "told"),
+    [
+        ("/inside.vxml", []),
+        ("/sub/../inside.vxml", []),
+        ("/insid.vxml", ["inside.vxml"]),
+        ("/../out.vxml", ["out.vxml"]),
+    ],
+)
+def test_a_path_from_the_root_counts_from_the_folder(
+    tmp_path: Path, uri: str, told: list[str]
+) -> None:
+    """Runs and validation agree."""
+    folder = tmp_path / "app"
+    (folder / "sub").mkdir(parents=True)
+    for path in (folder / "inside.vxml", tmp_path / "out.vxml"):
+        path.write_text(vxml(block("<log>in</log>")))
+    there = vxml(
+        '<catch event="error.badfetch"><log>refused</log><exit/></catch>'
+        + block(f'<goto next="{uri}"/>')
+    )
+    (folder / "sub" / "there.vxml").write_text(there)
+    path = folder / "a.vxml"
+    path.write_text(vxml(block('<goto next="sub/there.vxml"/>')))
+    found, _ = loading.read_application(str(path), path.read_bytes())
+    assert Bench(found).logs() == (["refused"] if told else ["in"])  # type: ignore[arg-type]
+    problems = [one.message + one.remedy for one in loading.validate(path)]
+    assert len(problems) == len(told)
+    assert all(word in problem for word, problem in zip(told, problems, strict=True)), problems
+
+
 def test_a_link_of_the_file_system_leads_nowhere_outside(tmp_path: Path) -> None:
     folder = tmp_path / "app"
     folder.mkdir()
