@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from prima.api.rehearsing import Sink, check_numbers, fetcher
+from prima.api.rehearsing import Sink, check_functions, check_numbers, fetcher
 from prima.api.transcripts import Transcript, check_transcripts, outcome_of
 from prima.errors import UsageError
 from prima.language.values import LONGEST_MS
 from prima.loading import Loaded, load_scenario
-from prima.loading.files import check_path, paths_of
+from prima.loading.files import check_path, paths_of, texts_of
 from prima.loading.heads import check_files
 from prima.messages import Record
 
@@ -135,20 +135,21 @@ def run_live(
 
     chosen = Chosen(
         name(robot, "robot"), name(scenario, "scenario"), name(world, "world"),
-        tuple(paths_of(fas, "fas")), tuple(paths_of(eas, "eas")), tuple(maps),
+        tuple(paths_of(fas, "fas")), tuple(paths_of(eas, "eas")), tuple(texts_of(maps, "maps")),
         name(services, "services"),
     )  # fmt: skip
+    check_functions(sink=sink, warn=warn)
     check_numbers(bound=bound)
     check_numbers(0, until=until, late=late)
     check_numbers(0, LONGEST_MS, patience=patience)
-    if not 0 < speed <= FASTEST:
-        raise UsageError(f"The speed is {speed:g}: write a number above 0, up to {FASTEST:g}.")
+    if not isinstance(speed, int | float) or not 0 < speed <= FASTEST:
+        raise UsageError(f"The speed is {speed!r}: write a number above 0, up to {FASTEST:g}.")
     web = fetcher(hosts, len(chosen.fas) + len(chosen.eas) + 1)
     named = tuple(paths_of(drivers, "drivers"))
     settings = LiveSettings(
         policy, bound, patience, isolate, speed, until, sync, late, redact, named, web
     )
-    given = [None if path is None else str(path) for path in (output, resume)]
+    given = [name(output, "output") or None, name(resume, "resume") or None]
     visit = prepared(chosen, settings, *given)
     called = given[0] or given[1] or chosen.scenario or chosen.robot
     made = Transcript(list(visit.before) if keep else [], called)

@@ -12,6 +12,7 @@ from prima.api.transcripts import Transcript
 from prima.errors import UsageError
 from prima.language.values import LONGEST_MS
 from prima.loading import Loaded, load_scenario, seeded
+from prima.loading.files import texts_of
 from prima.loading.heads import chosen_policy, run_record
 
 if TYPE_CHECKING:
@@ -73,6 +74,7 @@ def rehearse(
     from prima.transcript.record import Entry
     from prima.transcript.rows import make_rows
 
+    check_functions(sink=sink)
     check_numbers(bound=bound)
     check_numbers(0, seed=seed)
     check_numbers(0, LONGEST_MS, patience=patience)
@@ -154,7 +156,7 @@ def _doing(app: Application, owed: bool) -> str:
 
 def fetcher(given: str | Iterable[str], applications: int) -> Web | None:
     """A fetcher for some hosts, or None; only then are network modules imported."""
-    hosts = [given] if isinstance(given, str) else list(given)
+    hosts = texts_of(given, "hosts")
     if not hosts:
         return None
     from prima.loading.web import Hosts
@@ -167,15 +169,28 @@ def fetcher(given: str | Iterable[str], applications: int) -> Web | None:
     return Hosts(hosts, applications)
 
 
-def check_numbers(least: int = 1, most: int | None = None, /, **given: int | None) -> None:
-    """Refuse values that are not whole numbers, too small or too large.
+def check_functions(**given: object) -> None:
+    """Refuse what cannot be called.
+
+    Raises:
+        UsageError: one of the values cannot.
+    """
+    for name, one in given.items():
+        if one is not None and not callable(one):
+            raise UsageError(f"{name}={one!r:.80}: write a function.")
+
+
+def check_numbers(
+    least: int = 1, most: int | None = None, /, needed: bool = False, **given: int | None
+) -> None:
+    """Refuse values that are not whole numbers, too small or too large; None if ``needed``.
 
     Raises:
         UsageError: one is.
     """
     limits = f"from {least}" if most is None else f"from {least} to {most}"
     for name, number in given.items():
-        if number is None:
+        if number is None and not needed:
             continue
         if type(number) is not int or number < least or (most is not None and number > most):
             raise UsageError(f"{name}={number!r}: write a whole number {limits}.")

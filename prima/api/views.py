@@ -40,11 +40,12 @@ def export(
             unwritable.
     """
     from prima.exports import Exported, checked, timeline, write
-    from prima.loading.files import check_name
+    from prima.loading.files import check_name, check_text, check_texts
 
+    check_text(to, "to")
     if not hasattr(output, "write"):
         check_name(output)
-    tags = checked(to, languages or {})
+    tags = checked(to, check_texts(languages or {}, "languages"))
     held = _in_memory(transcript)
     name = str(transcript) if held is None else held.name
     cut = [held.cut] if held and held.cut else []
@@ -108,7 +109,9 @@ def explain(code: str) -> str:
         UsageError: the code is unknown.
     """
     from prima.checks.codes import diagnoses
+    from prima.loading.files import check_text
 
+    check_text(code, "code")
     found = diagnoses()
     if code not in found:
         raise UsageError(f'There is no code "{code}". {did_you_mean(code, found)}'.rstrip())
@@ -128,6 +131,8 @@ def explain_row(transcript: Transcript, number: int) -> str:
     if not rows:
         message = f"{transcript.name}: the transcript has no rows."
         raise UsageError(f"{message} {transcript.cut or transcript.early}".rstrip())
+    if type(number) is not int:
+        raise UsageError(f"number={number!r:.80}: write the number of a row.")
     if not 0 <= number < len(rows):
         message = f"There is no row {number}; the rows are 0 to {len(rows) - 1}."
         raise UsageError(f"{message} {transcript.cut or transcript.early}".rstrip())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from prima.experiments.studyfile import Level, levels_text, question_of
 from prima.experiments.sweep import Output, Sweep
 from prima.experiments.table import arrow_table
 from prima.language.values import LONGEST_MS
-from prima.loading.files import paths_of
+from prima.loading.files import check_path, check_texts, paths_of, texts_of
 from prima.messages import Json
 from prima.script.isolated import check_isolation
 
@@ -70,12 +71,13 @@ def sweep(
     """
     check_numbers(seeds=seeds, runs=runs, workers=workers, bound=bound)
     check_numbers(0, LONGEST_MS, patience=patience)
+    check_path(output or "", "output")
     if isolate is not None:
         check_isolation(isolate)
     question = question_of(
         paths_of(scenarios, "scenarios"),
-        {path: levels_text(levels) for path, levels in (vary or {}).items()},
-        policies=None if policies is None else _words(policies),
+        _levels({} if vary is None else vary),
+        policies=None if policies is None else tuple(texts_of(policies, "policies")),
         seeds=seeds,
         design=design,
         runs=runs,
@@ -124,19 +126,32 @@ def explore(
         UsageError: a path does not name a time, or a file cannot be written.
         RunError: no process can be started.
     """
-    check_numbers(within=within, depth=depth, runs=runs, workers=workers)
-    check_numbers(0, step=step)
+    check_path(scenario, "scenario")
+    check_path(output or "", "output")
+    check_numbers(needed=True, within=within, depth=depth, runs=runs)
+    check_numbers(workers=workers)
+    check_numbers(0, needed=True, step=step)
     check_isolation(isolate)
-    moves = (moves,) if isinstance(moves, str) else moves
-    plan = ExplorationPlan(
-        os.fspath(scenario), tuple(moves), within, depth, step, runs, policy, isolate
-    )
+    moved = tuple(texts_of(moves, "moves"))
+    plan = ExplorationPlan(os.fspath(scenario), moved, within, depth, step, runs, policy, isolate)
     exploration = Exploration(plan)
     if resume and output is None:
         raise UsageError("resume needs the output that it goes on with.")
     for _ in carried_out(exploration, pool_of(on, workers), output, resume):
         pass
     return Explored(exploration).data(written=output is not None)
+
+
+def _levels(vary: Mapping[str, Level | Sequence[Level]]) -> dict[str, str]:
+    """Levels by paths, as texts.
+
+    Raises:
+        UsageError: they are not levels by paths.
+    """
+    texts: object = vary
+    with suppress(AttributeError, TypeError):
+        texts = {path: levels_text(levels) for path, levels in vary.items()}
+    return check_texts(texts, "vary")
 
 
 def _table(made: Sweep, output: str | Path | None, pool: Pool, resume: bool) -> pyarrow.Table:
@@ -150,7 +165,3 @@ def _table(made: Sweep, output: str | Path | None, pool: Pool, resume: bool) -> 
     for _ in out.write(resume):
         pass
     return arrow_table(out.read(), made.columns)
-
-
-def _words(given: str | Iterable[str]) -> tuple[str, ...]:
-    return (given,) if isinstance(given, str) else tuple(given)

@@ -96,10 +96,12 @@ def check_path(path: object, argument: str) -> None:
     """Refuse what is no path, such as bytes.
 
     Raises:
-        UsageError: it is neither a text nor a path; the argument is named.
+        UsageError: it is neither a text nor a path, and the argument is named; or it holds NUL.
     """
     if not isinstance(path, str | os.PathLike):
         raise UsageError(f"{argument}={path!r:.80}: write a path, as a text or a Path.")
+    if "\0" in os.fspath(path):
+        raise UsageError(f"{path!r} is not a file's name.")
 
 
 def paths_of(given: str | Path | Iterable[str | Path], argument: str) -> list[str]:
@@ -114,6 +116,42 @@ def paths_of(given: str | Path | Iterable[str | Path], argument: str) -> list[st
     for path in paths:
         check_path(path, argument)
     return [str(path) for path in paths]
+
+
+def texts_of(given: str | Iterable[str], argument: str) -> list[str]:
+    """Several texts; one that is given alone is one, and not its letters.
+
+    Raises:
+        UsageError: one is no text, such as bytes; the argument is named.
+    """
+    several = not isinstance(given, str | bytes) and isinstance(given, Iterable)
+    texts = list(given) if several else [given]
+    for text in texts:
+        check_text(text, argument)
+    return [str(text) for text in texts]
+
+
+def check_text(given: object, argument: str) -> None:
+    """Refuse what is no text, such as bytes.
+
+    Raises:
+        UsageError: it is none; the argument is named.
+    """
+    if not isinstance(given, str):
+        raise UsageError(f"{argument}={given!r:.80}: write a text.")
+
+
+def check_texts(given: object, argument: str) -> dict[str, str]:
+    """Texts by texts, checked.
+
+    Raises:
+        UsageError: it is something else; the argument is named.
+    """
+    if not isinstance(given, Mapping):
+        raise UsageError(f"{argument}={given!r:.80}: write a dict.")
+    for one in (*given, *given.values()):
+        check_text(one, argument)
+    return dict(given)
 
 
 def absolute(path: str | Path) -> Path:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from prima.errors import DocumentError, Problem, UsageError
 from prima.loading.applications import read_application
-from prima.loading.files import check_path, path_of, paths_of, read_file
+from prima.loading.files import check_path, path_of, paths_of, read_file, texts_of
 from prima.loading.folders import documents_folder
 from prima.loading.reading import STAGE, other_kind
 from prima.loading.scenarios import Loaded, load_whole, without_ignored
@@ -128,7 +128,7 @@ def _answers(says: str | Iterable[str]) -> str:
     """
     from html import escape
 
-    said = [says] if isinstance(says, str) else list(says)
+    said = texts_of(says, "says")
     for text in said:
         if re.search(UNFIT, text):
             raise UsageError(

@@ -18,7 +18,7 @@ from prima.loading.diagnoses import (
     NO_FILE_HERE,
     OUTSIDE,
 )
-from prima.loading.files import Folder, path_of
+from prima.loading.files import Folder, path_of, texts_of
 from prima.loading.similar import nearby
 from prima.markup.limits import LIMITS
 from prima.markup.spans import value_span
@@ -41,7 +41,7 @@ def mappings(maps: Iterable[str], paths: Iterable[str]) -> dict[str, str]:
 
     held: dict[str, str] = {}
     paths = list(paths)
-    for text in maps:
+    for text in texts_of(maps, "maps"):
         try:
             uri, folder = mapping_of(text)
         except ValueError as error:

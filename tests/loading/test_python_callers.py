@@ -209,3 +209,52 @@ def test_records_of_a_live_run_that_were_not_kept_are_named() -> None:
     with pytest.raises(prima.UsageError) as caught:
         made.summary()
     assert str(caught.value) == f"{SCENARIO}: its records were not kept: run it with keep=True."
+
+
+@pytest.mark.parametrize(
+    ("call", "given", "told"),
+    [
+        (prima.explain, {"code": 5}, "code=5: write a text."),
+        (prima.export, {"to": b"csv", "output": "a.csv"}, "to=b'csv': write a text."),
+        (
+            prima.export,
+            {"to": "eaf", "output": "a.eaf", "languages": 5},
+            "languages=5: write a dict.",
+        ),
+        (prima.validate, {"paths": MUSEUM, "maps": b"x"}, "maps=b'x': write a text."),
+        (prima.validate, {"paths": MUSEUM, "maps": 5}, "maps=5: write a text."),
+        (prima.stage, {"fas": FOLLOW, "eas": [], "maps": [b"x"]}, "maps=b'x': write a text."),
+        (prima.stage, {"fas": FOLLOW, "eas": [], "says": [5]}, "says=5: write a text."),
+        (prima.rehearse, {"scenario": SCENARIO, "hosts": [5]}, "hosts=5: write a text."),
+        (prima.rehearse, {"scenario": SCENARIO, "sink": 5}, "sink=5: write a function."),
+        (prima.run_live, {"scenario": SCENARIO, "warn": "x"}, "warn='x': write a function."),
+        (prima.run_live, {"scenario": SCENARIO, "maps": 5}, "maps=5: write a text."),
+        (prima.run_live, {"scenario": SCENARIO, "output": 5}, "output=5: write a path,"),
+        (prima.run_live, {"scenario": SCENARIO, "speed": "9"}, "The speed is '9': write a number"),
+        (prima.sweep, {"scenarios": SCENARIO, "vary": 5}, "vary=5: write a dict."),
+        (prima.sweep, {"scenarios": SCENARIO, "vary": {5: "a"}}, "vary=5: write a text."),
+        (prima.sweep, {"scenarios": SCENARIO, "policies": [5]}, "policies=5: write a text."),
+        (prima.sweep, {"scenarios": SCENARIO, "output": b"x"}, "output=b'x': write a path,"),
+        (prima.sweep, {"scenarios": "a\0b"}, "'a\\x00b' is not a file's name."),
+        (prima.explore, {"scenario": 5}, "scenario=5: write a path,"),
+        (prima.explore, {"scenario": SCENARIO, "moves": [5]}, "moves=5: write a text."),
+        (prima.explore, {"scenario": SCENARIO, "within": None}, "within=None: write a whole"),
+        (prima.explore, {"scenario": SCENARIO, "output": b"x"}, "output=b'x': write a path,"),
+    ],
+)
+def test_a_value_of_another_type_is_told_with_its_argument(
+    call: Callable[..., object], given: dict[str, Any], told: str
+) -> None:
+    if call is prima.export:
+        given = {"transcript": prima.Transcript([]), **given}
+    with pytest.raises(prima.UsageError) as caught:
+        call(**given)
+    assert str(caught.value).startswith(told)
+
+
+@pytest.mark.parametrize("number", ["3", 1.5, None, b"3"])
+def test_a_row_has_a_whole_number(number: Any) -> None:
+    made = prima.rehearse(SCENARIO, isolate="none")
+    with pytest.raises(prima.UsageError) as caught:
+        prima.explain_row(made, number)
+    assert str(caught.value) == f"number={number!r}: write the number of a row."
