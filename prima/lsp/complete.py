@@ -206,6 +206,8 @@ class _Completion:
             sign = f"{file}#"
             target = self.workspace.target(self.path, file) if file and use.how == "uri" else None
             path = target or self.path
+        elif use.how == "fixed:":
+            sign = use.how
         for found in self._known(path, use.kinds, tag):
             name = sign + found.mark.name
             yield Proposal(name, "name", *start, escape(name), "", self._where(found))

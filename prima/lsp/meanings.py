@@ -11,8 +11,8 @@ from prima.sim.vocabulary.scenario import NAMING_APPLICATIONS
 class ReferenceUse:
     """The reference in an attribute's value: the kinds of names, and the notation.
 
-    ``how`` is empty, ``#`` (behind a ``#``), ``list`` (several with spaces), ``uri``
-    (a file, a ``#`` and a name) or ``code``. Variables of a list are code, too: ``document.x``.
+    ``how`` is empty, ``#`` (behind a ``#``), ``fixed:`` (behind that word), ``list`` (several with
+    spaces), ``uri`` (a file, a ``#`` and a name) or ``code``. Variables of a list are code, too: ``document.x``.
     """
 
     kinds: tuple[str, ...]
@@ -112,6 +112,7 @@ REFERS: dict[tuple[str, str, str], ReferenceUse] = {
     ("scenario", "fail", "device"): ReferenceUse(("device",)),
     ("scenario", "repair", "device"): ReferenceUse(("device",)),
     **{("scenario", *one): ReferenceUse(("application",)) for one in NAMING_APPLICATIONS},
+    ("scenario", "scenario", "policy"): ReferenceUse(("application",), "fixed:"),
     ("scenario", "when", "person"): ReferenceUse(("person",)),
     ("scenario", "answer", "person"): ReferenceUse(("person",)),
     **{("voicexml", key, "next"): _DIALOG for key in ("goto", "link", "choice", "submit")},

@@ -156,6 +156,10 @@ def _references(
             if not sign or (path and use.how == "#"):
                 continue
             file, start = path, start + len(path) + 1
+        elif use.how == "fixed:":
+            if not page.text.startswith(use.how, start, end):
+                continue
+            start += len(use.how)
         if use.how and use.kinds == ("variable",):
             yield from _code(page.text[start:end], start, tag)
         else:

@@ -131,3 +131,20 @@ def test_many_tags_take_no_long_time(tmp_path: Path) -> None:
     began = time.process_time()
     assert len(naming.references(space, path, text.index('"r5"') + 1)) == 3
     assert time.process_time() - began < 5
+
+
+def test_an_application_is_renamed_in_the_policy_that_prefers_it(space: Workspace) -> None:
+    path = space.folders[0] / "s.xml"
+    for policy, made in (("fixed:one", 2), ("fixed:b", 1), ("fixed", 1), ("one", 1)):
+        path.write_text(SCENE.replace("<scenario", f'<scenario policy="{policy}"'), "utf-8")
+        fresh = Workspace()
+        fresh.folders = space.folders
+        assert renamed(fresh, "one.xml", 'id="') == {"one.xml": 1, "s.xml": made}, policy
+
+
+def test_applications_are_proposed_for_a_policy(space: Workspace) -> None:
+    path = space.folders[0] / "s.xml"
+    text, offset = plain(SCENE.replace("<scenario", '<scenario policy="|"'))
+    space.put(path.as_uri(), text)
+    proposed = {one.insert for one in complete(space, path, offset)}
+    assert {"prima", "fifo", "fixed:one", "fixed:b"} <= proposed
