@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.lsp.meanings import DEFINES, REFERS, SHARED, ReferenceUse
@@ -47,6 +47,8 @@ class Mark:
     short: bool = False
     holder: str = ""
     nearer: tuple[int, ...] = ()
+    use: Use | None = field(default=None, compare=False)
+    """Its use in code, if it is a variable there."""
 
     def names(self, other: Mark) -> bool:
         """Whether this and another mark of the same document mean the same thing."""
@@ -182,8 +184,9 @@ def _variable(use: Use, first: int, defines: bool, tag: ScannedTag, home: int) -
     start, scope = first + use.start, -1 if use.holder in OF_DOCUMENT else home
     end = start + len(use.name)
     return Mark(
-        ("variable",), use.name, start, end, defines, tag, scope, short=use.short, holder=use.holder
-    )
+        ("variable",), use.name, start, end, defines, tag, scope, short=use.short,
+        holder=use.holder, use=use,
+    )  # fmt: skip
 
 
 def _content(code: str) -> str:

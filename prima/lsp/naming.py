@@ -162,6 +162,8 @@ def _check_new(kind: str, new: str) -> None:
 
 def _is_taken(workspace: Workspace, uses: list[FoundName], new: str) -> bool:
     """Whether a name is already taken where some uses are, or used where they define it."""
+    if any(one.mark.use is not None and one.mark.use.would_be_local(new) for one in uses):
+        return True
     named = [
         FoundName(path, mark)
         for path in {one.path for one in uses}

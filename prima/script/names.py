@@ -34,6 +34,13 @@ class Use:
     """The offset and name of its member that is used and not called, if any."""
     short: bool = False
     """Whether it is a property's name as well: ``{x}`` for ``{x: x}``."""
+    around: CodeScope | None = field(default=None, compare=False, repr=False)
+    """The scope in which a variable is used."""
+
+    def would_be_local(self, name: str) -> bool:
+        """Whether a function or block around it declares another name, which would hide it."""
+        home = self.around.home(name, True) if self.around else None
+        return home is not None and home.outer is not None
 
 
 @dataclass(slots=True)
@@ -130,7 +137,7 @@ def _add(
     if how != "change":  # also read there
         part = walk.parts.get(start)
         declares, short = how == "declare", start in walk.short
-        made.uses.append(Use(name, start, declares=declares, part=part, short=short))
+        made.uses.append(Use(name, start, declares=declares, part=part, short=short, around=scope))
     if home is not None:
         return
     if how == "read" or (how == "write" and not script):

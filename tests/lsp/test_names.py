@@ -143,6 +143,33 @@ def test_a_variable_is_not_renamed_to_one_that_would_hide_it(
         naming.rename(workspace, path, where, new)
 
 
+@pytest.mark.parametrize(
+    ("code", "refused"),
+    [
+        ("function f(m) { return n * m; }", True),
+        ("function f() { var m = 1; return function () { return n; }; }", True),
+        ("{ let m = n; }", True),
+        ("function f(n) { return n; } function g(m) { return m; } f(n);", False),
+        ("function f(m) { return document.n * m; }", False),
+    ],
+)
+@pytest.mark.parametrize("place", ["<script>{}</script>", '<form id="a"><block cond="{}"/></form>'])
+def test_a_variable_gets_no_name_that_a_function_hides(
+    tmp_path: Path, code: str, refused: bool, place: str
+) -> None:
+    shown = code if "script" in place else f"(() => {{ {code} }})()"
+    text = f'{BEGIN}<var name="n"/>{place.format(shown)}</prima>'
+    workspace = Workspace()
+    path = workspace.put((tmp_path / "x.xml").as_uri(), text)
+    assert path is not None
+    where = text.index('name="n"') + 6
+    if not refused:
+        assert len(naming.rename(workspace, path, where, "m")[0]) == 2
+        return
+    with pytest.raises(naming.RenameError, match='There is a variable "m" already'):
+        naming.rename(workspace, path, where, "m")
+
+
 def test_a_place_is_renamed_everywhere(editor: Editor) -> None:
     world = (editor.folder / "worlds/office.xml").read_text(encoding="utf-8")
     where = editor.at("worlds/office.xml", world.replace('id="kidode-room"', 'id="|kidode-room"'))
