@@ -8,7 +8,7 @@ from click.exceptions import Exit
 from prima.cli.options import PathName, formats_option, or_stdout, output_option, policy_option
 from prima.cli.outputs import check_output
 from prima.cli.printing import coloured, echo, tell_cut, write_for_programs
-from prima.cli.runs import run_of
+from prima.cli.runs import run_of, tell_failures
 from prima.errors import UsageError
 
 
@@ -54,7 +54,10 @@ def diff(
             echo(piece, nl=False)
     else:
         echo(format_difference(difference, coloured()), nl=False)
+    failed = tell_failures([old, new])
     tell_cut(old, new)
+    if failed:
+        raise Exit(3)
     if difference.differs:
         raise Exit(1)
 

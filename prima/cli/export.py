@@ -11,7 +11,7 @@ from click.exceptions import Exit
 
 from prima.cli.options import PathName, or_stdout, output_option, suggesting
 from prima.cli.outputs import check_output
-from prima.cli.printing import tell
+from prima.cli.printing import pouring, tell
 from prima.errors import UsageError, counted, one_of
 from prima.exports import FORMATS
 
@@ -49,12 +49,12 @@ def export(transcript: str, to: str | None, output: str | None, langs: tuple[str
     form = _format(to, output)
     if output is not None:
         check_output(output, "export", transcript)
-    made = api.export(transcript, form, output or sys.stdout.buffer, _languages(langs))
+    out = pouring()
+    made = api.export(transcript, form, output or out, _languages(langs))
+    out.flush()
     if output:
         amount = f"{counted(made.tiers, 'tier')} with {made.marks} intervals and points"
         tell(f"{output}: {amount} of {made.seconds:.1f} s")
-    else:
-        sys.stdout.buffer.flush()
     if made.early:
         tell(f"prima: {made.early}")
     if made.cut:
@@ -69,8 +69,11 @@ def _format(to: str | None, output: str | None) -> str:
         UsageError: there is neither, or the format is not for a terminal.
     """
     form = to.lower() if to else Path(output or "").suffix.lower()[1:]
-    if not form:
-        raise UsageError(f"Name a format: --to {one_of(FORMATS)}.")
+    if not to and form not in FORMATS:
+        if output is None:
+            raise UsageError(f"Name a format: --to {one_of(FORMATS)}.")
+        named = f'no format has the suffix "{form}"' if form else "it has no suffix"
+        raise UsageError(f"{output}: {named}; name a format: --to {one_of(FORMATS)}.")
     if output is None and form == "mcap" and sys.stdout.isatty():
         raise UsageError("mcap is a binary format: name a file with -o.")
     return form

@@ -7,6 +7,7 @@ import sys
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 from click.exceptions import Exit
 
 from prima.cli.failures import INTERRUPTED, closed_pipe
@@ -49,6 +50,8 @@ if TYPE_CHECKING:
     from prima.messages import Record
 
 FASTEST = 1000.0  # equals prima.api.live.FASTEST, which is slow to import
+FOR_CHECKS = ("checks", "robot", "world", "drivers", "limits")
+"""What --check heeds."""
 
 
 @click.command()
@@ -146,6 +149,7 @@ def live(
     if checks:
         from prima.live.preflight import check_robot
 
+        _tell_unused(click.get_current_context())
         raise Exit(check_robot(chosen, settings, lambda text: echo(clean(text))))
     if output is not None:
         check_output(
@@ -154,6 +158,18 @@ def live(
     visit = prepared(chosen, settings, output, journal)
     tell_problems(visit.loaded.problems)
     _run(visit, why, form == "json")
+
+
+def _tell_unused(context: click.Context) -> None:
+    """Tell what is given beside --check, which has no effect."""
+    given = [
+        one.opts[-1] if isinstance(one, click.Option) else one.human_readable_name
+        for one in context.command.params
+        if context.get_parameter_source(one.name or "") is ParameterSource.COMMANDLINE
+        and one.name not in FOR_CHECKS
+    ]
+    if given:
+        tell(f"prima: --check tries the robot alone; it ignores {', '.join(given)}.")
 
 
 def _run(visit: Visit, why: bool, as_json: bool) -> None:

@@ -79,6 +79,26 @@ def write_nowhere(output: IO[str]) -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), output.fileno())
 
 
+class _Poured(io.RawIOBase):
+    """Bytes on stdout; if nobody reads it any more, the exit code still counts."""
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: Any) -> int:
+        try:
+            sys.stdout.buffer.write(data)
+            sys.stdout.buffer.flush()
+        except BrokenPipeError:
+            write_nowhere(sys.stdout)
+        return len(data)
+
+
+def pouring() -> io.BufferedWriter:
+    """A stream of bytes to stdout that does not end when nobody reads it any more."""
+    return io.BufferedWriter(_Poured())
+
+
 def put(text: str) -> None:
     """Print text for people to stdout."""
     echo(clean(text), nl=not text.endswith("\n"))

@@ -13,7 +13,7 @@ from click.exceptions import Exit
 from prima.cli.options import PathName, SuggestingChoice, output_option, paths_option, policy_option
 from prima.cli.outputs import check_output
 from prima.cli.printing import echo, tell, tell_cut, write_for_programs
-from prima.cli.runs import GivenRun, is_markup, run_of
+from prima.cli.runs import GivenRun, is_markup, run_of, tell_failures
 from prima.errors import UsageError, counted, did_you_mean, one_of
 
 if TYPE_CHECKING:
@@ -85,6 +85,7 @@ def _report_runs(
     """Write the page of one run, or of two.
 
     Raises:
+        Exit: an application ended by an error.
         UsageError: there are none or too many, or nothing can be written.
     """
     from prima.report import make
@@ -103,7 +104,10 @@ def _report_runs(
     shown = [run_of(path, policy) for path, policy in wanted]
     transcripts = [run.transcript for run in shown]
     write_page(make(transcripts, _scenarios(shown, maps)), output)
+    failed = tell_failures(transcripts)
     tell_cut(*transcripts)
+    if failed:
+        raise Exit(3)
 
 
 def _is_table(path: str) -> bool:

@@ -32,8 +32,9 @@ from prima.cli.options import (
     workers_option,
 )
 from prima.cli.outputs import check_output
-from prima.cli.printing import columns, put, tell, tell_line, tell_problems, write_for_programs
+from prima.cli.printing import columns, put, tell, tell_problems, write_for_programs
 from prima.cli.progress import run_into
+from prima.cli.runs import tell_failures
 from prima.errors import TOO_MUCH, RunError, UsageError, counted
 
 if TYPE_CHECKING:
@@ -235,16 +236,10 @@ def _report_end(transcript: Transcript) -> None:
         seconds = transcript.summary().seconds
         until = "; ".join(transcript.unfinished)
         tell(f"The run was stopped at {seconds:g} s, the scenario's until: {until}.")
-    if transcript.defects and "PRIMA_DEBUG" in os.environ:
-        raise transcript.defects[0]
-    if transcript.failures:
-        from prima.experiments.batch import told_failure
-
-        for failure in transcript.failures:
-            tell_line(f"prima: {told_failure(failure)}")
+    failed = tell_failures([transcript])
     if transcript.outcome == "limit":
         raise RunError(TOO_MUCH)
-    if transcript.failures:
+    if failed:
         raise Exit(3)
 
 

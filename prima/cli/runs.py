@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
+from prima.cli.printing import tell_line
 from prima.errors import UsageError
 
 if TYPE_CHECKING:
@@ -28,6 +30,25 @@ def is_markup(path: str) -> bool:
             return stream.read(64).removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"<"
     except (OSError, ValueError):
         return False
+
+
+def tell_failures(transcripts: Iterable[Transcript]) -> bool:
+    """Print what failed in runs, each message once; whether anything did.
+
+    Raises:
+        Exception: a defect of PRIMA that ended an application, with ``PRIMA_DEBUG``.
+    """
+    made = list(transcripts)
+    defects = [defect for one in made for defect in one.defects]
+    if defects and "PRIMA_DEBUG" in os.environ:
+        raise defects[0]
+    failures = dict.fromkeys(failure for one in made for failure in one.failures)
+    if failures:
+        from prima.experiments.batch import told_failure
+
+        for failure in failures:
+            tell_line(f"prima: {told_failure(failure)}")
+    return bool(failures)
 
 
 def run_of(path: str, policy: str | None = None, whole: bool = True) -> GivenRun:

@@ -23,6 +23,10 @@ def check_usage(
     Raises:
         UsageError: there are such options.
     """
+    if checks:
+        if not chosen.robot:
+            raise UsageError("Name the robot to be checked with --robot.")
+        return
     own = [chosen.fas, chosen.eas, chosen.world, chosen.maps]
     if resume is not None:
         if any((chosen.scenario, *own, chosen.robot, chosen.services, output)):
@@ -33,10 +37,6 @@ def check_usage(
         raise UsageError(f"{message} leave out --fa, --ea, --world and --map.")
     if chosen.scenario and chosen.services:
         raise UsageError("A scenario has its own services; leave out --services.")
-    if checks:
-        if not chosen.robot:
-            raise UsageError("Name the robot to be checked with --robot.")
-        return
     if not any((chosen.scenario, chosen.fas, chosen.eas, chosen.world)):
         raise UsageError("Name applications with --fa and --ea, or a scenario.")
     if not (chosen.scenario or chosen.robot):

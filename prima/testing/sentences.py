@@ -66,5 +66,5 @@ def times(count: int) -> str:
 
 
 def seconds(time: int) -> str:
-    """A time (ms) in seconds."""
-    return f"{time / 1000:.2f} s"
+    """A time (ms) in seconds; where it matters, to the millisecond."""
+    return f"{time / 1000:.{3 if time % 10 else 2}f} s"

@@ -42,6 +42,11 @@ def test_it_writes_to_a_pipe_from_a_pipe(to: str, folder: Path, demo: api.Transc
     ("words", "message"),
     [
         (["t.jsonl"], "Name a format: --to csv, eaf, mcap, textgrid or vtt"),
+        (
+            ["t.jsonl", "-o", "t.txt"],
+            't.txt: no format has the suffix "txt"; name a format: --to csv',
+        ),
+        (["t.jsonl", "-o", "t"], "t: it has no suffix; name a format: --to csv"),
         (["t.jsonl", "--to", "textgird"], 'Did you mean "textgrid"?'),
         (["t.jsonl", "--to", "pdf"], "Name csv, eaf, mcap, textgrid or vtt."),
         (["none.jsonl", "--to", "csv"], "none.jsonl: cannot be read"),
@@ -85,6 +90,19 @@ def test_a_transcript_that_was_cut_off_is_written_as_far_as_it_goes(tmp_path: Pa
         done = prima("export", "cut.jsonl", "-o", "cut.csv", cwd=tmp_path)
         assert done.returncode == 2 and cut in done.stderr
         assert "木戸出".encode() in (tmp_path / "cut.csv").read_bytes()
+
+
+@pytest.mark.parametrize("to", ["csv", "mcap"])
+def test_a_reader_that_goes_away_does_not_hide_that_a_transcript_is_cut(
+    tmp_path: Path, demo: api.Transcript, to: str
+) -> None:
+    (tmp_path / "cut.jsonl").write_text(demo.dumps()[:-40], encoding="utf-8")
+    reading, writing = os.pipe()
+    os.close(reading)
+    command = [sys.executable, "-m", "prima", "export", "cut.jsonl", "--to", to]
+    done = subprocess.run(command, cwd=tmp_path, stdout=writing, stderr=subprocess.PIPE)
+    os.close(writing)
+    assert (done.returncode, b"the record is cut off" in done.stderr) == (2, True), done.stderr
 
 
 def test_letters_that_are_none_are_told(tmp_path: Path, demo: api.Transcript) -> None:

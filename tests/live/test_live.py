@@ -239,6 +239,7 @@ def test_drivers_that_do_not_work_end_in_a_clear_sentence(
         ([], "Name applications"),
         (["--robot", ROBOT], "Name applications"),
         (["--check"], "--robot"),
+        (["--check", "--resume", "visit.jsonl"], "Name the robot to be checked"),
         (["--ea", "documents/ea/guide.xml"], "--robot"),
         (["--resume", "nowhere.jsonl"], "cannot be read"),
         (["--resume", "visit.jsonl", "--robot", ROBOT], "leave out the rest"),

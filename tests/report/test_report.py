@@ -420,6 +420,29 @@ def test_diff_writes_a_page(folder: Path) -> None:
     assert same.returncode == 0 and same.stdout.startswith("<!DOCTYPE html>")
 
 
+def test_a_run_that_fails_is_shown_and_told_as_by_run(tmp_path: Path) -> None:
+    (tmp_path / "fails.xml").write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="fails" xml:lang="en">'
+        '<form id="a"><block><throw event="error.semantic"/></block></form></prima>'
+    )
+    (tmp_path / "s.xml").write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" '
+        f'world="{ROOT}/documents/worlds/room.xml" robot="{ROOT}/documents/robots/papero.xml">'
+        '<application src="fails.xml"/><robot at="middle"/><person x="1" y="0"/></scenario>'
+    )
+    both = ["--policy", "prima", "--policy", "fifo"]
+    for words in (
+        ["run", "s.xml"],
+        ["report", "s.xml", "-o", "r.html"],
+        ["report", "s.xml", *both],
+        ["diff", "s.xml", *both],
+    ):
+        done = prima(*words, cwd=tmp_path)
+        assert done.returncode == 3, words
+        assert done.stderr.count("prima: fails: error.semantic: fails.xml:1:") == 1, done.stderr
+    assert (tmp_path / "r.html").exists()
+
+
 def test_a_cut_transcript_is_reported_and_told(folder: Path) -> None:
     done = prima("report", "cut.jsonl", "-o", "c.html", cwd=folder)
     assert done.returncode == 2 and "the record is cut off" in done.stderr

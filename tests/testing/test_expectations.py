@@ -57,6 +57,7 @@ FALSE = {
     '<expect says="Going up" times="2"/>': "It does once, at",
     '<expect says="Bonjour" times="2"/>': "twice. It never does.",
     '<expect says="Going up" within="1s"/>': "too late",
+    '<expect says="Going up" within="1001ms"/>': "within 1.001 s. It does",
     '<expect says="Which floor?" at="2s"/>': "too early",
     '<expect does="gesture"><data name="name" value="bow"/></expect>': "with name nod",
     '<expect does="gesture"><data name="nome" value="nod"/></expect>': "with name nod",
