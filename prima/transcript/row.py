@@ -221,8 +221,8 @@ def _event_row(record: Entry, handled: set[int]) -> Row | None:
             return None
         return Row(record.time, "R", "", "sees the user", event=True, kind=name)
     letter = {"user": "U", "robot": "R"}.get(record.actor, "E")
-    what = _event_text(name, data, letter == "U")
     own = bool(record.app) and not record.inbound
+    what = _named(name, data) if own else _event_text(name, data, letter == "U")
     return Row(record.time, letter, record.app, what, event=True, kind=name, own=own)
 
 
@@ -237,6 +237,10 @@ def _event_text(name: str, data: Record, by_user: bool) -> str:
         return "hangs up"
     if name == "human.lost":
         return "has lost the user"
+    return _named(name, data)
+
+
+def _named(name: str, data: Record) -> str:
     details = ", ".join(str(value) for value in data.values())
     return name + (f" ({details})" if details else "")
 

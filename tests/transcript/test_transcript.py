@@ -192,6 +192,19 @@ def test_a_profiles_voice_counts() -> None:
     assert slow > voice.duration("Where are you going?", "en-GB", {"en": 14.0})
 
 
+def test_what_an_application_sends_itself_is_nothing_that_happens_to_the_robot(
+    tmp_path: Path,
+) -> None:
+    events = "touch.head", "message", "human.lost", "connection.disconnect.hangup"
+    sends = "".join(f'<send event="{event}"/>' for event in events)
+    (tmp_path / "a.xml").write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a" xml:lang="en">'
+        f'<form id="a"><block>{sends}<pause time="1s"/><exit/></block></form></prima>'
+    )
+    made = api.rehearse(api.stage([], tmp_path / "a.xml"), isolate="none")
+    assert [row.what for row in made.rows() if row.event] == list(events)
+
+
 def test_an_argument_that_is_no_time_is_shown_as_it_is() -> None:
     assert describe("pause", None, {"time": "robot"}) == "Pause (time robot)"
     assert describe("pause", None, {"time": 500}) == "Pause (time 0.5s)"
