@@ -13,7 +13,7 @@ from prima.checks.prices.bounds import busy_at_all
 from prima.devices.profile import Profile, read_robot
 from prima.errors import DocumentError, UsageError, has_errors
 from prima.interpreter.checks import check_commands
-from prima.interpreter.elements import Document, document_commands
+from prima.interpreter.elements import Document
 from prima.language.commands import PATIENCE_MS
 from prima.loading import documents_folder, read_application
 from prima.loading.files import read_file
@@ -59,9 +59,10 @@ def _lacks(document: AnyDocument, theirs: Outline, profile: Profile) -> list[str
             name for name in asked if name not in rows or not rows[name].devices <= profile.devices
         )
     problems = check_commands(document, profile.commands, profile.devices)
-    places = {problem.place for problem in problems if problem.code == "unsupported-command"}
-    names = {one.type for one in document_commands(document) if one.node.place in places}
-    return sorted(names) or sorted({problem.message for problem in problems})
+    named = (one.get("command") for one in problems if one.code == "unsupported-command")
+    return sorted({name for name in named if name}) or sorted(
+        {problem.message for problem in problems}
+    )
 
 
 NO_COMMANDS = {"unit", "question", "recording", "call"}

@@ -8,13 +8,14 @@ from prima.errors import Hint, Problem, few, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_ARGUMENT, UNSUPPORTED_COMMAND
 from prima.interpreter.acts import CommandTemplate, GroupTemplate, run_commands
 from prima.interpreter.checks.arguments import given_to
-from prima.interpreter.elements import Document, document_commands, runs_of
+from prima.interpreter.elements import Document, Field, document_commands, runs_of
 from prima.interpreter.elements import Unit as ItemUnit
-from prima.interpreter.events import handlers_of
+from prima.interpreter.events import handlers_of, items_of
 from prima.interpreter.selection import prefixes
-from prima.interpreter.units import Finder, Reached, unit_problem, units_of
+from prima.interpreter.units import QUESTION, Finder, Reached, unit_problem, units_of
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.spans import value_span
+from prima.markup.tree import Node
 
 NO_COMMAND = UNSUPPORTED_COMMAND.says('This robot has no Command "{command}".', severity="error")
 CANNOT = UNSUPPORTED_COMMAND.says(
@@ -35,30 +36,37 @@ def check_commands(
     for command in document_commands(document):
         row = commands.get(command.type)
         if row is None or row.substitute:
-            cannot.append(_cannot(command, row, commands, devices, heard))
+            cannot.append(_cannot(command.node, command.type, row, commands, devices, heard))
         else:
             problems += _arguments(command, row)
+    row = commands.get(QUESTION)
+    if row is None or row.substitute:
+        cannot += [
+            _cannot(item.node, QUESTION, row, commands, devices, heard)
+            for item in items_of(document)
+            if isinstance(item, Field)
+        ]
     return problems + few(cannot, 1)
 
 
 def _cannot(
-    command: CommandTemplate,
+    node: Node,
+    name: str,
     row: CommandType | None,
     commands: Mapping[str, CommandType],
     devices: frozenset[str],
     heard: set[str],
 ) -> Problem:
     """The problem of a Command that a robot lacks; ``heard``: the events handled."""
-    place, name = command.node.place, command.type
     if name not in TABLE_4_2:
-        hint = suggestion(name, commands, *value_span(command.node, "type"))
-        return NO_COMMAND.at(place, hint, command=name)
+        hint = suggestion(name, commands, *value_span(node, "type"))
+        return NO_COMMAND.at(node.place, hint, command=name)
     lacking = sorted(TABLE_4_2[name].devices - devices) if devices else []
     event = f"error.unsupported.{name}"
     takes_place = f" With the extension x6 {row.substitute} takes its place." if row else ""
     handled = not heard.isdisjoint(prefixes(event))
     return (CANNOT_HANDLED if handled else CANNOT).at(
-        place,
+        node.place,
         command=name,
         lacks=f": it lacks {', '.join(lacking)}" if lacking else "",
         event=event,
