@@ -27,7 +27,7 @@ from prima.language.arguments import (
     excluding_arguments,
     missing_argument,
 )
-from prima.language.commands import PATIENCE_MS, TABLE_4_2, CommandType, too_long
+from prima.language.commands import LETTER_MS, PATIENCE_MS, TABLE_4_2, CommandType, too_long
 from prima.language.values import XML_SPACE, BadValue, is_beyond, outside, read_value
 from prima.markup.spans import nearest_allowed
 from prima.markup.tree import Node
@@ -246,7 +246,9 @@ class AttributeReader:
         """Note an utterance or question that certainly takes too long (E3, E6)."""
         letters = sum(len(part) for part in text or () if isinstance(part, str))
         silence = pauses_in(text) + timeout
+        others = letters * LETTER_MS + silence - timeout
+        hint = Hint("Shorten its timeout.") if timeout > others else NO_HINT
         if wrong := too_long(letters, silence):
-            self.problem(SPEAKS_TOO_LONG, node, wrong=wrong)
+            self.problem(SPEAKS_TOO_LONG, node, hint=hint, wrong=wrong)
         elif wrong := too_long(letters, silence, PATIENCE_MS):
-            self.problem(TURN_TOO_LONG, node, wrong=wrong)
+            self.problem(TURN_TOO_LONG, node, hint=hint, wrong=wrong)

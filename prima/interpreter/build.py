@@ -17,6 +17,8 @@ from prima.interpreter.diagnoses import (
     ID_WITH_DOT,
     NO_FORM_AT_ALL,
     NO_GRAMMAR,
+    NO_ITEM,
+    SECOND_GRAMMAR,
     TAKES_NO_ANSWER,
     TWO_FORMS,
     TWO_OPTIONS,
@@ -165,8 +167,10 @@ class Builder(ContentBuilder):
             self.one_of_two(child, "next", "event")
             held = child.all("grammar")
             grammars = self.grammars(held)
-            if len(held) != 1:
+            if not held:
                 self.problem(NO_GRAMMAR, child)
+            for more in held[1:]:
+                self.problem(SECOND_GRAMMAR, more)
             if grammars:
                 to = self.target(child, "next")
                 found.append(Link(to, child.get("event"), Answers(grammars=grammars[:1]), child))
@@ -289,6 +293,8 @@ class Builder(ContentBuilder):
         parts = self.parts(node)
         unit = Unit(*self.item(node, parts), items=self.items(parts))
         unit.longest = self.value(node, "longest", "duration", LONGEST_UNIT_MS)
+        if not unit.items and all(one.key for one in node.nodes):
+            self.problem(NO_ITEM, node)
         return unit
 
     def settle_units(self, document: Document) -> None:

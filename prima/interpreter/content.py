@@ -188,8 +188,10 @@ class Executor(Evaluator):
             delay = self.plain(act.delay, fiber)
             self.owner.delay(act, params, self.milliseconds(delay, act.node), fiber)
         else:
-            service = shown(self.plain(act.service, fiber))
-            self.owner.send(service, {"params": params}, source(act.node))
+            service = self.plain(act.service, fiber)
+            if service is None:
+                raise Thrown.at(act.node, "error.semantic", "to has no value: it names no service")
+            self.owner.send(shown(service), {"params": params}, source(act.node))
 
     def milliseconds(self, value: Json, node: Node) -> int:
         """A delay: milliseconds from an attribute, or a time or seconds from an expression."""

@@ -9,6 +9,7 @@ from prima.errors.diagnoses.structure import (
     DUPLICATE_ANSWER,
     DUPLICATE_ID,
     EMPTY,
+    MISPLACED_ELEMENT,
     MISSING_ATTRIBUTE,
     MISSING_ELEMENT,
     NO_FORM,
@@ -44,6 +45,9 @@ NO_FORM_AT_ALL = NO_FORM.says("The application has no form.", "Write at least on
 NO_GRAMMAR = MISSING_ELEMENT.says(
     "<link> needs one <grammar>.", "Write what the user says into one."
 )
+SECOND_GRAMMAR = MISPLACED_ELEMENT.says(
+    "<link> takes one <grammar>.", "Write all that the user may say into the first, as <one-of>."
+)
 EMPTY_OPTION = EMPTY_ANSWER.says(
     "This option has no words.", "Write the words of the answer into it."
 )
@@ -59,6 +63,7 @@ TAKES_NO_ANSWER = NO_ANSWER.says(
     'The field "{name}" takes no answer at all.', "Give it options, a grammar or a type."
 )
 EMPTY_UNIT = EMPTY.says("This <iu> holds no Command.", "Write what must not be cut into it.")
+NO_ITEM = EMPTY.says("This <iu> holds no item of the form.", EMPTY_UNIT.remedy)
 FOR_FAS = FA_ONLY.says(
     "Additional arguments are for an FA alone: an EA does not know the robot.",
     "Remove the <param>.",

@@ -329,4 +329,5 @@ def too_long(letters: int, silence: float, most: int = LONGEST_TURN_MS) -> str:
     if lasts <= most:
         return ""
     beside = "" if most == LONGEST_TURN_MS else " beside another application (E6)"
-    return f"It keeps the speaker for at least {lasts / 1000:.0f} s; {most / 1000:g} s are the most{beside}."
+    shown = f"{lasts / 1000:.0f}" if lasts >= most + 1000 else f"{lasts / 1000:g}"
+    return f"It keeps the speaker for at least {shown} s; {most / 1000:g} s are the most{beside}."

@@ -31,7 +31,7 @@ OTHER_FORMS = (
 """Beginnings of texts in other formats, with descriptions and remedies."""
 REMEDIES = (
     (r"Namespace prefix (\S+) ", 'Write the name without "{0}:", or declare it: xmlns:{0}="...".'),
-    (r"Char 0x0|PCDATA invalid Char value 0|Invalid character",
+    (r"Char 0x0|Document is empty|PCDATA invalid Char value 0|Invalid character",
      "Remove the character; an editor may not show it. Save the file as UTF-8."),
     (r"invalid Char value|xmlParseCharRef", "Remove the control character."),
     (r"Start tag expected", "Begin with a root element, such as <prima> or <vxml>."),
@@ -51,6 +51,7 @@ REMEDIES = (
 )  # fmt: skip
 """The parser's messages, with remedies."""
 PLAINER = (
+    (r"Document is empty", "it begins with the character NUL"),
     (r"xmlParseEntityRef: no name", "an & is not escaped"),
     (r"EntityRef: expecting ';'", "an & begins no character's name, or lacks its ;"),
     (r"AttValue: \" or ' expected", "an attribute's value has no quotes"),

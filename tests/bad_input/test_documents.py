@@ -71,6 +71,7 @@ XML = [
     ("column-of-shift-jis", '<?xml version="1.0" encoding="Shift_JIS"?><a>日本'.encode("shift_jis") + b"\xff</a>", "1:48", "is not SHIFT_JIS"),
     ("fifth-edition-name", app(block(f"<{FIFTH}/>")), "2:2", "Take another name"),
     ("fifth-edition-later", app(f"<{FIFTH}/>\n" + block("<x/>")), "2:2", "Take another name"),
+    ("null-first", b"\0\0\0", "1:1", "it begins with the character NUL"),
     ("null-remedy", b"<a>\0</a>", "1:4", "Remove the character"),
     ("mismatch-remedy", app(block("<speak>x</speek>")), "2:", "write </speak>"),
     ("never-closed", "<a>", "1:4", "write </a>"),

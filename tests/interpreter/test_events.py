@@ -349,3 +349,13 @@ def test_many_pieces_of_code_in_one_place_take_no_longer_than_scripts_may(
     bench = Bench(f'<form id="a"><block><log>{slow * 2000}</log></block></form>', isolate="none")
     (end,) = bench.phases("unload")
     assert "scripts take too long" in end["outcome"]
+
+
+@pytest.mark.parametrize("nobody", ["null", "undefined"])
+def test_a_message_to_no_service_is_an_error(nobody: str) -> None:
+    bench = Bench(
+        f"""<form id="a"><block><send to-expr="{nobody}"/></block>
+        <on event="error.semantic"><log expr="event.message"/></on></form>"""
+    )
+    assert len(bench.logs()) == 1 and "it names no service" in bench.logs()[0]
+    assert bench.phases("send") == []

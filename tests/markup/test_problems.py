@@ -59,6 +59,12 @@ def test_all_problems_of_a_file_at_once_with_exact_places() -> None:
     ]
 
 
+LINK = """<link event="help"><grammar>help</grammar><grammar>aid</grammar></link>
+<form id="a"><on event="help"><exit/></on></form>"""
+WAITS = """<form id="a"><field name="f"><prompt timeout="{}">Hi?</prompt><option>yes</option>
+<noinput><exit/></noinput></field></form>"""
+
+
 @pytest.mark.parametrize(
     ("body", "code", "remedy"),
     [
@@ -70,10 +76,24 @@ def test_all_problems_of_a_file_at_once_with_exact_places() -> None:
         ('<form id="ask"><block><goto next="#aks"/></block></form>', "no-such-form", '"ask"'),
         ('<var name="goal"/><form id="a"><block><log expr="gaol"/></block></form>', "undeclared-variable", '"goal"'),
         ('<form id="a"><block>Hello</block></form>', "stray-text", "<speak>"),
+        ('<form id="a"><block><assign name="session.time" expr="1"/></block></form>', "undeclared-variable", "a variable of your own"),
+        ('<form id="a"><on event="touch"><assign name="event.data" expr="1"/></on></form>', "undeclared-variable", "a variable of your own"),
+        (LINK, "misplaced-element", "into the first, as <one-of>"),
+        ('<form id="a"><iu/><block><exit/></block></form>', "empty", "Write what must not be cut"),
+        (WAITS.format("60s"), "long-turn", "Shorten its timeout."),
+        (WAITS.format("600s"), "too-long", "Shorten its timeout."),
     ],
 )  # fmt: skip
 def test_a_problem_says_what_to_write_instead(body: str, code: str, remedy: str) -> None:
     assert remedy in found(body, code).remedy
+
+
+@pytest.mark.parametrize(
+    ("timeout", "told"),
+    [("60s", "at least 60.15 s; 60 s"), ("59950ms", "at least 60.1 s;"), ("90s", "at least 90 s;")],
+)
+def test_a_time_that_is_just_too_long_is_told_exactly(timeout: str, told: str) -> None:
+    assert told in found(WAITS.format(timeout), "long-turn").message
 
 
 @pytest.mark.parametrize(
@@ -101,6 +121,10 @@ def test_no_value_is_suggested_that_is_out_of_range(
         ('<par><speek>Hello.</speek><turn angle="9"/></par>', "unknown-element"),
         ("<iu><speek>Hello.</speek></iu>", "unknown-element"),
         ("<iu><prompt>Hello.</prompt></iu>", "misplaced-element"),
+        (
+            "</block><field><prompt>Hi?</prompt><option>yes</option></field><block>",
+            "missing-attribute",
+        ),
     ],
 )
 def test_one_mistake_in_a_command_is_one_problem(content: str, code: str) -> None:

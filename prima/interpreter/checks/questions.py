@@ -81,6 +81,8 @@ def _leaves(handler: Handler) -> Iterator[Problem]:
 def check_silence(facts: Facts) -> Iterator[Problem]:
     """Warn of questions that are repeated for ever while nobody answers (K1)."""
     for field in silent_fields(facts.document):
+        if not field.node.get("name"):
+            continue  # missing, which the schema reports
         yield NO_NOINPUT.at(field.node.place, field=field.name)
 
 

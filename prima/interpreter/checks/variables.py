@@ -27,6 +27,8 @@ ELSEWHERE = {
 }
 """Values as other languages write them, with those of ECMAScript."""
 PARTS = ("name", "message", "data")
+TOLD = ("session.time", *(f"event.{part}" for part in PARTS))
+"""What a run tells to documents."""
 FIELDS = {
     "touch": ("sensor",),
     "message": ("from", "text"),
@@ -54,6 +56,10 @@ ABSENT = {
 NOT_DECLARED = UNDECLARED_VARIABLE.says('The variable "{name}" is not declared.')
 NO_VARIABLE = UNDECLARED_VARIABLE.says(
     'No variable can be named "{name}": ECMAScript reserves this word.', "Choose another name."
+)
+NOT_ASSIGNED = UNDECLARED_VARIABLE.says(
+    '"{name}" cannot be assigned: a run tells it to the document.',
+    "Assign a variable of your own.",
 )
 NO_FUNCTION = UNDECLARED_VARIABLE.says('There is no function "{name}".', "Define it in a <script>.")
 NO_EVENT_HERE = UNDECLARED_VARIABLE.says(
@@ -189,7 +195,9 @@ class Variables:
             names = self.facts.known_in(form)
             head, dot, rest = assign.name.partition(".")
             name = rest.partition(".")[0] if dot and head in SCOPED else head
-            if name not in names and IDENTIFIER.fullmatch(name):
+            if head not in names and ".".join(assign.name.split(".")[:2]) in TOLD:
+                yield NOT_ASSIGNED.at(assign.node.attribute_place("name"), name=assign.name)
+            elif name not in names and IDENTIFIER.fullmatch(name):
                 at = assign.node.attribute_place("name")
                 at = at._replace(column=at.column + len(head) + 1) if name != head else at
                 meant = _meant(at, name, names.written())
