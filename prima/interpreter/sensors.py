@@ -104,15 +104,7 @@ def _sensor(code: Code, node: Node) -> str | None:
     return _member(code, whole) or None
 
 
-NAMED = frozenset(
-    [
-        "identifier",
-        "property_identifier",
-        "shorthand_property_identifier",
-        "this",
-        "escape_sequence",
-    ]
-)
+NAMED = frozenset(["identifier", "property_identifier", "shorthand_property_identifier", "this"])
 """Nodes that may name a sensor or anything else."""
 
 

@@ -162,12 +162,11 @@ class SimulatedDevices:
 def _world(cast: Cast) -> World:
     """The world, with robot and user in their initial places."""
     scenario, plan = cast.scenario, cast.world
-    first = next(iter(plan.places.values()), (0.0, 0.0))
-    at = plan.places.get(scenario.robot_at, first)
+    place = scenario.robot_at or next(iter(plan.places), "")
     heading = scenario.robot_heading
     if heading is None:
-        heading = plan.headings.get(scenario.robot_at, 0.0)
-    world = World(plan, cast.robot, at, heading)
+        heading = plan.headings.get(place, 0.0)
+    world = World(plan, cast.robot, plan.places.get(place, (0.0, 0.0)), heading)
     for person in scenario.persons:
         world.put(person.name, person.point or plan.point(person.at))
     return world

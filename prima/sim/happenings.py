@@ -194,7 +194,7 @@ def _recognised(reader: Reader, node: Node) -> dict[str, Json]:
     """The recogniser's report of the user's words (:class:`prima.messages.Heard`)."""
     report: dict[str, Json] = {}
     sure = reader.get(node, "confidence")
-    if "confidence" in node.attributes:
+    if sure is not None and sure < 1.0:
         report["confidence"] = sure
     others = [(one.text, reader.get(one, "confidence")) for one in node.all("alternative")]
     for one, (_, less) in zip(node.all("alternative"), others, strict=True):

@@ -200,6 +200,8 @@ WATCH = '<watch name="w" when="{}"/>' + LOG.format("1")
         ),
         ("<script>for (const k in ap\u01c0) k;</script>" + LOG.format("1"), None),
         ('<var name="Infinity" expr="1"/>' + WATCH.format("sensor.x &lt; Infinity"), None),
+        (LOG.format("'a\\tb'"), set()),
+        (LOG.format("sensor['h\\x75man']"), None),
         ("<script>function f() { return sens\\u006fr.x; }</script>" + LOG.format("1"), None),
         ("<script>function f() { return eval('sen' + 'sor.x'); }</script>" + LOG.format("1"), None),
         ("<script>function f(s) { return s.sensor; }</script>" + LOG.format("1"), None),

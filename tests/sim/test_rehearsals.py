@@ -143,6 +143,28 @@ def test_a_world_that_offers_something_to_a_robot_that_is_not_there_comes_to_an_
     assert transcript.outcome == "quiet"
 
 
+@pytest.mark.parametrize("robot", ["", '<robot at="first"/>'])
+def test_a_robot_that_is_put_nowhere_is_at_the_first_place_as_that_is_turned(
+    tmp_path: Path, robot: str
+) -> None:
+    (tmp_path / "world.xml").write_text(
+        '<world xmlns="urn:prima:world:1" version="1.0" id="w">'
+        '<place id="first" x="1" y="2" heading="90"/><place id="second" x="3" y="2"/></world>'
+    )
+    (tmp_path / "app.xml").write_text(
+        HEAD.format("ea", "app", "en")
+        + '<form id="a"><block><set-speed-and-time speed="0.5" time="1s"/><exit/></block></form></prima>'
+    )
+    path = tmp_path / "scenario.xml"
+    path.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="world.xml"'
+        f' robot="{ROOT}/documents/robots/papero.xml">{robot}<application src="app.xml"/></scenario>'
+    )
+    [end] = [one for one in api.rehearse(path).records if one["phase"] == "end"]
+    there = {name: end["data"][name] for name in ("x", "y", "heading")}
+    assert there == pytest.approx({"x": 1.0, "y": 2.5, "heading": 90.0}, abs=0.02)
+
+
 COMES_BACK = """<person x="4.5" y="4"/>
   <when at="1s"><event name="visit"/></when>
   <when on="visit" times="1000" after="60s"><event name="visit"/></when>

@@ -47,6 +47,16 @@ def test_the_recogniser_of_a_scenario_may_be_unsure(tmp_path: Path) -> None:
     assert again.dumps() == transcript.dumps()
 
 
+def test_a_recogniser_that_is_sure_reports_what_is_assumed(tmp_path: Path) -> None:
+    body = """<form id="a"><field name="town"><prompt>Which town?</prompt><option>Boston</option>
+      <filled><log expr="town$.confidence"/><exit/></filled></field></form>"""
+    script = '<answer to="Which town"{}>Boston</answer>'
+    sure, written = (
+        rehearse(tmp_path, body, script.format(how)).table() for how in ("", ' confidence="1"')
+    )
+    assert written == sure and "log: 1" in sure
+
+
 def test_an_alternative_is_not_likelier_than_what_is_heard(tmp_path: Path) -> None:
     script = """<answer to="a" confidence="0.4">b
       <alternative confidence="0.5">c</alternative><alternative>d</alternative></answer>
