@@ -23,6 +23,8 @@ SCRIPTED = "semantics/1.0"
 """The format of tags that are scripts."""
 RESULTS = ("rules", "meta")
 """Objects whose members are the results of rules."""
+WITH_RESULTS = ("field", "initial", "record", "subdialog", "transfer", "object")
+"""Items with a second variable, whose name has a ``$`` at its end."""
 LONGEST_CODE = 100_000
 """Maximum length of code that is searched for names."""
 
@@ -47,6 +49,8 @@ class Mark:
     short: bool = False
     holder: str = ""
     nearer: tuple[int, ...] = ()
+    shadow: bool = False
+    """Whether a ``$`` follows: the result of the item with this name (VoiceXML 2.0, 2.3.1)."""
     use: Use | None = field(default=None, compare=False)
     """Its use in code, if it is a variable there."""
 
@@ -88,7 +92,7 @@ def plain(code: str) -> str:
 def marks(page: ScannedText) -> list[Mark]:
     """All names of a page, in the order of the text."""
     found = [mark for tag in page.tags if tag.element for mark in _of_tag(page, tag)]
-    own = list(_linked(_scoped(found)))
+    own = list(_linked(_scoped(_shadows(found))))
     return sorted(_rooted(page, own), key=lambda mark: mark.start)
 
 
@@ -244,6 +248,19 @@ def _given(page: ScannedText, tag: ScannedTag, attr: Attr) -> Iterator[Mark]:
             defines = tag.vocabulary is DIALOGUE
             name = page.text[start:end]
             yield Mark(("variable",), name, start, end, defines, tag, form.start, holder="dialog")
+
+
+def _shadows(found: list[Mark]) -> list[Mark]:
+    """The names, but those of results, such as ``town$``, as uses of their items' names."""
+    variables = [mark for mark in found if mark.defines and mark.kind == ("variable",)]
+    given = {mark.name for mark in variables}
+    items = {mark.name for mark in variables if mark.tag.key in WITH_RESULTS}
+    return [
+        replace(mark, name=mark.name[:-1], end=mark.end - 1, shadow=True)
+        if mark.name[-1:] == "$" and mark.name[:-1] in items and mark.name not in given
+        else mark
+        for mark in found
+    ]
 
 
 def _scoped(found: list[Mark]) -> list[Mark]:

@@ -141,7 +141,9 @@ def rename(
 
 def _replacement(mark: Mark, new: str) -> str:
     """The text in place of a name; the property in ``{x}`` keeps its name."""
-    return f"{mark.name}: {new}" if mark.short else new
+    if not mark.short:
+        return new
+    return f"{mark.name}$: {new}" if mark.shadow else f"{mark.name}: {new}"
 
 
 def _check_new(kind: str, new: str) -> None:

@@ -119,6 +119,26 @@ def test_a_name_that_is_none_or_taken_is_refused(editor: Editor) -> None:
     editor.close("fa/x.xml")
 
 
+@pytest.mark.parametrize("at", ['name="town', 'expr="town', 'expr="f({to', "dialog.to", 'list="to'])
+def test_the_result_of_an_item_is_renamed_with_it(tmp_path: Path, at: str) -> None:
+    text = (
+        BEGIN
+        + """<var name="mine$"/><form id="a"><field name="town"><prompt>Which town?</prompt>
+        <option>Rome</option><filled><log expr="town + mine$"/><log expr="f({town$}) + dialog.town$.confidence"/>
+        <clear namelist="town mine$"/></filled></field>
+        <block><script>var other$ = 1; log(other$, town$)</script></block></form></prima>"""
+    )
+    workspace = Workspace()
+    path = workspace.put((tmp_path / "x.xml").as_uri(), text)
+    assert path is not None
+    edits, _ = naming.rename(workspace, path, text.index(at) + len(at), "city")
+    for edit in reversed(edits):
+        text = text[: edit.start] + edit.text + text[edit.end :]
+    assert "town" not in text.replace("{town$: city$}", "").replace("Which town?", "")
+    uses = ("city + mine$", "f({town$: city$})", "dialog.city$.", '"city mine$"', "other$, city$")
+    assert all(use in text for use in uses), text
+
+
 @pytest.mark.parametrize(
     ("uses", "old", "refused"),
     [
