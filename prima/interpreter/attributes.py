@@ -104,6 +104,10 @@ class AttributeReader:
         code = node.attributes.get(name)
         return None if code is None or not code.strip() else self.code(code, node, name)
 
+    def condition_of(self, node: Node) -> Expression | None:
+        """The cond of an item, handler or prompt; None if it is the default, which always holds."""
+        return self.expression(node, "cond") if node.get("cond").strip() != "true" else None
+
     def code(self, code: str, node: Node, attribute: str) -> Expression:
         """An expression, noted as one of the document's."""
         made = Expression(code, node, attribute)

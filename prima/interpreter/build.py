@@ -224,7 +224,7 @@ class Builder(ContentBuilder):
         return (
             name,
             self.expression(node),
-            self.expression(node, "cond"),
+            self.condition_of(node),
             handlers,
             self.properties(parts),
             node,
@@ -251,7 +251,7 @@ class Builder(ContentBuilder):
             prompt = Prompt(
                 text=self.text(child),
                 count=self.value(child, "count", "integer", 1),
-                cond=self.expression(child, "cond"),
+                cond=self.condition_of(child),
                 timeout=self.value(child, "timeout", "duration", None),
                 bargein=self.value(child, "bargein", "boolean", None),
                 node=child,

@@ -87,7 +87,7 @@ class ContentBuilder(AttributeReader):
             found.append(
                 Handler(
                     tuple([event.rstrip(".") for event in events]),
-                    self.expression(child, "cond"),
+                    self.condition_of(child),
                     count,
                     None if reactive is None else reactive == "true",
                     content,

@@ -263,3 +263,19 @@ def test_a_unit_that_its_own_speech_outlasts_is_told(longest: str, said: str, me
     )
     told = [one.message for one in problems if one.code == "long-unit"]
     assert len(told) == bool(message) and message in "".join(told)
+
+
+@pytest.mark.parametrize(
+    ("body", "code"),
+    [
+        ('<form id="f"><block{}><speak>A.</speak><goto next="#f"/></block></form>', "endless"),
+        ('<form id="f"><field name="a"><prompt{}>B?</prompt><option>c</option></field></form>', "no-noinput"),
+        ("""<form id="f"><iu><block><speak>A.</speak></block></iu>
+          <error{}><log>e</log></error></form><error><set-position x="1" y="0"/></error>""", ""),
+    ],
+)  # fmt: skip
+def test_a_condition_that_is_the_default_changes_no_problem(body: str, code: str) -> None:
+    plain, written = (
+        {one.code for one in read(body.format(how))[1]} for how in ("", ' cond="true"')
+    )
+    assert written == plain and code in plain | {""}
