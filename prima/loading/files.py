@@ -277,8 +277,8 @@ class Folder:
         from prima.voicexml.document import FetchError
 
         parts = urlsplit(uri)
-        if parts.scheme not in ("", "file"):
-            raise FetchError(f"{parts.scheme}: is not fetched: no network is used")
+        if parts.scheme or parts.netloc:
+            raise FetchError(f"{parts.scheme or parts.netloc}: is not fetched: no network is used")
         root = absolute(self.path)
         target = path_of(normpath(root / unquote(parts.path).lstrip("/")))
         try:

@@ -349,11 +349,22 @@ def test_a_hangup_from_outside_is_handled_without_waiting_again() -> None:
     assert call.ended == "connection.disconnect.hangup"
 
 
-@pytest.mark.parametrize("uri", ["../secret.vxml", "/etc/passwd", "ftp://x/y", "file:///x"])
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "../secret.vxml",
+        "/etc/passwd",
+        "ftp://x/y",
+        "file:///x",
+        "file:///in.vxml",
+        "//host/in.vxml",
+    ],
+)
 def test_nothing_is_fetched_from_outside_the_folder(tmp_path: Path, uri: str) -> None:
     folder = tmp_path / "app"
     folder.mkdir()
-    (folder.parent / "secret.vxml").write_text(vxml(block("<log>secret</log>")))
+    for path in (folder.parent / "secret.vxml", folder / "in.vxml"):
+        path.write_text(vxml(block("<log>secret</log>")))
     text = vxml(
         '<catch event="error.badfetch"><log>refused</log><exit/></catch>'
         + block(f'<goto next="{uri}"/>')
