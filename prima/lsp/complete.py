@@ -200,6 +200,12 @@ class _Completion:
         if use.kinds == ("command",):
             yield from self._commands(tag, attr)
             return
+        yield from self._defined(tag, attr, use)
+        if use.kinds == ("device",) and not self._known(self.path, use.kinds, tag):
+            yield from self._plain(attr, DEVICES)
+
+    def _defined(self, tag: ScannedTag, attr: Attr, use: ReferenceUse) -> Iterator[Proposal]:
+        """Names that documents define, in the notation of a reference."""
         path, sign, start = self.path, "", self._span(attr, use.how == "list")
         if use.how in ("#", "uri"):
             file, sign, _ = attr.value.partition("#")
@@ -211,8 +217,6 @@ class _Completion:
         for found in self._known(path, use.kinds, tag):
             name = sign + found.mark.name
             yield Proposal(name, "name", *start, escape(name), "", self._where(found))
-        if use.kinds == ("device",) and not self._known(path, use.kinds, tag):
-            yield from self._plain(attr, DEVICES)
 
     def _known(self, path: Path, kinds: tuple[str, ...], tag: ScannedTag) -> list[FoundName]:
         if kinds == ("form",) and tag.key in ("expect", "never"):
