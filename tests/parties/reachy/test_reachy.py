@@ -94,18 +94,19 @@ def test_gestures_end_where_they_began(party: Daemon, name: str) -> None:
     play(test())
 
 
-def test_it_points_with_the_antenna_of_the_side(party: Daemon) -> None:
+@pytest.mark.parametrize(
+    ("args", "sides"), [({"angle": -40.0}, (-1.57, 0.17)), ({"toward": "door"}, (-0.17, 1.57))]
+)
+def test_it_points_with_the_antenna_of_the_side(
+    party: Daemon, args: dict[str, float | str], sides: tuple[float, float]
+) -> None:
+    there = pytest.approx(sides, abs=0.15)
+
     async def test() -> None:
         async with connected(party.address) as run:
-            for args, sides in (
-                ({"angle": -40.0}, (-1.57, 0.17)),
-                ({"toward": "door"}, (-0.17, 1.57)),
-            ):
-                key = run.begin("point-by-hand", **args)
-                await asyncio.sleep(1)
-                antennas = party.get("/api/state/full")["antennas_position"]
-                assert antennas == pytest.approx(sides, abs=0.15)
-                assert isinstance(await run.end(key), Done)
+            key = run.begin("point-by-hand", **args)
+            await until(lambda: party.get("/api/state/full")["antennas_position"] == there)
+            assert isinstance(await run.end(key), Done)
 
     play(test())
 
