@@ -51,8 +51,8 @@ class MappedDriver(TaskDriver):
         turn = self._turn(goal)
         if turn is not None:
             return abs(turn) / profile.turn_speed
-        known = profile.gestures.get(str(command.args.get("name", "")))
-        known = known or profile.lasts(goal.kind)
+        gesture = profile.gestures.get(str(command.args.get("name", "")))
+        known = gesture or profile.lasts(goal.kind)
         return known / 1000 if known else None
 
     def values(self, goal: Begin) -> dict[str, Json]:

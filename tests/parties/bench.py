@@ -164,6 +164,35 @@ class Visit(Process):
         assert again.read_bytes() == self.journal.read_bytes()
         return "".join(self.errors)
 
+    def rows_of_lost_robot(
+        self, robot: Process, again: Callable[[], Process], touch: str, **goes: Any
+    ) -> str:
+        """What it printed, where its robot is lost on the way, comes back and is touched."""
+        back: Process | None = None
+        try:
+            robot.expect("goes", **goes)
+            robot.kill()
+            self.until_printed("the robot is lost")
+            back = again()
+            self.until_printed("the robot is back")
+            back.write(touch)
+            back.expect("says", text="Oh!")
+            return self.rows(code=3)
+        finally:
+            self.kill()
+            if back is not None:
+                back.kill()
+
+
+LOST_AND_BACK = (
+    "Topological Move fails",
+    "ends walk: error.device.",
+    "Turn",
+    "Oh!",
+    "ends dodge: exit",
+)
+"""What a visit prints whose robot is lost on the way and comes back."""
+
 
 def in_order(text: str, *parts: str) -> bool:
     """Whether a text has these parts one behind the other."""

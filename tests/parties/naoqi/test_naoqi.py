@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 import socket
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from tests.parties.bench import Driven, Process, Visit, in_order
+from tests.parties.bench import LOST_AND_BACK, Driven, Process, Visit, in_order
 from tests.parties.checked import checked
 
 HERE = Path(__file__).parent
@@ -217,22 +218,8 @@ def test_the_robot_goes_in_the_midst_of_a_run(
     robot: Process, document: Path, port: int, tmp_path: Path
 ) -> None:
     visit = Visit("naoqi", document, tmp_path / "visit.jsonl")
-    back: Process | None = None
-    try:
-        robot.expect("goes", x=4)
-        robot.kill()
-        visit.until_printed("the robot is lost")
-        back = made_robot(port)
-        visit.until_printed("the robot is back")
-        back.write("FrontTactilTouched 1.0")
-        back.expect("says", text="Oh!")
-        rows = visit.rows(code=3)
-    finally:
-        visit.kill()
-        if back is not None:
-            back.kill()
-    fails = ("Topological Move fails", "ends walk: error.device.")
-    assert in_order(rows, *fails, "Turn", "Oh!", "ends dodge: exit"), rows
+    rows = visit.rows_of_lost_robot(robot, partial(made_robot, port), "FrontTactilTouched 1.0", x=4)
+    assert in_order(rows, *LOST_AND_BACK), rows
 
 
 def test_the_check_before_a_run_tries_to_cancel(robot: Process, document: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from tests.parties.bench import ROS_HOME, Process, Visit, in_order
+from tests.parties.bench import LOST_AND_BACK, ROS_HOME, Process, Visit, in_order
 from tests.parties.checked import checked
 from tests.parties.ros2.nodes import ROBOT, made_again
 
@@ -31,23 +31,8 @@ def test_the_robot_goes_and_comes_back_in_the_midst_of_a_run(
     robot: Process, tmp_path: Path
 ) -> None:
     visit = Visit("ros2", ROBOT, tmp_path / "visit.jsonl", **ROS_HOME)
-    back: Process | None = None
-    try:
-        robot.expect("goes")
-        robot.kill()
-        visit.until_printed("the robot is lost")
-        back = made_again()
-        visit.until_printed("the robot is back")
-        back.write("touch on")
-        back.expect("says", text="Oh!")
-        rows = visit.rows(code=3)
-    finally:
-        visit.kill()
-        if back is not None:
-            back.kill()
-    fails = ("Topological Move fails", "ends walk: error.device.")
-    parts = (*fails, "Turn", "Oh!", "ends dodge: exit")
-    assert in_order(rows, *parts), rows
+    rows = visit.rows_of_lost_robot(robot, made_again, "touch on")
+    assert in_order(rows, *LOST_AND_BACK), rows
 
 
 def test_the_check_before_a_run_tries_to_cancel(robot: Process) -> None:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import socket
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from tests.parties.bench import Driven, Process, Visit, in_order
+from tests.parties.bench import LOST_AND_BACK, Driven, Process, Visit, in_order
 
 HERE = Path(__file__).parent
 LONG = "This takes much longer than anybody wants to wait for it."
@@ -217,19 +218,7 @@ def test_the_robot_goes_in_the_midst_of_a_run(
     robot: Process, document: Path, port: int, tmp_path: Path
 ) -> None:
     visit = Visit("rosbridge", document, tmp_path / "visit.jsonl")
-    back: Process | None = None
-    try:
-        robot.expect("goes")
-        robot.kill()
-        visit.until_printed("the robot is lost")
-        back = made_robot(port, "threads")
-        visit.until_printed("the robot is back")
-        back.write('/touch {"data": true}')
-        back.expect("says", text="Oh!")
-        rows = visit.rows(code=3)
-    finally:
-        visit.kill()
-        if back is not None:
-            back.kill()
-    fails = ("Topological Move fails", "ends walk: error.device.")
-    assert in_order(rows, *fails, "Turn", "Oh!", "ends dodge: exit"), rows
+    rows = visit.rows_of_lost_robot(
+        robot, partial(made_robot, port, "threads"), '/touch {"data": true}'
+    )
+    assert in_order(rows, *LOST_AND_BACK), rows
