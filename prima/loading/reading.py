@@ -230,7 +230,8 @@ class Reading:
             else:
                 from prima.voicexml import checks, sketched
 
-                self.problems += checks.check_commands(document.page.root, robot.commands)
+                root = document.page.root
+                self.problems += checks.check_commands(root, robot.commands, robot.devices)
                 self.problems += sketched.added_in_units(document.page, robot.commands)
 
     def check_policy(self, scenario: Scenario) -> None:

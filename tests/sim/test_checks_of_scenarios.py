@@ -249,38 +249,6 @@ def test_a_corner_that_a_scenario_misspells_is_told(
 
 
 @pytest.mark.parametrize(
-    ("device", "handler", "told"),
-    [
-        ("speech-recognition", "", []),
-        ("arm", "", ["it lacks speech-recognition", "So it is at 1 more place."]),
-        ("arm", '<on event="error.unsupported"><exit/></on>', ["it lacks speech-recognition"]),
-    ],
-)
-def test_a_robot_that_hears_nothing_cannot_ask(
-    tmp_path: Path, device: str, handler: str, told: list[str]
-) -> None:
-    (tmp_path / "robot.xml").write_text(
-        '<robot xmlns="urn:prima:robot:1" version="1.0" id="r"><device name="speaker"/>'
-        f'<device name="{device}"/></robot>'
-    )
-    ask = "<field name='{}'><prompt>Tea?</prompt><option>yes</option><noinput><exit/></noinput></field>"
-    (tmp_path / "a.xml").write_text(
-        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a" xml:lang="en">'
-        f'<form id="f">{handler}{ask.format("one")}{ask.format("two")}</form></prima>'
-    )
-    (tmp_path / "s.xml").write_text(
-        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" robot="robot.xml"'
-        f' world="{ROOT}/documents/worlds/room.xml"><robot at="middle"/><person x="1" y="0"/>'
-        '<application src="a.xml"/></scenario>'
-    )
-    found = [one for one in api.validate(tmp_path / "s.xml") if one.code == "unsupported-command"]
-    assert [one.severity for one in found] == ["warning"] * bool(told)
-    whole = "".join(f"{one.message} {one.remedy}" for one in found)
-    assert all(words in whole for words in told)
-    assert ("Handle it" in whole) == (bool(told) and not handler)
-
-
-@pytest.mark.parametrize(
     ("more", "severity", "code", "says"),
     [
         ('<when doing="topological-move"><say>Hi.</say></when>', "warning", "unsupported-command", "do topological-move: it lacks localization, locomotion. This never"),

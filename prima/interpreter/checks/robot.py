@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 from prima.errors import Hint, Problem, few, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_ARGUMENT, UNSUPPORTED_COMMAND
@@ -20,7 +21,7 @@ from prima.markup.tree import Node
 NO_COMMAND = UNSUPPORTED_COMMAND.says('This robot has no Command "{command}".', severity="error")
 CANNOT = UNSUPPORTED_COMMAND.says(
     "This robot cannot do {command}{lacks}. At run time it is {event}.{substitute}",
-    'Handle it: <on event="{event}">.',
+    'Handle it: <{handler} event="{event}">.',
 )
 CANNOT_HANDLED = UNSUPPORTED_COMMAND.says(CANNOT.message)
 NO_ARGUMENT = NO_SUCH_ARGUMENT.says('This robot\'s {command} has no additional argument "{name}".')
@@ -32,46 +33,62 @@ def check_commands(
     """Warn of Commands that a robot cannot carry out: a document may handle the failure."""
     problems = _outside_units(document, commands)
     heard = {name for handler in handlers_of(document) for name in handler.events}
+    robot = Ability(commands, devices, heard)
     cannot: list[Problem] = []
     for command in document_commands(document):
         row = commands.get(command.type)
         if row is None or row.substitute:
-            cannot.append(_cannot(command.node, command.type, row, commands, devices, heard))
+            cannot.append(robot.problem(command.node, command.type))
         else:
             problems += _arguments(command, row)
-    row = commands.get(QUESTION)
-    if row is None or row.substitute:
+    if robot.lacks(QUESTION):
         cannot += [
-            _cannot(item.node, QUESTION, row, commands, devices, heard)
+            robot.problem(item.node, QUESTION)
             for item in items_of(document)
             if isinstance(item, Field)
         ]
     return problems + few(cannot, 1)
 
 
-def _cannot(
-    node: Node,
-    name: str,
-    row: CommandType | None,
-    commands: Mapping[str, CommandType],
-    devices: frozenset[str],
-    heard: set[str],
-) -> Problem:
-    """The problem of a Command that a robot lacks; ``heard``: the events handled."""
-    if name not in TABLE_4_2:
-        hint = suggestion(name, commands, *value_span(node, "type"))
-        return NO_COMMAND.at(node.place, hint, command=name)
-    lacking = sorted(TABLE_4_2[name].devices - devices) if devices else []
-    event = f"error.unsupported.{name}"
-    takes_place = f" With the extension x6 {row.substitute} takes its place." if row else ""
-    handled = not heard.isdisjoint(prefixes(event))
-    return (CANNOT_HANDLED if handled else CANNOT).at(
-        node.place,
-        command=name,
-        lacks=f": it lacks {', '.join(lacking)}" if lacking else "",
-        event=event,
-        substitute=takes_place,
-    )
+@dataclass(frozen=True, slots=True)
+class Ability:
+    """What a robot can carry out of a document.
+
+    Args:
+        commands: the rows of its Commands.
+        devices: its devices; empty if unknown.
+        heard: the events that the document handles.
+        handler: the element that handles an event, in the document's language.
+    """
+
+    commands: Mapping[str, CommandType]
+    devices: frozenset[str]
+    heard: set[str]
+    handler: str = "on"
+
+    def lacks(self, name: str) -> bool:
+        """Whether the robot lacks a Command, or has only a substitute for it (x6)."""
+        row = self.commands.get(name)
+        return row is None or bool(row.substitute)
+
+    def problem(self, node: Node, name: str) -> Problem:
+        """The problem of an element that asks for a Command that the robot lacks."""
+        if name not in TABLE_4_2:
+            hint = suggestion(name, self.commands, *value_span(node, "type"))
+            return NO_COMMAND.at(node.place, hint, command=name)
+        row = self.commands.get(name)
+        lacking = sorted(TABLE_4_2[name].devices - self.devices) if self.devices else []
+        event = f"error.unsupported.{name}"
+        takes_place = f" With the extension x6 {row.substitute} takes its place." if row else ""
+        handled = not self.heard.isdisjoint(prefixes(event))
+        return (CANNOT_HANDLED if handled else CANNOT).at(
+            node.place,
+            command=name,
+            lacks=f": it lacks {', '.join(lacking)}" if lacking else "",
+            event=event,
+            substitute=takes_place,
+            handler=self.handler,
+        )
 
 
 def _arguments(command: CommandTemplate, row: CommandType) -> Iterator[Problem]:

@@ -4,18 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from prima.errors import Problem, suggestion
+from prima.errors import Problem, few, suggestion
 from prima.errors.diagnoses.names import UNSUPPORTED_COMMAND
 from prima.errors.diagnoses.structure import MISPLACED_ELEMENT, UNKNOWN_ATTRIBUTE, UNKNOWN_ELEMENT
 from prima.errors.diagnoses.values import EXCLUSIVE, NOTHING_TO_SAY
 from prima.interpreter.checks import given_to
-from prima.interpreter.units import ARRANGING
+from prima.interpreter.checks.robot import Ability
+from prima.interpreter.units import ARRANGING, QUESTION
 from prima.language.arguments import excluding_arguments
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.spans import name_spans, similar_attribute, value_span
 from prima.markup.tree import Node
 from prima.voicexml.arranging import arguments_of, check_arranged
+from prima.voicexml.elements import HANDLERS, handler_names
 from prima.voicexml.vocabulary import COMMANDS, HOLDING, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
+
+QUESTIONS = frozenset({"field", "initial", "menu"})
+"""Elements that ask the user."""
 
 UNKNOWN_COMMAND = UNKNOWN_ELEMENT.says("PRIMA has no Command <{tag}>.")
 NOT_HERE = MISPLACED_ELEMENT.says(
@@ -79,20 +84,40 @@ def _check_arguments(node: Node) -> Iterator[Problem]:
             yield NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
 
 
-def check_commands(root: Node, commands: Mapping[str, CommandType]) -> list[Problem]:
+def check_commands(
+    root: Node, commands: Mapping[str, CommandType], devices: frozenset[str]
+) -> list[Problem]:
     """Warn of Commands that a robot adds or lacks: at run time they cause events."""
+    heard = {name for one in root.walk() if one.tag in HANDLERS for name in handler_names(one)}
+    robot = Ability(commands, devices, heard, handler="catch")
     problems: list[Problem] = []
+    lacking: list[Problem] = []
     for node in root.walk():
-        name = node.get("type")
-        if node.namespace != PRIMA_NAMESPACE or node.tag != "command" or not name:
-            continue
-        row = commands.get(name)
-        if row is None:
-            hint = suggestion(name, commands, *value_span(node, "type"))
-            problems.append(NO_COMMAND.at(node.attribute_place("type"), hint, command=name))
-        else:
-            problems += command_problems(node, row)
-    return problems
+        if name := _asked_for(node):
+            lacking += [robot.problem(node, name)] if robot.lacks(name) else []
+        elif node.namespace == PRIMA_NAMESPACE and node.tag == "command" and node.get("type"):
+            problems += _check_added(node, commands)
+    return problems + few(lacking, 1)
+
+
+def _asked_for(node: Node) -> str:
+    """The Command of Table 4.2 for which an element asks, or nothing."""
+    if node.namespace == PRIMA_NAMESPACE and node.tag in TABLE_4_2:
+        return node.tag
+    if node.namespace != NAMESPACE:
+        return ""
+    if node.tag == "block":
+        return "speak" if node.own_text.strip() or node.all("prompt") else ""
+    return QUESTION if node.tag in QUESTIONS else ""
+
+
+def _check_added(node: Node, commands: Mapping[str, CommandType]) -> list[Problem]:
+    """The problems of a ``<command>``, whose type only the robot defines."""
+    row = commands.get(node.get("type"))
+    if row is not None:
+        return command_problems(node, row)
+    hint = suggestion(node.get("type"), commands, *value_span(node, "type"))
+    return [NO_COMMAND.at(node.attribute_place("type"), hint, command=node.get("type"))]
 
 
 def command_problems(node: Node, row: CommandType) -> list[Problem]:
