@@ -92,9 +92,7 @@ class Transcript:
         Raises:
             UsageError: a record lacks a field of its phase.
         """
-        from prima.transcript.measures import summarize
-
-        return self.measure.summary() if self.measure else summarize(self.run())
+        return (self.measure or self.run().measure).summary()
 
     @property
     def early(self) -> str:

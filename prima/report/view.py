@@ -129,7 +129,7 @@ def _facts(run: Run) -> list[tuple[str, str]]:
 
 def _measures(run: Run) -> list[tuple[str, str, str]]:
     """The measures of docs/measures.md."""
-    found, starved = run.criteria, len(run.of("starve"))
+    found, starved = run.measure.criteria(), len(run.of("starve"))
     waiting = "behaviours that another application has kept waiting for too long (E4, E6)"
     stolen = "answers after which another application spoke before the asker"
     astray = "late answers that another application took"

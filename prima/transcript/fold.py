@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Callable
 from itertools import chain
 
-from prima.transcript.observer import Observer
+from prima.transcript.measures import Measure
 from prima.transcript.record import Entry
 from prima.transcript.spans import (
     OPEN,
@@ -50,8 +50,7 @@ class Fold:
         self.events: dict[int, Entry] = {}
         self.about: dict[str, list[tuple[int, Entry]]] = defaultdict(list)
         self.phases: dict[str, list[Entry]] = defaultdict(list)
-        self.observer = Observer()
-        """Counts the thesis's criteria."""
+        self.measure = Measure(delays=True)
         self._came: dict[int, float] = {}
         """The times of events."""
         self._answered: set[tuple[str, int]] = set()
@@ -88,9 +87,10 @@ class Fold:
         name = base(entry.behavior)
         if entry.phase in ASKED:
             self._tell(name, entry)
-        broken = self.observer.found.broken
-        self.observer.add(entry)
-        if entry.phase == "start" and self.observer.found.broken > broken and name in self._of:
+        criteria = self.measure.observer.found
+        broken = criteria.broken
+        self.measure.add(entry)
+        if entry.phase == "start" and criteria.broken > broken and name in self._of:
             self._break(self._of[name])
         if do := self._do.get(entry.phase):
             do(entry, name)
@@ -110,7 +110,7 @@ class Fold:
         return Run(
             self.entries, self.now, self._apps(), self.behaviors, self.spells, self.uses,
             self.sayings, self.streams, self.lives, self.states, self.floors, self.holds,
-            self.reactions, self.events, self.about, self.phases, self.observer.result(),
+            self.reactions, self.events, self.about, self.phases, self.measure,
         )  # fmt: skip
 
     def _apps(self) -> list[str]:
@@ -331,7 +331,7 @@ class Fold:
     def _break(self, stream: StreamSpan) -> None:
         """Record that another application broke the stream before it goes on."""
         paused = self.now if stream.paused is None else stream.paused
-        begin = min(paused, self.observer.broken_since)
+        begin = min(paused, self.measure.observer.broken_since)
         came = [
             other.name
             for other in self.streams.values()

@@ -1,4 +1,4 @@
-"""Measures of a transcript, computed from its records."""
+"""Measures of a run, counted from its records one by one."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from prima.transcript.criteria import Criteria
 from prima.transcript.observer import Observer
 from prima.transcript.record import Entry
-from prima.transcript.run import Run
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,13 +30,17 @@ class Summary:
 
 
 class Measure:
-    """Measures during a run, without keeping records."""
+    """Measures during a run, without keeping records.
 
-    def __init__(self) -> None:
+    Args:
+        delays: whether the delay of each reaction is kept among the criteria.
+    """
+
+    def __init__(self, delays: bool = False) -> None:
         self.records = 0
         self._last = 0.0
         self._counted = {"collision": 0, "starve": 0}
-        self._observer = Observer(delays=False)
+        self.observer = Observer(delays)
 
     def add(self, entry: Entry) -> None:
         """Add a record."""
@@ -45,34 +48,24 @@ class Measure:
         self._last = entry.time
         if entry.phase in self._counted:
             self._counted[entry.phase] += 1
-        self._observer.add(entry)
-
-    def summary(self) -> Summary:
-        """The result so far."""
-        counted = self._counted
-        return _summary(self._last, self.criteria(), counted["collision"], counted["starve"])
+        self.observer.add(entry)
 
     def criteria(self) -> Criteria:
         """The thesis's criteria so far."""
-        return self._observer.result()
+        return self.observer.result()
 
-
-def summarize(run: Run) -> Summary:
-    """Measure a run: duration, broken streams, reaction times."""
-    last = run.entries[-1].time if run.entries else 0.0
-    return _summary(last, run.criteria, len(run.of("collision")), len(run.of("starve")))
-
-
-def _summary(last: float, found: Criteria, collisions: int, starved: int) -> Summary:
-    return Summary(
-        last,
-        found.broken,
-        collisions,
-        found.reactions,
-        found.reaction_mean,
-        found.reaction_max,
-        found.responses,
-        found.response_mean,
-        found.response_max,
-        starved,
-    )
+    def summary(self) -> Summary:
+        """The result so far."""
+        found = self.criteria()
+        return Summary(
+            self._last,
+            found.broken,
+            self._counted["collision"],
+            found.reactions,
+            found.reaction_mean,
+            found.reaction_max,
+            found.responses,
+            found.response_mean,
+            found.response_max,
+            self._counted["starve"],
+        )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from prima.transcript.criteria import Criteria
+from prima.transcript.measures import Measure
 from prima.transcript.record import Entry
 
 OPEN = 1 << 62
@@ -215,7 +215,7 @@ class Run:
     about: dict[str, list[tuple[int, Entry]]]
     """Records that say when an AB came, by its name, with the number of each."""
     phases: dict[str, list[Entry]]
-    criteria: Criteria
+    measure: Measure
 
     @property
     def head(self) -> dict[str, Any]:
