@@ -70,8 +70,8 @@ def make_lanes(run: Run, rows: Sequence[Row]) -> Lanes:
         [_waits(one, one.name, one.name) for one in run.holds if one.lasts],
         [_floor(one) for one in run.floors if one.stack and one.lasts],
         [
-            Bar(one.begin, one.end, one.tree, one.app, f"stream {one.tree}", cuts=one.windows)
-            for one in run.lives
+            Bar(one.begin, one.end, one.name, one.app, f"stream {one.name}", cuts=one.windows)
+            for one in run.streams.values()
         ],
     )
     _find_rows(lanes, _Marks(run, rows))

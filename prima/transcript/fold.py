@@ -14,7 +14,6 @@ from prima.transcript.spans import (
     DeviceUse,
     FloorSpan,
     Hold,
-    Life,
     Reaction,
     Run,
     Saying,
@@ -42,7 +41,6 @@ class Fold:
         self.uses: list[DeviceUse] = []
         self.sayings: list[Saying] = []
         self.streams: dict[str, StreamSpan] = {}
-        self.lives: list[Life] = []
         self.states: list[StreamState] = []
         self.floors: list[FloorSpan] = []
         self.holds: list[Hold] = []
@@ -56,7 +54,6 @@ class Fold:
         self._answered: set[tuple[str, int]] = set()
         self._of: dict[str, StreamSpan] = {}
         """The streams of behaviors."""
-        self._alive: dict[str, Life] = {}
         self._state: dict[str, StreamState] = {}
         self._held: dict[str, Hold] = {}
         self._do: dict[str, Callable[[Entry, str], None]] = {
@@ -102,14 +99,14 @@ class Fold:
         for spell in self.spells:
             if spell.behavior.spell is spell:
                 self._close(spell.behavior, "unfinished", "", open_=True)
-        for one in chain(self.lives, self.states, self.floors, self.holds):
+        for one in chain(self.states, self.floors, self.holds):
             if one.end < 0:
                 one.end = self.now
         for stream in self.streams.values():
             self._finish(stream)
         return Run(
             self.entries, self.now, self._apps(), self.behaviors, self.spells, self.uses,
-            self.sayings, self.streams, self.lives, self.states, self.floors, self.holds,
+            self.sayings, self.streams, self.states, self.floors, self.holds,
             self.reactions, self.events, self.about, self.phases, self.measure,
         )  # fmt: skip
 
@@ -133,9 +130,6 @@ class Fold:
         if entry.tree not in self.streams:
             self.streams[entry.tree] = StreamSpan(entry.tree, entry, entry.app, self.now)
         self._of[name] = self.streams[entry.tree]
-        if entry.tree not in self._alive:
-            life = self._alive[entry.tree] = Life(self.now, tree=entry.tree, app=entry.app)
-            self.lives.append(life)
 
     def _start(self, entry: Entry, name: str) -> None:
         self._react(entry)
@@ -297,16 +291,14 @@ class Fold:
 
     def _stream_end(self, entry: Entry, _: str) -> None:
         self._change(entry.tree, None)
-        if life := self._alive.pop(entry.tree, None):
-            life.close(self.now, len(self.entries))
         if stream := self.streams.get(entry.tree):
             self._return(stream)
             stream.end, stream.ended = self.now, True
 
     def _window(self, entry: Entry, _: str) -> None:
-        life = self._alive.get(entry.tree)
-        if life is not None and (not life.windows or life.windows[-1] != self.now):
-            life.windows.append(self.now)
+        stream = self.streams.get(entry.tree)
+        if stream is not None and self.now not in stream.windows[-1:]:
+            stream.windows.append(self.now)
 
     def _begin(self, stream: StreamSpan, name: str) -> None:
         """Record that an AB of a stream runs."""

@@ -128,16 +128,6 @@ class StreamState(TimeSpan):
     by: str = ""
 
 
-@dataclass(slots=True, kw_only=True)
-class Life(TimeSpan):
-    """A stream from its first request to its end."""
-
-    tree: str
-    app: str
-    windows: list[float] = field(default_factory=list)
-    """When windows open or close."""
-
-
 @dataclass(slots=True)
 class StreamPiece:
     """A piece of a stream: it ``runs``, is ``away`` (suspended, then resumed) or ``broken``.
@@ -154,7 +144,7 @@ class StreamPiece:
 
 @dataclass(slots=True)
 class StreamSpan:
-    """A Communication Stream with its pieces."""
+    """A Communication Stream, from its first request to its end, with its pieces."""
 
     name: str
     asked: Entry
@@ -164,6 +154,8 @@ class StreamSpan:
     end: float = -1.0
     ended: bool = False
     pieces: list[StreamPiece] = field(default_factory=list)
+    windows: list[float] = field(default_factory=list)
+    """When windows open or close."""
     running: set[str] = field(default_factory=set)
     since: float = 0.0
     """When the first of what runs began."""
@@ -205,7 +197,6 @@ class Run:
     uses: list[DeviceUse]
     sayings: list[Saying]
     streams: dict[str, StreamSpan]
-    lives: list[Life]
     states: list[StreamState]
     floors: list[FloorSpan]
     holds: list[Hold]
