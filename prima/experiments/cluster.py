@@ -8,15 +8,17 @@ import re
 import sys
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, suppress
+from contextlib import contextmanager, suppress
+from functools import partial
 from itertools import islice
 from time import monotonic, perf_counter, sleep
 from typing import TYPE_CHECKING, Any
 
 from prima.errors import RunError, UsageError
 from prima.errors.visible import escaped
-from prima.experiments.pools import Making, Pool, Result, Runs, local
+from prima.experiments.pools import Pool, Runs, local
 from prima.experiments.scenariotext import Variant
+from prima.experiments.variants import Made, Stage
 from prima.pool import Died, cores
 from prima.version import __version__
 
@@ -64,10 +66,7 @@ def pool_of(address: str | None, workers: int | None) -> Pool:
         message = "a cluster needs Dask: pip install 'prima[cluster]'."
         raise UsageError(f"--on {address}: {message}") from None
 
-    def pool(stage: Making[Result]) -> AbstractContextManager[Runs[Result]]:
-        return _staff(address, stage)
-
-    return pool
+    return partial(_staff, address)
 
 
 def size_of(address: str | None, workers: int | None) -> int:
@@ -87,7 +86,7 @@ def size_of(address: str | None, workers: int | None) -> int:
 
 
 @contextmanager
-def _staff(address: str, stage: Making[Result]) -> Iterator[Runs[Result]]:
+def _staff(address: str, stage: Stage) -> Iterator[Runs]:
     """Connect, send the content of all runs to all workers, and make runs there.
 
     Raises:
@@ -258,12 +257,12 @@ def _patience() -> float:
     return seconds
 
 
-def _given(stage: Making[Result]) -> Making[Result]:
+def _given(stage: Stage) -> Stage:
     """Hold the content of all runs; called on a worker."""
     return stage
 
 
-def _work(stage: Making[Result], lot: Sequence[Variant]) -> tuple[float, list[Result]]:
+def _work(stage: Stage, lot: Sequence[Variant]) -> tuple[float, list[Made]]:
     """Make the runs of a task; returns how many seconds that took, and the results.
 
     Called on a worker.

@@ -116,7 +116,7 @@ class Exploration:
         """Runs of an earlier, interrupted exploration."""
         self.keep: Callable[[Point, Seen], object] = lambda _point, _seen: None
         """Called with each run that is made."""
-        self._runs: Runs[Made] | None = None
+        self._runs: Runs | None = None
 
     # Runs ----------------------------------------------------------------------
 
