@@ -83,6 +83,16 @@ MEANINGS = {
 """The criteria of docs/measures.md."""
 
 
+def _criterion(name: str) -> Column:
+    timed = name.endswith(("_mean", "_max"))
+    kind, unit = ("number", "s") if timed else ("integer", "")
+    return Column(name, kind, "measure", MEANINGS[name], unit)
+
+
+FIXED = (*OUTCOMES, *MEASURES, *map(_criterion, CRITERIA))
+"""The columns of every table that do not depend on what is varied, behind its factors."""
+
+
 def columns(factors: Sequence[Factor]) -> list[Column]:
     """The columns of a table; a factor that is also in HEAD, such as the seed, occurs once."""
     varied = [
@@ -97,13 +107,7 @@ def columns(factors: Sequence[Factor]) -> list[Column]:
     ]
     paths = {one.path for one in factors}
     head = [one for one in HEAD if one.name not in paths]
-    return [*head, *varied, *OUTCOMES, *MEASURES, *map(_criterion, CRITERIA)]
-
-
-def _criterion(name: str) -> Column:
-    timed = name.endswith(("_mean", "_max"))
-    kind, unit = ("number", "s") if timed else ("integer", "")
-    return Column(name, kind, "measure", MEANINGS[name], unit)
+    return [*head, *varied, *FIXED]
 
 
 def dictionary(path: str, made: Iterable[Column]) -> str:
@@ -252,15 +256,24 @@ def parquet_columns(path: Path, rows: int, columns: int, size: int) -> dict[str,
         raise ValueError(f"it is not a readable Parquet file: {error}") from None
 
 
+def check_names(names: Sequence[str]) -> None:
+    """Check that a table's columns have different names.
+
+    Raises:
+        ValueError: two have one name.
+    """
+    twice = next((one for one in names if names.count(one) > 1), None)
+    if twice is not None:
+        raise ValueError(f'it has two columns "{twice[:100]}"')
+
+
 def _cells(file: ParquetFile, names: Sequence[str], size: int) -> dict[str, list[Any]]:
     """The cells of an open file, piece by piece: a small file may expand to very much data.
 
     Raises:
         ValueError: it holds more than ``size`` bytes, or two columns of one name.
     """
-    twice = next((one for one in names if names.count(one) > 1), None)
-    if twice is not None:
-        raise ValueError(f'it has two columns "{twice[:100]}"')
+    check_names(names)
     cells: dict[str, list[Any]] = {name: [] for name in names}
     held = 0
     for batch in file.iter_batches(BATCH_READ):

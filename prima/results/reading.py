@@ -15,7 +15,7 @@ from typing import IO, Any
 from prima.errors import MissingFile, UsageError, did_you_mean, one_of
 from prima.errors.visible import unharmed
 from prima.experiments.sweep import PLAN, ROWS
-from prima.experiments.table import HEAD, MEANINGS, MEASURES, OUTCOMES, Column, parquet_columns
+from prima.experiments.table import FIXED, HEAD, Column, check_names, parquet_columns
 
 DICTIONARY = "dictionary.json"
 SUFFIXES = (".csv", ".parquet")
@@ -165,7 +165,7 @@ def _read_csv(path: Path) -> tuple[dict[str, list[Any]], str]:
             raise ValueError(f"it has {len(head)} columns, and {MOST_COLUMNS} are read at most")
         if len(head) == 1 and ";" in head[0]:
             raise ValueError("its cells are separated by ';'; save it with ','")
-        _check_head(head)
+        check_names(head)
         columns: list[list[str]] = [[] for _ in head]
         last: tuple[int, list[str]] | None = None
         for line, row in rows:
@@ -223,12 +223,6 @@ def _is_ended(path: Path) -> bool:
         return stream.read(1) in (b"\n", b"\r")
 
 
-def _check_head(head: list[str]) -> None:
-    twice = next((one for one in head if head.count(one) > 1), None)
-    if twice is not None:
-        raise ValueError(f'it has two columns "{twice[:100]}"')
-
-
 def _check(table: Path, cells: dict[str, list[Any]]) -> None:
     """Check that a table has what every sweep's table has.
 
@@ -256,8 +250,7 @@ def _beside(table: Path, name: str) -> dict[str, Any] | None:
 
 def _columns(sheet: Sheet) -> list[Column]:
     """The types of the columns: from the dictionary, or from their names."""
-    known = {one.name: one for one in (*HEAD, *OUTCOMES, *MEASURES)}
-    known |= {name: _measure(name, meaning) for name, meaning in MEANINGS.items()}
+    known = {one.name: one for one in (*HEAD, *FIXED)}
     data = _beside(sheet.path, DICTIONARY)
     own = {one.name: one for one in _told(data or {})}
     if not own:
@@ -291,12 +284,6 @@ def _told(data: dict[str, Any]) -> Iterator[Column]:
         words = {key: one.get(key, "") for key in ("name", "type", "role", "description", "unit")}
         if all(isinstance(word, str) for word in words.values()):
             yield Column(**words)
-
-
-def _measure(name: str, meaning: str) -> Column:
-    return Column(
-        name, "number", "measure", meaning, "s" if name.endswith(("_mean", "_max")) else ""
-    )
 
 
 def _guessed(name: str, cells: list[Any]) -> Column:
