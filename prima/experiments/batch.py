@@ -211,7 +211,8 @@ def _run(options: Options, job: Job) -> BatchRow:
 
 def _row(job: Job, loaded: Loaded, made: Transcript) -> BatchRow:
     """The row of a run that ended."""
-    measure, summary = made.measure, made.summary()
+    measures = asdict(made.summary())
+    del measures["starved"]
     messages = [told_failure(failure) for failure in made.failures]
     if made.outcome == "limit":
         messages.append(TOO_MUCH)
@@ -220,18 +221,10 @@ def _row(job: Job, loaded: Loaded, made: Transcript) -> BatchRow:
         job.policy or loaded.cast.scenario.policy,
         3 if messages else 0,
         made.outcome,
-        measure.records if measure else 0,
-        summary.seconds,
-        summary.streams_broken,
-        summary.collisions,
-        summary.reactions,
-        summary.reaction_mean,
-        summary.reaction_max,
-        summary.responses,
-        summary.response_mean,
-        summary.response_max,
-        f"{job.stem}{TRANSCRIPT}" if job.stem else None,
-        _few(messages),
+        made.measure.records if made.measure else 0,
+        transcript=f"{job.stem}{TRANSCRIPT}" if job.stem else None,
+        messages=_few(messages),
+        **measures,
     )
 
 

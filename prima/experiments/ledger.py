@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +14,10 @@ from prima.version import __version__
 
 MOST_LEDGER = 1_000_000
 """Maximum length of a ledger (characters)."""
-KEPT = (
-    "policy", "exit", "ended", "records", "seconds", "streams_broken", "collisions",
-    "reactions", "reaction_mean", "reaction_max",
-    "responses", "response_mean", "response_max", "messages",
-)  # fmt: skip
-"""The fields of a row that a ledger keeps; the rest follows from the job."""
+FROM_JOB = frozenset({"scenario", "transcript", "earlier", "full"})
+"""The fields of a row that follow from its job."""
+KEPT = tuple(one.name for one in fields(BatchRow) if one.name not in FROM_JOB)
+"""The others, which a ledger keeps."""
 
 
 class InputDigests:
