@@ -17,25 +17,6 @@ from prima.scheduler.behavior import (
     Stream,
 )
 from prima.scheduler.mediation import Mediation
-from prima.scheduler.memory import WorkingMemory
-
-
-def running_as(memory: WorkingMemory, name: str) -> Behavior | None:
-    """The AB of a Command with that name in the transcript, if it is still running.
-
-    A unit ends with its Commands: devices know nothing of it.
-    """
-    ab = memory.running.get(name.partition(".")[0])
-    return ab if ab is not None and ab.id == name and ab.command is not None else None
-
-
-def question(memory: WorkingMemory) -> Behavior | None:
-    """The running question, if any (V1)."""
-    ab = memory.occupied.get("speech-recognition")
-    while ab is not None and ab.inside is not None:
-        ab = ab.inside.busy.get("speech-recognition")
-    return ab
-
 
 # By themselves ------------------------------------------------------------------------------------
 

@@ -227,9 +227,13 @@ class Mediator:
         return turns
 
     def running(self, behavior: str) -> Behavior | None:
-        """The AB with that name, if it is still running."""
-        return endings.running_as(self.memory, behavior)
+        """The AB of a Command with that name in the transcript, if it is still running.
+
+        A unit ends with its Commands: devices know nothing of it.
+        """
+        ab = self.memory.running.get(behavior.partition(".")[0])
+        return ab if ab is not None and ab.id == behavior and ab.command is not None else None
 
     def question(self) -> Behavior | None:
         """The running question, if any (V1)."""
-        return endings.question(self.memory)
+        return self.memory.using("speech-recognition")

@@ -111,18 +111,10 @@ class WorkingMemory:
             ab.unit.inner.pop(name, None)
         ab.state = GONE
 
-    def of_app(self, app: Application) -> list[Behavior]:
-        """The application's ABs, in the order of their requests."""
-        return list(app.members.values())
-
     def end(self, stream: Stream) -> None:
         """C1: a stream is over."""
         del self.streams[stream.name]
         self.engaged.pop(stream.name, None)
-
-    def engage(self, stream: Stream) -> None:
-        """K1: an AB of a stream engages the user."""
-        self.engaged[stream.name] = stream
 
     def conflicts(self, ab: Behavior) -> list[Behavior]:
         """All running ABs that occupy one of the devices, in the order in which they started."""
@@ -141,6 +133,13 @@ class WorkingMemory:
         ab.state = LINKED
         ab.wait.blocked = ("", "")
         ab.wait.since = ab.wait.kept_since = None
+
+    def using(self, device: str) -> Behavior | None:
+        """The Command that has a device; a unit owns it before a Command of it does (U5)."""
+        ab = self.occupied.get(device)
+        while ab is not None and ab.inside is not None:
+            ab = ab.inside.busy.get(device)
+        return ab
 
     def conflict(self, ab: Behavior) -> Behavior | None:
         """A running AB that occupies one of the devices (S1); a unit's own count within it."""

@@ -130,7 +130,7 @@ def _devices_of(mediation: Mediation, types: tuple[str, ...]) -> frozenset[str]:
 def e2(mediation: Mediation, app: Application, reason: str) -> None:
     """E2: an application has ended: its running ABs finish, the others are removed."""
     app.gone = True
-    withdraw(mediation, mediation.memory.of_app(app), "E2")
+    withdraw(mediation, list(app.members.values()), "E2")
     drop_hints(mediation, app, None)
     for number in list(app.units):
         close_unit(mediation, app, number)
@@ -141,7 +141,7 @@ def o3(mediation: Mediation, app: Application, asked: LeaveState) -> None:
     """O3: delete the state's Commands that have not started; its loops end."""
     mediation.recorder.add("leave", "mediator", app=app.name, rule="O3", state=asked.state)
     drop_hints(mediation, app, asked.state)
-    state = [ab for ab in mediation.memory.of_app(app) if ab.document_state == asked.state]
+    state = [ab for ab in app.members.values() if ab.document_state == asked.state]
     if state:
         continue_with(mediation, app, going_on([ab.stream for ab in state]))
         withdraw(mediation, state, "O3")
@@ -214,9 +214,7 @@ def o2(
     if unit is not None:
         cancel(mediation, _at_once(unit, devices), devices)
         return unit.stream
-    streams = {
-        ab.stream.name: ab.stream for ab in mediation.memory.of_app(app) if ab.devices & devices
-    }
+    streams = {ab.stream.name: ab.stream for ab in app.members.values() if ab.devices & devices}
     waited_for = reaction is not None or app.window is None
     if streams and not (waited_for and held_of(mediation, app)):
         stream = going_on(list(streams.values()))

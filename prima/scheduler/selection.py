@@ -208,7 +208,7 @@ def _note_start(mediation: Mediation, ab: Behavior, resumes: bool) -> None:
     if ab.command is not None and ab.says:
         stream.spoken = True
     if ab.engages:
-        mediation.memory.engage(stream)
+        mediation.memory.engaged[stream.name] = stream
     if ab is mediation.memory.owed:
         mediation.memory.owed = None
     if stream.suspended and resumes:
@@ -226,17 +226,9 @@ def _collide(mediation: Mediation, ab: Behavior) -> None:
 def f5(mediation: Mediation) -> None:
     """F5: stop the body if no further loop follows, unless something else takes the wheels."""
     ab, mediation.rolling = mediation.rolling, None
-    if ab is not None and _driving(mediation) is None:
+    if ab is not None and mediation.memory.using("locomotion") is None:
         mediation.order("stop", ab)
         mediation.recorder.behavior("stop", ab, rule="F5")
-
-
-def _driving(mediation: Mediation) -> Behavior | None:
-    """The Command that has the wheels; a unit owns them before a Command of it does (U5)."""
-    ab = mediation.memory.occupied.get("locomotion")
-    while ab is not None and ab.inside is not None:
-        ab = ab.inside.busy.get("locomotion")
-    return ab
 
 
 # Units --------------------------------------------------------------------------------------------
