@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from prima.errors import UsageError
 from prima.language.commands import PATIENCE_MS
@@ -110,7 +110,7 @@ def _again(transcript: Transcript, loaded: Loaded) -> RobotWalk | None:
     """Run the scenario again and record the paths; None if the records differ."""
     from prima.transcript.lines import finished
 
-    rehearsal = _rehearsal(loaded, transcript.run().head)
+    rehearsal = _rehearsal(loaded, transcript)
     if rehearsal is None:
         return None
     watch = WalkWatch(rehearsal.devices.world)
@@ -128,22 +128,20 @@ def _again(transcript: Transcript, loaded: Loaded) -> RobotWalk | None:
     return None  # the transcript has more
 
 
-def _rehearsal(loaded: Loaded, head: Mapping[str, Any]) -> Rehearsal | None:
+def _rehearsal(loaded: Loaded, transcript: Transcript) -> Rehearsal | None:
     """A scenario, ready to run as a transcript's first record says; None if that is damaged."""
     from prima.loading import seeded
     from prima.scheduler.policy import policy_named
     from prima.sim.rehearsal import Rehearsal
+    from prima.transcript.lines import check_head
 
-    bound, seed = head.get("bound"), head.get("seed")
-    patience = head.get("patience", PATIENCE_MS / 1000)
-    if bound is not None and (not isinstance(bound, int) or bound < 1):
-        return None
-    if not isinstance(patience, int | float) or patience < 0:
-        return None
+    head = transcript.records[0]
     try:
-        policy = policy_named(str(head.get("policy")))
-        cast = seeded(loaded, seed if isinstance(seed, int) else None).cast
-        return Rehearsal(cast, policy, bound, patience=round(patience * 1000))
+        check_head(head, transcript.name)
+        said = head["data"]
+        patience = round(said.get("patience", PATIENCE_MS / 1000) * 1000)
+        cast = seeded(loaded, said.get("seed")).cast
+        return Rehearsal(cast, policy_named(said["policy"]), said.get("bound"), patience=patience)
     except UsageError:
         return None
 
