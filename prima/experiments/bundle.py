@@ -48,12 +48,9 @@ def write_bundle(path: str, out: Output) -> int:
     files = dict(sorted(_files(out).items()))
     files[STUDY] = study_text(out.sweep.question).encode()
     files[METADATA] = _metadata(files, out).encode()
-    try:
-        with whole(path) as stream, zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
-            for name, data in files.items():
-                archive.writestr(zipfile.ZipInfo(name, FIRST_DAY), data, zipfile.ZIP_DEFLATED)
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be written: {error.strerror}.") from None
+    with whole(path) as stream, zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in files.items():
+            archive.writestr(zipfile.ZipInfo(name, FIRST_DAY), data, zipfile.ZIP_DEFLATED)
     return len(files)
 
 
