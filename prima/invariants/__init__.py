@@ -49,12 +49,12 @@ from typing import TYPE_CHECKING
 
 from prima.interpreter.elements import Document
 from prima.invariants.checker import Checker
-from prima.invariants.model import GONE, Record
+from prima.invariants.model import Record
 
 if TYPE_CHECKING:
     from prima.session import AnyDocument
 
-__all__ = ["callers", "check", "numbers", "unfinished"]
+__all__ = ["callers", "check"]
 
 
 def check(
@@ -93,19 +93,3 @@ def callers(documents: Iterable[AnyDocument]) -> set[str]:
         for one in documents
         if not isinstance(one, Document) or any(n.tag == "subdialog" for n in one.node.walk())
     }
-
-
-def unfinished(records: Iterable[Record], policy: str = "prima") -> list[str]:
-    """ABs that are still in working memory after the last record (for invariant 9)."""
-    checker = Checker(records, policy)
-    checker.run()
-    return [
-        f"invariant 9: {ab.shown} of {ab.tree.name} is {ab.phase} at the end"
-        for ab in checker.abs.values()
-        if ab.phase != GONE
-    ]
-
-
-def numbers(violations: Iterable[str]) -> set[int]:
-    """Which invariants are violated."""
-    return {int(text.split()[1].rstrip(":")) for text in violations}

@@ -13,10 +13,11 @@ from dataclasses import dataclass, replace
 import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
-from prima.invariants import check, numbers
+from prima.invariants import check
 from tests.helpers.generated.plays import Play, perform, plays
 from tests.helpers.generated.scripts import Ask, Leave, Script, drive, scripts
 from tests.helpers.generated.world import Run, World
+from tests.helpers.violations import numbers
 from tests.invariants.broken import (
     always_substituted,
     anything_composed,

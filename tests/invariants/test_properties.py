@@ -16,13 +16,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from prima.invariants import callers, check, numbers, unfinished
+from prima.invariants import callers, check
 from prima.messages import Record
 from prima.session import Session
 from tests import ROOT
 from tests.helpers.generated.plays import Play, perform, plays, without_hints
 from tests.helpers.generated.scripts import Ask, Open, Script, drive, scripts
 from tests.helpers.generated.world import APPS, Run, World, baselines, extended
+from tests.helpers.violations import numbers, unfinished
 
 EXAMPLES = int(os.environ.get("PRIMA_EXAMPLES", "300"))
 SCENARIOS = sorted(ROOT.glob("documents/scenarios/**/*.xml"))

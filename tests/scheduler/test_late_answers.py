@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from prima.invariants import check, numbers
+from prima.invariants import check
 from prima.messages import Heard
 from tests.helpers.robot import Bench, document
 from tests.helpers.stage import Stage, ask, say
+from tests.helpers.violations import numbers
 
 AGAIN = """<form id="ask">
   <field name="right" type="boolean"><prompt>Is it right?</prompt>
