@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 from prima.errors import Place
@@ -14,7 +13,6 @@ from prima.testing.excerpts import around
 from prima.testing.facts import Fact, RunFacts, Window
 from prima.testing.matching import fits, most_alike, text_of, values
 from prima.testing.sentences import event_of, expected, seconds, subject, times
-from prima.testing.tracing import StateChange
 
 MOST_TOLD = 5
 """Times that a message lists."""
@@ -72,7 +70,8 @@ class ExpectationChecker:
     def _window(self, one: Expectation) -> Window | None:
         """The time in which it is expected; None if a fact that bounds it is missing."""
         window = Window()
-        for other in [*self._after(one), *([one.previous] if one.previous is not None else [])]:
+        named = self._named[one.after] if one.after else None
+        for other in filter(None, (named, one.previous)):
             fact = self._found.get(id(other))
             if fact is None:
                 return None
@@ -89,9 +88,6 @@ class ExpectationChecker:
         if one.within is not None:
             window.closes = window.opens + one.within
         return window
-
-    def _after(self, one: Expectation) -> list[Expectation]:
-        return [self._named[one.after]] if one.after else []
 
     def _open(self, one: Expectation, window: Window) -> bool:
         """Open the window at its trigger; report a trigger that never comes."""
@@ -122,7 +118,7 @@ class ExpectationChecker:
         closes = self.run.end if window.closes is None else window.closes
         if window.ahead is not None:
             closes = window.closes = min(self.run.facts[window.ahead].time, closes)
-        apps = [one.by] if one.by else list(self.run.states.changes)
+        apps = [one.by] if one.by else list(self.run.states)
         wanted = one.words["state"]
         held = [(app, at) for app in apps for at in self._times(app, wanted, window.opens, closes)]
         if one.never and held:
@@ -135,13 +131,17 @@ class ExpectationChecker:
 
     def _times(self, app: str, state: str, opens: int, closes: int) -> list[int]:
         """When an application entered a state in which it was at some time of a window."""
-        spans = _spans(self.run.states.changes.get(app, []))
-        spans = [(change, ends) for change, ends in spans if change.state == state]
-        return [change.time for change, ends in spans if _meets(change.time, ends, opens, closes)]
+        changes = self.run.states.get(app, [])
+        ends = [*(change.time for change in changes[1:]), None]
+        return [
+            change.time
+            for change, end in zip(changes, ends, strict=False)
+            if change.state == state and _meets(change.time, end, opens, closes)
+        ]
 
     def _state_at(self, app: str, time: int) -> str:
         """The state of an application at a time."""
-        changes = self.run.states.changes.get(app, [])
+        changes = self.run.states.get(app, [])
         now = next((one for one in reversed(changes) if one.time <= time), None)
         if now is None:
             return f"{app} has not begun then."
@@ -226,13 +226,6 @@ class ExpectationChecker:
         who, text = found.record.app, text_of(found, name)
         verb = "asks" if found.request.command == "q-and-a" else name
         return found, f'It never does. Nearest: {who} {verb} "{text}" {self._at([found])}.'
-
-
-def _spans(changes: list[StateChange]) -> Iterable[tuple[StateChange, int | None]]:
-    """Each state with the time when it was left; None if it never was."""
-    for index, change in enumerate(changes):
-        later = changes[index + 1].time if index + 1 < len(changes) else None
-        yield change, later
 
 
 def _meets(begins: int, ends: int | None, opens: int, closes: int) -> bool:

@@ -6,7 +6,7 @@ A *point* is something that a run can reach: an element, or one outcome of a con
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -63,11 +63,11 @@ Coverage = dict[str, DocumentCoverage]
 """By the paths of the documents."""
 
 
-def covered(marks: ReachedElements) -> Coverage:
+def covered(documents: Mapping[str, ReachedElements]) -> Coverage:
     """The coverage of one run."""
     found: Coverage = {}
-    for file, root in marks.roots.items():
-        held: list[tuple[CoveragePoint, bool]] = list(_points(root, marks.marks[file]))
+    for file, one in documents.items():
+        held: list[tuple[CoveragePoint, bool]] = list(_points(one.root, one.marks))
         name = os.path.normpath(file)
         reached = {number for number, (_, is_reached) in enumerate(held) if is_reached}
         found[name] = DocumentCoverage([point for point, _ in held], reached)

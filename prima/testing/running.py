@@ -18,7 +18,7 @@ from prima.testing.checking import Failure, check
 from prima.testing.coverage import Coverage, covered
 from prima.testing.facts import make_run
 from prima.testing.golden import difference, golden_of, read_golden
-from prima.testing.tracing import marks_of, states_of
+from prima.testing.tracing import reached, states_of
 from prima.transcript.row import Row
 
 Status = Literal["passed", "failed", "error", "invalid"]
@@ -92,7 +92,7 @@ def _rehearse(loaded: Loaded, choice: TestOptions, made: Result) -> None:
     made.name, made.expectations = scenario.id, len(scenario.expectations)
     transcript = api.rehearse(loaded, choice.policy, visits=True)
     if choice.coverage:
-        made.coverage = covered(marks_of(transcript.visits))
+        made.coverage = covered(reached(transcript.visits))
     states = states_of(transcript.visits)
     made.simulated = transcript.run().end
     rows = transcript.rows()

@@ -25,56 +25,46 @@ class StateChange:
     """Whether another change in the same instant replaces it."""
 
 
-@dataclass(slots=True)
-class StateHistory:
-    """The states of each application over time."""
-
-    changes: dict[str, list[StateChange]] = field(default_factory=dict)
-
-    def note(self, app: str, time: int, state: str, passing: bool = False) -> None:
-        """Record that an application enters a state."""
-        held = self.changes.setdefault(app, [])
-        if held and held[-1].passing and held[-1].time == time:
-            held.pop()
-        held.append(StateChange(time, state, passing))
+StateHistory = dict[str, list[StateChange]]
+"""The states of each application over time."""
 
 
 @dataclass(slots=True)
 class ReachedElements:
-    """Elements reached, by the path of the document."""
+    """The elements reached in a document, which is given by its root."""
 
-    roots: dict[str, Node] = field(default_factory=dict)
-    """The root elements of the documents."""
-    marks: dict[str, set[Mark]] = field(default_factory=dict)
+    root: Node
+    marks: set[Mark] = field(default_factory=set)
 
 
 def states_of(visits: Iterable[ElementVisit]) -> StateHistory:
     """The states that applications were in, in the order of a run."""
-    states = StateHistory()
+    states: StateHistory = {}
     for visit in visits:
         if visit.what in ("enter", "leave"):
-            states.note(visit.app, visit.time, visit.name, passing=visit.what == "leave")
+            held = states.setdefault(visit.app, [])
+            if held and held[-1].passing and held[-1].time == visit.time:
+                held.pop()
+            held.append(StateChange(visit.time, visit.name, visit.what == "leave"))
     return states
 
 
-def marks_of(visits: Iterable[ElementVisit]) -> ReachedElements:
-    """The elements reached in documents that are files, not in services' answers."""
-    marks = ReachedElements()
-    paths: dict[int, str] = {}
-    """The paths of documents, by the identity of their sources."""
+def reached(visits: Iterable[ElementVisit]) -> dict[str, ReachedElements]:
+    """The elements reached in documents that are files, not in services' answers, by path."""
+    found: dict[str, ReachedElements] = {}
+    by_source: dict[int, ReachedElements] = {}
+    """The same by the identity of the documents' sources."""
     for visit in visits:
         if visit.node is None:
             continue
-        source = visit.node.source
+        source = id(visit.node.source)
         if visit.what != "document":
-            if id(source) in paths:
+            if source in by_source:
                 what = "in" if visit.what == "enter" else visit.what
-                marks.marks[paths[id(source)]].add((visit.node.index, what))
-        elif id(source) not in paths and _is_file(visit):
-            paths[id(source)] = visit.name
-            marks.roots.setdefault(visit.name, visit.node)
-            marks.marks.setdefault(visit.name, set())
-    return marks
+                by_source[source].marks.add((visit.node.index, what))
+        elif source not in by_source and _is_file(visit):
+            by_source[source] = found.setdefault(visit.name, ReachedElements(visit.node))
+    return found
 
 
 def _is_file(visit: ElementVisit) -> bool:

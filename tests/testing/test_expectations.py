@@ -15,7 +15,7 @@ from prima.testing.checking import check
 from prima.testing.facts import make_run
 from prima.testing.running import Result, TestOptions, run_one
 from prima.testing.summary import format_result
-from prima.testing.tracing import StateHistory, states_of
+from prima.testing.tracing import states_of
 from tests import ROOT
 from tests.helpers.here import prima
 from tests.helpers.testing import DEMOS, DESK, FIRST, outcome, write
@@ -257,7 +257,7 @@ def test_what_a_run_has_said_is_what_it_is_expected_to_say(path: Path, tmp_path:
         last = scenario.node.all("in-order")[-1]
         own = set(map(id, last.nodes))
         scenario.expectations = [one for one in scenario.expectations if id(one.node) in own]
-        run = make_run(transcript.run().entries, transcript.rows(), StateHistory())
+        run = make_run(transcript.run().entries, transcript.rows(), {})
         return len(check(scenario, run))
 
     assert failures(said) == 0
@@ -270,7 +270,7 @@ def test_states_of_subdialogs_and_of_applications_that_end() -> None:
     scenario = ROOT / "documents" / "scenarios" / "museum-alone.xml"
     transcript = api.rehearse(scenario, visits=True)
     states = states_of(transcript.visits)
-    names = [change.state for change in states.changes["museum"]]
+    names = [change.state for change in states["museum"]]
     assert names[:6] == ["welcome", "go", "explain", "find", "explain", "find"]
     assert not transcript.failures
 
@@ -278,8 +278,8 @@ def test_states_of_subdialogs_and_of_applications_that_end() -> None:
 def test_states_of_voicexml() -> None:
     scenario = ROOT / "documents" / "scenarios" / "pizza-and-follow.xml"
     states = states_of(api.rehearse(scenario, visits=True).visits)
-    assert [change.state for change in states.changes["pizza"]] == ["order", ""]
-    assert [change.state for change in states.changes["follow"]][-1] == "sleep"
+    assert [change.state for change in states["pizza"]] == ["order", ""]
+    assert [change.state for change in states["follow"]][-1] == "sleep"
 
 
 LOOKED = {
