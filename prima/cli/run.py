@@ -127,12 +127,14 @@ def run(
         paths = [*scenarios, *chain.from_iterable(map(listed, lists))]
         run_all(paths, policies, output or "", options, workers or 0, form)
         return
-    scenario = next(iter(scenarios), None)
-    loaded = _load(scenario, fas, eas, says, maps)
+    from prima import api
+
+    scenario = next(iter(scenarios), "")
+    loaded = api.load_scenario(scenario) if scenario else api.stage(fas, eas, says, maps=maps)
     if output == "-":
         output, form = None, "json"
     elif output is not None:
-        _check_file(output, os.path.dirname(scenario or ""), loaded)
+        _check_file(output, os.path.dirname(scenario), loaded)
     tell_problems(loaded.problems)
     policy = next(iter(policies), None)
     _report_end(_run_one(loaded, output, policy, options, why, form))
@@ -174,21 +176,6 @@ def _check_batch(applications: bool, why: bool, resume: bool, output: str | None
     is_file = output is not None and output.endswith(".jsonl") and not os.path.isdir(output)
     if output == "-" or is_file:
         raise UsageError(f"{output}: several transcripts go into a folder: -o runs/.")
-
-
-def _load(
-    scenario: str | None,
-    fas: tuple[str, ...],
-    eas: tuple[str, ...],
-    says: tuple[str, ...],
-    maps: tuple[str, ...],
-) -> Loaded:
-    """A scenario, or applications in an empty room."""
-    from prima import api
-
-    if scenario is not None:
-        return api.load_scenario(scenario)
-    return api.stage(fas, eas, says, maps=maps)
 
 
 def _check_file(output: str, folder: str, loaded: Loaded) -> None:
