@@ -176,8 +176,8 @@ def actions(server: Server, params: lsp.CodeActionParams) -> list[lsp.CodeAction
     first, last = (server.offset(page.lines, at) for at in (params.range.start, params.range.end))
     made: list[lsp.CodeAction] = []
     for problem in in_order(server.problems(path)):
-        one = spot(page.lines, problem)
-        if one.end >= first and one.start <= last:
+        start, end = spot(page.lines, problem)
+        if end >= first and start <= last:
             made += _quick_fixes(server, page, problem, params.text_document.uri)
     return made
 
@@ -194,7 +194,7 @@ def _quick_fixes(
         yield lsp.CodeAction(
             visible(title),
             lsp.CodeActionKind.QuickFix,
-            [server.diagnostic(page.lines, spot(page.lines, problem))],
+            [server.diagnostic(page.lines, problem)],
             is_preferred=number == 0,
             edit=lsp.WorkspaceEdit(changes={uri: edits}),
         )

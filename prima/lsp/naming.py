@@ -12,7 +12,7 @@ from prima.language.values import read_value
 from prima.lsp.meanings import EVENTS_OF
 from prima.lsp.names import Mark, mark_at
 from prima.lsp.paths import name_for
-from prima.lsp.workspace import FoundName, Workspace
+from prima.lsp.workspace import FoundName, NameSpot, Workspace
 from prima.script.globals import RESERVED
 
 RENAMED = {
@@ -29,15 +29,6 @@ RENAMED = {
 
 class RenameError(Exception):
     """A renaming is impossible; the message says why."""
-
-
-@dataclass(frozen=True, slots=True)
-class NameSpot:
-    """A piece of a document."""
-
-    path: Path
-    start: int
-    end: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +52,7 @@ def definitions(workspace: Workspace, path: Path, offset: int) -> list[NameSpot]
         given = workspace.given(path, mark)
         if not given and mark.kind == ("event",):
             given = _begun(workspace, path, mark)
-        return [NameSpot(found.path, found.mark.start, found.mark.end) for found in given]
+        return [found.spot for found in given]
     link = _link_at(workspace, path, offset)
     if link is not None and workspace.text(link[0]) is not None:
         return [NameSpot(link[0], 0, 0)]
@@ -86,17 +77,17 @@ def references(
     mark = mark_at(workspace.marks(path), offset)
     if mark is not None:
         return [
-            NameSpot(found.path, found.mark.start, found.mark.end)
+            found.spot
             for found in workspace.uses(path, mark)
             if declaration or not found.mark.defines
         ]
     link = _link_at(workspace, path, offset)
     if link is not None:
-        return [NameSpot(*one) for one in workspace.naming(link[0])]
+        return workspace.naming(link[0])
     text = workspace.text(path)
     root = text.page.root if text is not None else None
     if root is not None and root.start <= offset <= root.name_end:
-        return [NameSpot(*one) for one in workspace.naming(path)]
+        return workspace.naming(path)
     return []
 
 

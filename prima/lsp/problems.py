@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
 from prima import loading
-from prima.errors import DocumentError, Problem, UsageError, in_order, nearest_word
+from prima.errors import DocumentError, Problem, UsageError, nearest_word
 from prima.loading.files import GivenFiles, in_place_of_files
 from prima.lsp.scan import ScannedText
 from prima.lsp.tables import BY_NAMESPACE, BY_ROOT
@@ -16,15 +15,6 @@ from prima.lsp.workspace import Workspace
 
 TAG = re.compile(r"</?[^\s<>/]*")
 WORD = re.compile(r"[^\s=<>/\"'(){}\[\];,+*!&|?]+")
-
-
-@dataclass(frozen=True, slots=True)
-class Spot:
-    """A problem and its piece of text."""
-
-    problem: Problem
-    start: int
-    end: int
 
 
 def is_ours(page: ScannedText) -> bool:
@@ -82,8 +72,8 @@ def _resolved(path: Path, file: str) -> Path:
         return path
 
 
-def spot(lines: Lines, problem: Problem) -> Spot:
-    """The extent of a problem in a text."""
+def spot(lines: Lines, problem: Problem) -> tuple[int, int]:
+    """Where a problem begins and ends in a text."""
     text = lines.text
     start = lines.place(problem.place.line, problem.place.column)
     before, here = text[start - 1 : start], text[start : start + 1]
@@ -92,17 +82,9 @@ def spot(lines: Lines, problem: Problem) -> Spot:
         end = text.find(before, start)
         stop = text.find("<", start)
         if end >= 0 and not 0 <= stop < end:
-            return Spot(problem, start, end)
+            return start, end
     match = (TAG if here == "<" else WORD).match(text, start)
     end = match.end() if match else start
     if end == start and here not in ("", "\n", "\r"):
         end = start + 1
-    return Spot(problem, start, end)
-
-
-def spots(workspace: Workspace, path: Path, problems: list[Problem]) -> list[Spot]:
-    """Problems of a file with their pieces of text."""
-    text = workspace.text(path)
-    if text is None:
-        return []
-    return [spot(text.lines, problem) for problem in in_order(problems)]
+    return start, end

@@ -22,12 +22,12 @@ from pygls.exceptions import (
 from pygls.lsp.server import LanguageServer
 from pygls.protocol import LanguageServerProtocol, default_converter
 
-from prima.errors import Problem
+from prima.errors import Problem, in_order
 from prima.errors.visible import visible
 from prima.lsp import naming
-from prima.lsp.problems import Spot, check, files_read, is_ours, spots
+from prima.lsp.problems import check, files_read, is_ours, spot
 from prima.lsp.text import Lines
-from prima.lsp.workspace import Text, Workspace
+from prima.lsp.workspace import NameSpot, Text, Workspace
 from prima.version import __version__
 
 SEVERITIES = {
@@ -175,7 +175,7 @@ class Server(LanguageServer):
         first, last = (lines.position(one, self.encoding) for one in (start, end))
         return lsp.Range(lsp.Position(*first), lsp.Position(*last))
 
-    def locations(self, places: list[naming.NameSpot]) -> list[lsp.Location]:
+    def locations(self, places: list[NameSpot]) -> list[lsp.Location]:
         """Pieces of documents."""
         return [
             lsp.Location(self.documents.uri(one.path), self.range(text.lines, one.start, one.end))
@@ -224,20 +224,20 @@ class Server(LanguageServer):
     def publish(self, file: Path) -> None:
         """Publish all problems of a file."""
         text = self.documents.text(file)
-        found = spots(self.documents, file, self.problems(file))
         self.text_document_publish_diagnostics(
             lsp.PublishDiagnosticsParams(
                 self.documents.uri(file),
-                [self.diagnostic(text.lines, one) for one in found] if text else [],
+                [self.diagnostic(text.lines, one) for one in in_order(self.problems(file))]
+                if text
+                else [],
                 text.version if text else None,
             )
         )
 
-    def diagnostic(self, lines: Lines, one: Spot) -> lsp.Diagnostic:
+    def diagnostic(self, lines: Lines, problem: Problem) -> lsp.Diagnostic:
         """A problem as an editor shows it."""
-        problem = one.problem
         return lsp.Diagnostic(
-            self.range(lines, one.start, one.end),
+            self.range(lines, *spot(lines, problem)),
             visible(f"{problem.message} {problem.remedy}".strip()),
             SEVERITIES[problem.severity],
             problem.code,

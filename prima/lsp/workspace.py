@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 from prima.errors import DocumentError
 from prima.lsp.meanings import FILES, SHARED
@@ -68,12 +69,25 @@ class Text:
             return self.text.encode("utf-8", "replace")
 
 
+class NameSpot(NamedTuple):
+    """A piece of a document."""
+
+    path: Path
+    start: int
+    end: int
+
+
 @dataclass(slots=True)
 class FoundName:
     """A name in a document."""
 
     path: Path
     mark: Mark
+
+    @property
+    def spot(self) -> NameSpot:
+        """Where it is."""
+        return NameSpot(self.path, self.mark.start, self.mark.end)
 
 
 class Workspace:
@@ -209,10 +223,10 @@ class Workspace:
                 found |= belongs
         return sorted(found)
 
-    def naming(self, path: Path) -> list[tuple[Path, int, int]]:
+    def naming(self, path: Path) -> list[NameSpot]:
         """Where documents of the workspace name a file."""
         return [
-            (other, start, end)
+            NameSpot(other, start, end)
             for other in self.files()
             for target, start, end in self.named(other)
             if target == path

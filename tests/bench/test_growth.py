@@ -22,7 +22,7 @@ from prima.lsp import naming
 from prima.lsp.complete import complete
 from prima.lsp.hover import hover
 from prima.lsp.outline import outline
-from prima.lsp.problems import check, spots
+from prima.lsp.problems import check, spot
 from prima.lsp.text import Lines
 from prima.lsp.workspace import Workspace
 from prima.markup.collecting import OBJECTS, seldom_collected
@@ -84,10 +84,9 @@ def test_an_editors_questions_grow_with_the_size_of_a_document(name: str, tmp_pa
         workspace.folders = [path.parent]
         workspace.put(path.as_uri(), text)
         page = workspace.open[path].page
-        for problem in spots(
-            workspace, path, [one for some in check(workspace, path).values() for one in some]
-        ):
-            for span, _ in (edit for fix in problem.problem.fixes for edit in fix.edits):
+        for problem in [one for some in check(workspace, path).values() for one in some]:
+            spot(page.lines, problem)
+            for span, _ in (edit for fix in problem.fixes for edit in fix.edits):
                 page.lines.offsets(span)
         for offset in (text.find('"', len(text) // 2) + 1, text.find("<", len(text) // 2) + 2):
             hover(workspace, path, offset)

@@ -8,7 +8,7 @@ import pytest
 from lsprotocol import types as lsp
 
 from prima.lsp.descriptions import RULES, VOICEXML_ATTRIBUTES
-from prima.lsp.problems import check, spots
+from prima.lsp.problems import check
 from prima.lsp.tables import VOCABULARIES
 from prima.lsp.workspace import Workspace
 from tests.helpers.editor import BEGIN, SCENE, VOICE, Editor, cut, edited, plain
@@ -124,9 +124,9 @@ def test_nothing_is_done_about_a_name_that_is_cut() -> None:
     workspace = Workspace()
     workspace.put("file:///x.xml", text)
     path = next(iter(workspace.open))
-    (found,) = spots(workspace, path, check(workspace, path)[path])
-    assert found.problem.code == "undeclared-variable" and "[...]" in found.problem.remedy
-    assert not found.problem.fixes
+    (found,) = check(workspace, path)[path]
+    assert found.code == "undeclared-variable" and "[...]" in found.remedy
+    assert not found.fixes
 
 
 # Words and the command line --------------------------------------------------------------

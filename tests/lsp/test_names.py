@@ -10,7 +10,7 @@ from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcException
 
 from prima.lsp import naming
-from prima.lsp.workspace import Workspace
+from prima.lsp.workspace import NameSpot, Workspace
 from tests.helpers.editor import BEGIN, SCENE, VOICE, Editor, cut, edited, plain
 
 FORMS = (
@@ -262,7 +262,7 @@ def test_a_rule_is_renamed_where_a_document_names_its_file(tmp_path: Path, begin
     assert path is not None
     where = text.index("#r") + 1
     at = GRAMMAR.index('id="r"') + 4
-    assert naming.definitions(workspace, path, where) == [naming.NameSpot(rules, at, at + 1)]
+    assert naming.definitions(workspace, path, where) == [NameSpot(rules, at, at + 1)]
     edits, _ = naming.rename(workspace, rules, at, "k")
     assert edits == naming.rename(workspace, path, where, "k")[0]
     assert naming.NameEdit(path, where, where + 1, "k") in edits and len(edits) == 3
@@ -300,7 +300,7 @@ def test_a_variable_of_a_root_is_renamed_in_its_leaves(tmp_path: Path) -> None:
     assert renamed("own", 'g"/>', "h") == [("own", ' cond="g'), ("own", ' name="g')]
     at = texts["root"].index('g"/>')
     there = naming.definitions(workspace, paths["leaf"], texts["leaf"].index("g + "))
-    assert there == [naming.NameSpot(paths["root"], at, at + 1)]
+    assert there == [NameSpot(paths["root"], at, at + 1)]
     assert naming.definitions(workspace, paths["own"], texts["own"].index('k"/>')) == []
     for name, words, new in (
         *(("root", 'g"/>', taken) for taken in "jf"),

@@ -23,7 +23,7 @@ from prima.lsp.hover import hover
 from prima.lsp.names import marks
 from prima.lsp.outline import links, outline
 from prima.lsp.paths import path_of
-from prima.lsp.problems import check, spots
+from prima.lsp.problems import check, spot
 from prima.lsp.protocol import Server
 from prima.lsp.scan import ScannedText
 from prima.lsp.tables import resolve
@@ -107,9 +107,10 @@ def everything(workspace: Workspace, path: Path, offset: int) -> None:
     naming.renamable(workspace, path, offset)
     outline(page)
     links(workspace, path)
-    for one in spots(workspace, path, check(workspace, path)[path]):
-        assert 0 <= one.start <= one.end <= len(page.text)
-        for span, _ in (edit for fix in one.problem.fixes for edit in fix.edits):
+    for problem in check(workspace, path)[path]:
+        start, end = spot(page.lines, problem)
+        assert 0 <= start <= end <= len(page.text)
+        for span, _ in (edit for fix in problem.fixes for edit in fix.edits):
             start, end = page.lines.offsets(span)
             assert 0 <= start <= end <= len(page.text)
 
