@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from prima.graph.labels import condition, joined, ordinal
 
-MOST_DEEP = 4
-"""Maximum depth of handlers that throw in turn."""
-MOST_FOLLOWED = 2000
-"""Maximum number of throws of one application that are followed."""
 Act = TypeVar("Act")
 
 
@@ -53,24 +48,3 @@ def chosen(takers: Iterable[Taker[Act]]) -> tuple[list[Taker[Act]], bool]:
         if not one.cond:
             settled.add(one.count)
     return kept, 1 in settled
-
-
-@dataclass(slots=True)
-class Throws:
-    """Follows throws without cycles."""
-
-    under_way: list[str] = field(default_factory=list)
-    followed: int = 0
-
-    @contextmanager
-    def following(self, event: str) -> Iterator[bool]:
-        """Whether to follow a throw of an event; not again while it is followed."""
-        if event in self.under_way or len(self.under_way) == MOST_DEEP:
-            yield False
-            return
-        self.followed += 1
-        self.under_way.append(event)
-        try:
-            yield self.followed <= MOST_FOLLOWED
-        finally:
-            self.under_way.pop()

@@ -8,11 +8,15 @@ from typing import ClassVar, Generic, TypeVar
 
 from prima.graph.labels import NO_REPLY, AnswerLabel, condition, handled, joined, otherwise
 from prima.graph.model import Graph
-from prima.graph.throws import Taker, Throws, chosen
+from prima.graph.throws import Taker, chosen
 from prima.interpreter.selection import takes
 
 ANY = "#:any"
 """The end of the key of what holds in all states; no key of a state ends so."""
+MOST_DEEP = 4
+"""Maximum depth of handlers that throw in turn."""
+MOST_FOLLOWED = 2000
+"""Maximum number of throws of one application that are followed."""
 Act = TypeVar("Act")
 Branches = Sequence[tuple[str | None, Sequence[Act]]]
 """The contents of an ``if`` with their conditions; that of ``else`` has none."""
@@ -31,7 +35,10 @@ class Transitions(ABC, Generic[Act]):
         """The known sources of events."""
         self.scopes: list[Sequence[Taker[Act]]] = []
         """The handlers that may take a thrown event, innermost first."""
-        self.throws = Throws()
+        self.thrown: list[str] = []
+        """The events that are being followed to their handlers; these may throw in turn."""
+        self.followed = 0
+        """The number of throws that have been followed."""
 
     # What a language defines ------------------------------------------------------------------
 
@@ -100,13 +107,17 @@ class Transitions(ABC, Generic[Act]):
             self.graph.edge(self.here, self.here, "stay", label)
 
     def throw(self, event: str, label: str) -> None:
-        """Add the transitions of handlers that take a thrown event."""
-        with self.throws.following(event) as followed:
-            if not followed:
-                return
-            if self.here.endswith(ANY):
-                self._throw_in_states(event, label)
-            self._taken(event, label)
+        """Add the transitions of handlers that take a thrown event, unless it is being followed."""
+        if event in self.thrown or len(self.thrown) == MOST_DEEP:
+            return
+        self.followed += 1
+        if self.followed > MOST_FOLLOWED:
+            return
+        self.thrown.append(event)
+        if self.here.endswith(ANY):
+            self._throw_in_states(event, label)
+        self._taken(event, label)
+        self.thrown.pop()
 
     def _throw_in_states(self, event: str, label: str) -> None:
         """Events that the document's handlers throw go to a state's own handlers first."""
