@@ -12,11 +12,10 @@ from prima.cli.options import PathName, SuggestingChoice, or_stdout, output_opti
 from prima.cli.outputs import check_output
 from prima.cli.printing import echo, tell, tell_cut, write_for_programs
 from prima.errors import UsageError
+from prima.graph import FORMATS, SUFFIXES, WHATS, picture
 
 if TYPE_CHECKING:
     from prima.api import Transcript
-
-FORMATS = ["svg", "dot", "mermaid", "json"]
 
 
 @click.command()
@@ -26,7 +25,7 @@ FORMATS = ["svg", "dot", "mermaid", "json"]
 )
 @click.option(
     "--what",
-    type=SuggestingChoice(["states", "tree", "streams", "map"]),
+    type=SuggestingChoice(WHATS),
     help="An application's states; a transcript's tree of Atomic Behaviors, or its streams;"
     " a world's map.",
 )
@@ -45,7 +44,6 @@ def graph(file: str, to: str | None, what: str | None, row: int | None, output: 
     prima graph mediated.jsonl --what streams -o streams.svg
     prima graph documents/worlds/office.xml -o office.svg
     """
-    from prima.graph import SUFFIXES, picture
     from prima.loading.writing import write_whole
 
     form = to or SUFFIXES.get(Path(output or "").suffix.lower())
