@@ -20,6 +20,12 @@ PROGRESS_SECONDS = 0.5
 """How often the progress of a long run is shown."""
 
 
+def show_count(done: int, total: int, what: str) -> None:
+    """Show on a terminal how many of a number of things are done."""
+    if sys.stderr.isatty():
+        click.echo(f"\r{done} of {total} {what}", err=True, nl=done == total)
+
+
 def print_records(records: list[Record]) -> None:
     """Print the records of an instant as JSON lines."""
     from prima.transcript.lines import line

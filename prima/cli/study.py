@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import sys
-
 import click
 from click.exceptions import Exit
 
 from prima.cli.options import PathName, formats_option
 from prima.cli.printing import print_json, put, write_for_programs
+from prima.cli.progress import show_count
 
 
 @click.command()
@@ -37,8 +36,7 @@ def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> N
     total = len(chosen) * len(each)
     for result in run_study(chosen, each):
         results.append(result)
-        if sys.stderr.isatty():
-            click.echo(f"\r{len(results)} of {total} runs", err=True, nl=len(results) == total)
+        show_count(len(results), total, "runs")
     if form == "json":
         print_json([result_data(result) for result in results])
     elif form == "csv":

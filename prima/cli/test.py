@@ -20,6 +20,7 @@ from prima.cli.options import (
 )
 from prima.cli.outputs import check_output, same_file
 from prima.cli.printing import coloured, echo, print_json, put, tell
+from prima.cli.progress import show_count
 from prima.errors import UsageError
 
 if TYPE_CHECKING:
@@ -107,7 +108,8 @@ def test(
         results.append(result)
         merge(coverage, result.coverage)
         result.coverage = {}
-        _progress(len(results), len(chosen))
+        if len(chosen) > 1:
+            show_count(len(results), len(chosen), "scenarios")
     under = _is_under(coverage, fail_under)
     if form == "text":
         _report(results)
@@ -169,11 +171,6 @@ def _check_outputs(scenarios: list[str], *outputs: str | None) -> None:
         raise UsageError(f"{paths[0]}: results and coverage need two files; name another one.")
     for path in paths:
         check_output(path, "test", *scenarios)
-
-
-def _progress(done: int, total: int) -> None:
-    if sys.stderr.isatty() and total > 1:
-        click.echo(f"\r{done} of {total} scenarios", err=True, nl=done == total)
 
 
 def _paint(text: str, status: str) -> str:

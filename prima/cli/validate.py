@@ -22,6 +22,7 @@ from prima.cli.options import (
     raise_limits,
 )
 from prima.cli.printing import coloured, echo, print_json, put, tell, tell_line
+from prima.cli.progress import show_count
 from prima.errors import Problem, UsageError, listed, one_of
 from prima.errors.visible import visible
 from prima.markup.limits import LIMITS
@@ -114,8 +115,8 @@ def _check(
             problems += validation.problems(name)
         except UsageError as error:
             unread.append(in_words(error))
-        if len(names) >= MANY and sys.stderr.isatty():
-            click.echo(f"\r{index} of {len(names)} files", err=True, nl=index == len(names))
+        if len(names) >= MANY:
+            show_count(index, len(names), "files")
     problems = loading.once([*problems, *validation.ignored()])
     _show([one for one in problems if notes or one.severity != "note"], form)
     for message in unread:

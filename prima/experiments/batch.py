@@ -16,6 +16,7 @@ from dataclasses import asdict, replace
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
+from shutil import rmtree
 from typing import TYPE_CHECKING
 
 from prima.errors import TOO_MUCH, DocumentError, PrimaError, UsageError
@@ -56,7 +57,7 @@ def run_batch(
             plan,
             workers,
             partial(_begin, options),
-            partial(_remove, parts),
+            partial(rmtree, parts, ignore_errors=True),
         )
         with closing(made):
             yield from _rows(made)
@@ -96,13 +97,6 @@ def _parts(output: str) -> Iterator[str]:
         except OSError as error:
             raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
         yield parts
-
-
-def _remove(parts: str) -> None:
-    if parts:
-        import shutil
-
-        shutil.rmtree(parts, ignore_errors=True)
 
 
 def _dead(job: Job, died: Died) -> BatchRow:

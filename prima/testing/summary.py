@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from prima.errors import counted
 from prima.errors.rendering import excerpt
 from prima.errors.visible import visible
 from prima.testing.checking import Failure
@@ -47,8 +48,8 @@ def _checked(result: Result) -> str:
     wrong = len({(one.place.line, one.place.column) for one in result.failures})
     parts = []
     if result.expectations:
-        counted = f"{result.expectations} expectation{'s'[: result.expectations != 1]}"
-        parts.append(f"{wrong} of {counted}" if wrong and result.status == "failed" else counted)
+        many = counted(result.expectations, "expectation")
+        parts.append(f"{wrong} of {many}" if wrong and result.status == "failed" else many)
     words = {
         "same": "table as expected",
         "differs": "table differs",
