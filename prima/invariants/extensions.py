@@ -43,18 +43,14 @@ class Extensions(FloorRules):
         before.parents.add(ab.name)
         before.phase = LINKED
         self.waiting.pop(before.name, None)
-        if rule != "X4":
-            self._goes_first(ab.tree)
+        if rule != "X4":  # all that waits in the stream waits for a way back, or for words
+            for other in [one for one in self.waiting.values() if one.tree is ab.tree]:
+                self.join_first(other)
 
     def _may_precede(self, ab: AB, before: AB) -> bool:
         """A way back comes also before what has been put in already."""
         first = ab.inserted == "X1" or not before.inserted
         return before.tree is ab.tree and before.unit is None and first
-
-    def _goes_first(self, tree: Tree) -> None:
-        """X1, X9: all ABs that wait in a stream wait for the inserted one."""
-        for other in [one for one in self.waiting.values() if one.tree is tree]:
-            self.join_first(other)
 
     def _takes_place(self, ab: AB, before: AB) -> None:
         """An inserted AB takes the other's place in the order of S2, with its reactive flag."""

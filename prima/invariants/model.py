@@ -189,10 +189,6 @@ class Tree:
         """X1, X9: the AB that is inserted before all that wait in the stream."""
         return [ab for ab in self.members.values() if ab.inserted in ("X1", "X9")]
 
-    def seeks(self) -> bool:
-        """K1: whether it searches for the user, or tracks them."""
-        return any(ab.command in SEEKING for ab in self.contending())
-
     def engages(self, sensed: bool) -> bool:
         """K1: from the first engaging start to the end, unless all contending ABs leave.
 
@@ -200,7 +196,8 @@ class Tree:
         """
         contending = self.contending()
         leaves = bool(contending) and all(ab.leaves for ab in contending)
-        return self.engaged and not leaves and (sensed or self.seeks())
+        seeks = any(ab.command in SEEKING for ab in contending)
+        return self.engaged and not leaves and (sensed or seeks)
 
 
 @dataclass(slots=True)

@@ -19,11 +19,12 @@ def x8(mediation: Mediation) -> None:
     if mediation.halted:
         return
     waiting = mediation.memory.waiting
-    stale = [ab for ab in waiting.values() if _is_stale(ab, mediation.now)]
+    now = mediation.now
+    stale = [ab for ab in waiting.values() if ab.stale is not None and ab.stale <= now]
     for ab in stale:
         free = _may_start(mediation, ab)
-        if free and ab.stale == mediation.now:
-            ab.stale = mediation.now + 1  # the selection of this very instant may start it
+        if free and ab.stale == now:
+            ab.stale = now + 1  # the selection of this very instant may start it
         elif ab.name in waiting:
             _give_up(mediation, ab, whole=free)
 
@@ -33,10 +34,6 @@ def _may_start(mediation: Mediation, ab: Behavior) -> bool:
     waiting = mediation.memory.waiting.values()
     ranked = mediation.policy.ranked(waiting, mediation.memory, mediation.now)
     return any(one is ab for _, one in able(mediation, ranked, {}))
-
-
-def _is_stale(ab: Behavior, now: int) -> bool:
-    return ab.stale is not None and ab.stale <= now
 
 
 def _give_up(mediation: Mediation, root: Behavior, whole: bool) -> None:

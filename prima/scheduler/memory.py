@@ -111,11 +111,6 @@ class WorkingMemory:
             ab.unit.inner.pop(name, None)
         ab.state = GONE
 
-    def end(self, stream: Stream) -> None:
-        """C1: a stream is over."""
-        del self.streams[stream.name]
-        self.engaged.pop(stream.name, None)
-
     def conflicts(self, ab: Behavior) -> list[Behavior]:
         """All running ABs that occupy one of the devices, in the order in which they started."""
         return [

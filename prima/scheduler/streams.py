@@ -130,9 +130,11 @@ def c1(mediation: Mediation) -> None:
 
 
 def _end(mediation: Mediation, stream: Stream) -> None:
-    mediation.memory.end(stream)
+    memory = mediation.memory
+    del memory.streams[stream.name]
+    memory.engaged.pop(stream.name, None)
     mediation.recorder.stream("stream-end", stream, "C1")
-    floor = mediation.memory.floor
+    floor = memory.floor
     if stream in floor:
         floor.remove(stream)
         names = [held.name for held in floor]
