@@ -173,7 +173,14 @@ def certificate_data(one: Certificate) -> dict[str, Any]:
             "ea": one.only_ea,
             "not_known": _gaps(one.gaps),
         },
-        "delays": [_delay_data(delay) for delay in one.delays],
+        "delays": [
+            {
+                "event": delay.event,
+                **_wait_data(delay),
+                "response": _wait_data(delay.response) if delay.response else None,
+            }
+            for delay in one.delays
+        ],
         "longest_unit": _price(one.longest_unit) if one.longest_unit else None,
         "leaves": [_price(held) for held in one.leaves],
         "holds": [{"place": str(place), "lasts": lasts} for place, lasts in one.holds],
@@ -186,12 +193,6 @@ def certificate_data(one: Certificate) -> dict[str, Any]:
         "long": [_price(held) for held in one.long],
         "lacks": one.lacks,
     }
-
-
-def _delay_data(delay: Delay) -> dict[str, Any]:
-    response = delay.response
-    found = {"event": delay.event, **_wait_data(delay)}
-    return {**found, "response": _wait_data(response) if response else None}
 
 
 def _wait_data(delay: Delay) -> dict[str, Any]:

@@ -237,12 +237,9 @@ def _hints(document: Document, form: Form | None) -> dict[str, list[str]]:
         sources.append((watch.name, clean(watch.when.code)))
     for act in chain.from_iterable(map(all_acts, contents)):
         if isinstance(act, SendOut):
-            sources.append((act.event, _when(act)))
+            when = f"after {act.delay / 1000:g} s" if isinstance(act.delay, int) else "later"
+            sources.append((act.event, when))
     return known(source for source in sources if source[0])
-
-
-def _when(act: SendOut) -> str:
-    return f"after {act.delay / 1000:g} s" if isinstance(act.delay, int) else "later"
 
 
 def _blocks(form: Form) -> list[Sequence[Act]]:

@@ -159,11 +159,12 @@ class _VoiceGraph(Transitions[Node]):
         name = item.get("name")
         cond = item.get("cond").strip()
         conditions = [condition(cond)] if cond else []
+        bridged = item.get("bridge") == "true" or item.get("type", "blind") != "blind"
         if item.tag == "block":
             self.content(item.nodes, "then", conditions)
         elif item.tag == "subdialog":
             self._target(item, "src", "srcexpr", "call", joined(f"subdialog {name}", conditions))
-        elif item.tag == "transfer" and not _is_bridged(item):
+        elif item.tag == "transfer" and not bridged:
             self.graph.edge(self.here, "", "exit", joined("the call is passed on", conditions))
         self._links(item.all("link"))
         reply = AnswerLabel(name, item.get("type").partition("?")[0] == "boolean")
@@ -301,10 +302,6 @@ def _marks(dialog: Node, parts: list[Node], asks: bool, leaves: bool) -> list[st
         "leaves the user": leaves,
     }
     return [mark for mark, applies in marks.items() if applies]
-
-
-def _is_bridged(transfer: Node) -> bool:
-    return transfer.get("bridge") == "true" or transfer.get("type", "blind") != "blind"
 
 
 def _filled(item: Node, many: bool) -> str:

@@ -110,7 +110,8 @@ class _Completion:
         self, parent: ScannedTag | None, start: int, end: int, tag: ScannedTag | None
     ) -> Iterator[Proposal]:
         """Elements allowed in another; ``tag`` is the unfinished element there, if any."""
-        if parent is None and not self._may_be_root(tag):
+        rooted = self.page.tags and tag not in (self.page.tags[0], self.page.root)
+        if parent is None and rooted:
             return
         begin = "" if tag is not None else "<"
         alone = tag is None or not (tag.attributes or tag.finished)
@@ -128,10 +129,6 @@ class _Completion:
             )
         if parent and tag and alone:
             yield Proposal(f"/{parent.name}", "element", start, end, f"/{parent.name}>")
-
-    def _may_be_root(self, tag: ScannedTag | None) -> bool:
-        """Whether an unfinished element, or one yet to be written, can be the root."""
-        return not self.page.tags or tag in (self.page.tags[0], self.page.root)
 
     def _attributes(
         self, tag: ScannedTag, start: int, end: int, now: Attr | None

@@ -122,13 +122,10 @@ def resolve(page: ScannedText) -> None:
             if vocabulary is None and parent is None and not tag.prefix:
                 vocabulary = BY_ROOT.get(tag.local)  # no namespace written yet
             tag.vocabulary = vocabulary
-            tag.key = vocabulary.root if vocabulary and _is_root(vocabulary, tag) else tag.local
+            is_root = vocabulary and vocabulary.elements[vocabulary.root].tag == tag.local
+            tag.key = vocabulary.root if vocabulary and is_root else tag.local
         else:
             tag.vocabulary, tag.key = _child(parent, tag)
-
-
-def _is_root(vocabulary: Vocabulary, tag: ScannedTag) -> bool:
-    return vocabulary.elements[vocabulary.root].tag == tag.local
 
 
 def _namespaces(tag: ScannedTag, outer: dict[str, str]) -> dict[str, str]:
