@@ -6,7 +6,6 @@ repeat probabilities; among equal ones, the alternative written first and the lo
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from prima.grammar.chart import Cell, ChartWay
 from prima.grammar.model import BuiltIn, Reference, Rule, Tag, Words
+from prima.grammar.rings import rings
 from prima.grammar.text import MatchedUtterance
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class Value(NamedTuple):
 
 def best(top: Cell, most: int) -> list[RankedParse]:
     """The best analyses of a cell, at most so many."""
-    groups = _groups(top)
+    groups = list(rings([top], _below))  # parts first; cells that contain each other are one group
     most = max(1, min(most, MOST_KNOWN // sum(map(len, groups))))
     known: dict[int, list[RankedParse]] = {}
     for group in groups:
@@ -131,38 +131,6 @@ def _parts(way: ChartWay) -> Iterator[Cell]:
 
 def _below(cell: Cell) -> Iterator[Cell]:
     return (part for way in cell.ways for part in _parts(way))
-
-
-def _groups(top: Cell) -> list[list[Cell]]:
-    """All cells below the top one, parts first; cells that contain each other are one group.
-
-    These are the strong components of a graph, found by Gabow's algorithm.
-    """
-    groups: list[list[Cell]] = []
-    path, borders = [top], [0]
-    """The cells that have no group yet, and where groups on it may begin."""
-    place: dict[int, float] = {top.number: 0}
-    """Where a cell is on the path; infinity once it has a group."""
-    stack = [(top, _below(top))]
-    while stack:
-        cell, parts = stack[-1]
-        part = next(parts, None)
-        if part is None:
-            stack.pop()
-            if borders[-1] == place[cell.number]:
-                group = path[borders.pop() :]
-                del path[-len(group) :]
-                place.update((one.number, math.inf) for one in group)
-                groups.append(group)
-        elif part.number not in place:
-            place[part.number] = len(path)
-            borders.append(len(path))
-            path.append(part)
-            stack.append((part, _below(part)))
-        else:
-            while borders[-1] > place[part.number]:
-                borders.pop()
-    return groups
 
 
 def _settled(group: list[Cell], known: dict[int, list[RankedParse]]) -> list[Cell]:

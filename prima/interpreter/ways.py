@@ -6,8 +6,8 @@ from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 
+from prima.grammar.rings import rings
 from prima.interpreter.entering import ContentFacts, EnteredDocument, Entering, FormTarget
-from prima.interpreter.rings import rings
 
 Onward = Mapping[FormTarget, Sequence[FormTarget]]
 """The targets of forms, and the expressions that name forms."""

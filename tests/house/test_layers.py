@@ -111,7 +111,7 @@ INSIDE = {
         {"__init__"},
     ],
     "grammar": [
-        {"abnferrors", "errors", "text", "numbers"},
+        {"abnferrors", "errors", "rings", "text", "numbers"},
         {"media"},
         {"abnfheader", "dates", "model"},
         {"assent"},
@@ -124,7 +124,7 @@ INSIDE = {
         {"__init__"},
     ],
     "interpreter": [
-        {"acts", "diagnoses", "rings", "selection", "steps", "vocabulary"},
+        {"acts", "diagnoses", "selection", "steps", "vocabulary"},
         {"elements"},
         {"events", "places", "pyengine", "sensors"},
         {"naming", "transfers"},

@@ -15,7 +15,7 @@ from prima.checks.prices.model import (
     devices_of,
 )
 from prima.errors import Place
-from prima.interpreter.rings import rings
+from prima.grammar.rings import rings
 from prima.markup.tree import Node
 
 MANY_STATES = 8
