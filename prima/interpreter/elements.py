@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from prima.grammar.answers import Answers
 from prima.interpreter.acts import (
     Act,
-    CommandRun,
     CommandTemplate,
     Declare,
     Expression,
@@ -260,12 +259,6 @@ def all_items(items: Sequence[Item]) -> Sequence[Item]:
         if isinstance(item, Unit):
             found += all_items(item.items)
     return found
-
-
-def runs_of(document: Document) -> Iterator[CommandRun]:
-    """All runs of Commands of a document, in document order."""
-    for _, content, _ in document.contents():
-        yield from (act for act in all_acts(content) if isinstance(act, CommandRun))
 
 
 def document_commands(document: Document) -> Iterator[CommandTemplate]:

@@ -146,7 +146,7 @@ def _commands(acts: Acts) -> Iterator[CommandTemplate]:
         yield from run_commands(run.steps)
 
 
-def _groups(acts: Acts) -> Iterator[GroupTemplate]:
+def groups_of(acts: Acts) -> Iterator[GroupTemplate]:
     """The units around Commands (U4)."""
     for _, run in acts.of(CommandRun):
         yield from (step.what for step in run.steps if isinstance(step.what, GroupTemplate))
@@ -154,7 +154,7 @@ def _groups(acts: Acts) -> Iterator[GroupTemplate]:
 
 def _never_taken(acts: Acts) -> Iterator[tuple[Handler, str, Diagnosis]]:
     """The handlers in Commands of events that do not reach them, with the name and the problem."""
-    inside = {id(one) for group in _groups(acts) for one in run_commands(group.steps)}
+    inside = {id(one) for group in groups_of(acts) for one in run_commands(group.steps)}
     for command in _commands(acts):
         own = [] if id(command) in inside else [f"{kind}.{command.type}" for kind in OWN]
         diagnosis = NOT_ITS_OWN if own else NOT_ITS_ERROR
@@ -209,7 +209,7 @@ class KnownEvents:
         self.commands = {command.type for command in _commands(acts)}
         if any(isinstance(item, Field) for item in items_of(document)):
             self.commands.add("q-and-a")
-        self.units = {"iu"} if any(_groups(acts)) else set()
+        self.units = {"iu"} if any(groups_of(acts)) else set()
         """The name of units around Commands, which have no event at their end."""
         self._never_taken = [*_never_taken(acts)]
         self.asked = [*_asked(acts)]

@@ -10,13 +10,13 @@ from prima.interpreter.acts import (
     Act,
     Assign,
     CommandRun,
-    CommandTemplate,
     Handler,
     Log,
     SendOut,
-    StepTemplate,
     Throw,
     all_acts,
+    commands_of,
+    run_commands,
 )
 from prima.interpreter.elements import Document, all_items
 from prima.interpreter.selection import prefixes
@@ -91,21 +91,9 @@ class EventLeads:
 
 def raised_in(content: Sequence[Act]) -> set[str]:
     """The events that content raises without a wait: ends of its Commands, and throws."""
-    acts = all_acts(content)
-    ends = {
-        f"end.{name}" for act in acts if isinstance(act, CommandRun) for name in _types(act.steps)
-    }
-    thrown = [act.event for act in acts if isinstance(act, Throw)]
+    ends = {f"end.{command.type}" for command in commands_of(content)}
+    thrown = [act.event for act in all_acts(content) if isinstance(act, Throw)]
     return ends | {name for name in thrown if isinstance(name, str)}
-
-
-def _types(steps: Sequence[StepTemplate]) -> Iterator[str]:
-    """The Commands of steps, those in units included."""
-    for step in steps:
-        if isinstance(step.what, CommandTemplate):
-            yield step.what.type
-        else:
-            yield from _types(step.what.steps)
 
 
 def endless_reactions(document: Document) -> Iterator[Problem]:
@@ -156,7 +144,8 @@ def raised_first(content: Sequence[Act]) -> set[str]:
     for act in content:
         match act:
             case CommandRun() if not ran:
-                first = set(_types([step for step in act.steps if not step.after]))
+                steps = [step for step in act.steps if not step.after]
+                first = {command.type for command in run_commands(steps)}
                 if PAUSE in first:
                     return found
                 found |= {f"end.{name}" for name in first}

@@ -79,11 +79,7 @@ class Reach:
     def devices(self) -> frozenset[str]:
         """All its devices according to Table 4.2; a robot may add Commands of its own."""
         found = TABLE_4_2[QUESTION].devices if self.asks else frozenset()
-        for one in self.commands:
-            row = TABLE_4_2.get(one.command.type)
-            found |= row.devices if row is not None else frozenset()
-            found |= {"speaker"} if one.command.text else frozenset()
-        return found
+        return found.union(*(devices_of(one.command) for one in self.commands))
 
     @property
     def types(self) -> tuple[str, ...]:
@@ -172,13 +168,16 @@ class UnitPiece:
             self.computed.add(event.code)
 
 
+def devices_of(command: CommandTemplate) -> frozenset[str]:
+    """The devices of a Command according to Table 4.2, and the speaker for a text."""
+    row = TABLE_4_2.get(command.type)
+    devices: frozenset[str] = row.devices if row is not None else frozenset()
+    return devices | {"speaker"} if command.text else devices
+
+
 def failures(command: CommandTemplate) -> set[str]:
     """The events by which a Command of a unit can fail in it."""
-    row = TABLE_4_2.get(command.type)
-    devices = row.devices if row is not None else frozenset()
-    if command.text:
-        devices |= {"speaker"}
-    broken = {f"error.device.{device}" for device in devices}
+    broken = {f"error.device.{device}" for device in devices_of(command)}
     return broken | {"error.semantic", f"error.unsupported.{command.type}"}
 
 

@@ -8,9 +8,10 @@ from collections.abc import Iterator, Sequence
 from prima.errors import Diagnosis, Problem
 from prima.errors.diagnoses.behaviour import SHARED_DEVICE
 from prima.errors.diagnoses.values import NOTHING_TO_SAY
-from prima.interpreter.acts import CommandRun, GroupTemplate, StepTemplate, Text, run_commands
+from prima.interpreter.acts import CommandRun, StepTemplate, Text, run_commands
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Field, Form, Prompt, Unit
+from prima.interpreter.events import groups_of
 from prima.interpreter.speaking import long_group, long_unit, speak, unit_speaks
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
@@ -76,11 +77,9 @@ def check_units(facts: Facts) -> Iterator[Problem]:
         for item in items:
             if isinstance(item, Unit):
                 yield from long_unit(item.node, unit_speaks(item, lang))
-    for _, run in facts.acts.of(CommandRun):
-        for step in run.steps:
-            if isinstance(step.what, GroupTemplate):
-                group, ms = step.what, speak(run_commands(step.what.steps), lang)
-                yield from long_group(group.node, ms, group.longest)
+    for group in groups_of(facts.acts):
+        ms = speak(run_commands(group.steps), lang)
+        yield from long_group(group.node, ms, group.longest)
 
 
 def check_branches(facts: Facts) -> Iterator[Problem]:
@@ -115,11 +114,8 @@ def _parallel(steps: Sequence[StepTemplate], first: int, second: int) -> bool:
 
 
 def _devices(step: StepTemplate) -> frozenset[str]:
-    commands = (
-        run_commands(step.what.steps) if isinstance(step.what, GroupTemplate) else [step.what]
-    )
     devices: frozenset[str] = frozenset()
-    for command in commands:
+    for command in run_commands([step]):
         row = TABLE_4_2.get(command.type)
         if row is not None:
             devices |= row.occupied("x" if command.text else None)

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from prima.errors import Diagnosis, Problem
 from prima.errors.diagnoses.values import ASKED_LATER
 from prima.interpreter.acts import (
-    CommandRun,
     Exit,
     Goto,
     Handler,
@@ -15,7 +14,6 @@ from prima.interpreter.acts import (
     Throw,
     all_acts,
     commands_of,
-    run_commands,
 )
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Field, Form, Prompt
@@ -66,12 +64,9 @@ def check_leaving(facts: Facts) -> Iterator[Problem]:
 
 def _leaves(handler: Handler) -> Iterator[Problem]:
     """Whether a handler leaves the user during a question and returns to it."""
-    acts = all_acts(handler.content)
-    if any(isinstance(act, Goto | Exit | Return | Throw) for act in acts):
+    if any(isinstance(act, Goto | Exit | Return | Throw) for act in all_acts(handler.content)):
         return
-    commands = [
-        one for act in acts if isinstance(act, CommandRun) for one in run_commands(act.steps)
-    ]
+    commands = commands_of(handler.content)
     leaving = [one for one in commands if one.type in TABLE_4_2 and TABLE_4_2[one.type].leaves]
     if leaving and not any(one.type == "active-sensing-human" for one in commands):
         node = leaving[0].node

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from prima.errors import Hint, Problem, few, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_ARGUMENT, UNSUPPORTED_COMMAND
-from prima.interpreter.acts import CommandTemplate, GroupTemplate, run_commands
+from prima.interpreter.acts import CommandTemplate, run_commands
 from prima.interpreter.checks.arguments import given_to
-from prima.interpreter.elements import Document, Field, document_commands, runs_of
+from prima.interpreter.elements import Acts, Document, Field, document_commands
 from prima.interpreter.elements import Unit as ItemUnit
-from prima.interpreter.events import handlers_of, items_of
+from prima.interpreter.events import groups_of, handlers_of, items_of
 from prima.interpreter.selection import prefixes
 from prima.interpreter.units import QUESTION, Finder, Reached, unit_problem, units_of
 from prima.language.commands import TABLE_4_2, CommandType
@@ -31,8 +31,9 @@ def check_commands(
     document: Document, commands: Mapping[str, CommandType], devices: frozenset[str] = frozenset()
 ) -> list[Problem]:
     """Warn of Commands that a robot cannot carry out: a document may handle the failure."""
-    problems = _outside_units(document, commands)
-    heard = {name for handler in handlers_of(document) for name in handler.events}
+    acts = Acts(document)
+    problems = _outside_units(document, acts, commands)
+    heard = {name for handler in handlers_of(document, acts) for name in handler.events}
     robot = Ability(commands, devices, heard)
     cannot: list[Problem] = []
     for command in document_commands(document):
@@ -111,7 +112,9 @@ def _no_argument(command: CommandTemplate, row: CommandType, name: str, by_param
     return NO_ARGUMENT.at(command.node.place, hint, command=command.type, name=name)
 
 
-def _outside_units(document: Document, commands: Mapping[str, CommandType]) -> list[Problem]:
+def _outside_units(
+    document: Document, acts: Acts, commands: Mapping[str, CommandType]
+) -> list[Problem]:
     """U4, U5: Commands of the profile's own that cannot be part of a unit."""
     problems: dict[int, Problem] = {}
 
@@ -124,19 +127,12 @@ def _outside_units(document: Document, commands: Mapping[str, CommandType]) -> l
     for form, unit in units_of(document):
         for one in finder.reach(form, unit).commands:
             look(one, unit)
-    for command in _grouped(document):
-        look(Reached(command, True))
+    for group in groups_of(acts):
+        for command in run_commands(group.steps):
+            look(Reached(command, True))
     return [*problems.values()]
 
 
 def _own_row(command: CommandTemplate, commands: Mapping[str, CommandType]) -> CommandType | None:
     """The row of a Command that a robot's profile adds."""
     return None if command.type in TABLE_4_2 else commands.get(command.type)
-
-
-def _grouped(document: Document) -> Iterator[CommandTemplate]:
-    """The Commands in units around Commands (U4)."""
-    for run in runs_of(document):
-        for step in run.steps:
-            if isinstance(step.what, GroupTemplate):
-                yield from run_commands([step])
