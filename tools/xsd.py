@@ -173,7 +173,7 @@ def _simple_type(kind: str) -> list[str]:
     return [
         f'  <xs:simpleType name="kind-{kind}">',
         _doc(row.doc, "    "),
-        f'    <xs:restriction base="{row.xsd}"><xs:whiteSpace value="{space}"/>{pattern}'
+        f'    <xs:restriction base="xs:string"><xs:whiteSpace value="{space}"/>{pattern}'
         "</xs:restriction>",
         "  </xs:simpleType>",
     ]

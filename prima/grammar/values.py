@@ -7,6 +7,7 @@ import re
 from typing import NamedTuple
 
 from prima.grammar.model import Alternatives, Part, PrefixIndex, Sequence
+from prima.language.values import LANGUAGE, SHORT_NAME
 
 LEAST = 1e-20
 """The value used for a weight of 0, which ranks after everything else."""
@@ -15,14 +16,6 @@ RESERVED = frozenset(["NULL", "VOID", "GARBAGE"])
 MODES = ("voice", "dtmf")
 _REPEAT = re.compile(r"([0-9]+)(?:(-)([0-9]+)?)?")
 _DECIMAL = re.compile(r"[0-9]+(?:\.[0-9]*)?|\.[0-9]+")
-_LETTERS = (
-    "A-Za-z_\u00c0-\u00d6\u00d8-\u00f6\u00f8-\u02ff\u0370-\u037d\u037f-\u1fff\u200c\u200d"
-    "\u2070-\u218f\u2c00-\u2fef\u3001-\ud7ff\uf900-\ufdcf\ufdf0-\ufffd\U00010000-\U000effff"
-)
-_NAME = f"[{_LETTERS}][{_LETTERS}0-9\u00b7\u0300-\u036f\u203f\u2040]*"
-"""A Name of XML 1.0 without dots, colons and hyphens (SRGS Appendix D: ConstrainedName). It is
-compiled when it is used: so many letters take long."""
-_LANGUAGE = re.compile(r"[A-Za-z]{1,8}(?:-[A-Za-z0-9]{1,8})*")
 
 
 class RepeatBounds(NamedTuple):
@@ -95,14 +88,14 @@ def sequence(parts: list[Part]) -> Part:
 
 
 def name_problem(name: str) -> str:
-    """The problem of a rule's name (SRGS 3.1), or nothing."""
+    """The problem of a rule's name (SRGS 3.1; Appendix D: ConstrainedName), or nothing."""
     if name in RESERVED:
         return f'"{name}" is a special rule and cannot be defined.'
-    if re.fullmatch(_NAME, name) is None:
+    if re.fullmatch(SHORT_NAME, name) is None:
         return f'"{name[:60]}" is not a valid rule name: letters, digits and "_", no digit first.'
     return ""
 
 
 def is_language(text: str) -> bool:
     """Whether a text names a language (RFC 3066)."""
-    return _LANGUAGE.fullmatch(text) is not None
+    return re.fullmatch(LANGUAGE, text) is not None

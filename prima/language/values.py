@@ -44,13 +44,21 @@ _START = (
 _REST = f"{_START}0-9\u00b7\u0300-\u036f\u203f\u2040"
 """Characters that continue one, dot and hyphen apart; ``\\c`` in XML Schema."""
 
-DURATION = re.compile(r"\+?([0-9]+(?:\.[0-9]*)?|\.[0-9]+)(ms|s)")
+SHORT_NAME = f"[{_START}][{_REST}]*"
+"""A name without dots and hyphens."""
 NAME = rf"[{_START}][{_REST}.\-]*"
 TARGET = f"#{NAME}"
 _WORD = rf"[{_START}$][{_REST}$]*"
 VARIABLE = rf"{_WORD}(?:\.{_WORD})*"
 EVENT = rf"[{_REST}\-]+(?:\.[{_REST}\-]+)*\.?"
-NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+# Patterns that mean the same in Python and in XML Schema.
+LANGUAGE = r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*"
+_DURATION = r"\+?([0-9]+(\.[0-9]*)?|\.[0-9]+)(ms|s)"
+_NUMBER = r"[+\-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+\-]?[0-9]+)?"
+_INTEGER = r"[+\-]?[0-9]{1,9}"
+_DATE = r"[0-9]{4}-[0-9]{2}-[0-9]{2}(T[0-9]{2}:[0-9]{2}(:[0-9]{2})?)?"
+_FILLED = r"[\s\S]*\S[\s\S]*"
+NUMBER = re.compile(_NUMBER)
 LONGEST_NAME = 500
 """Letters that a name may have."""
 XML_SPACE = " \t\r\n"
@@ -80,10 +88,10 @@ def _alphabet(form: str, ascii_only: bool) -> re.Pattern[str]:
 
 
 def _duration(text: str) -> int:
-    match = DURATION.fullmatch(text)
+    match = re.fullmatch(_DURATION, text)
     if match is None:
         raise BadValue("is not a time.", 'Write a number with its unit: "500ms" or "2.5s".')
-    value = float(match[1]) * (1000 if match[2] == "s" else 1)
+    value = float(match[1]) * (1000 if match[3] == "s" else 1)
     if value > LONGEST_MS:
         raise BadValue("is longer than a day.", 'Write at most "86400s".')
     return round(value)
@@ -96,7 +104,7 @@ def _number(text: str) -> float:
 
 
 def _integer(text: str) -> int:
-    if re.fullmatch(r"[+-]?[0-9]{1,9}", text) is None:
+    if re.fullmatch(_INTEGER, text) is None:
         raise BadValue("is not a whole number.", 'Write digits alone, at most nine, as in "2".')
     return int(text)
 
@@ -151,7 +159,7 @@ def _list(pattern: str, what: str, none: str, remedy: str) -> Callable[[str], st
 def _date(text: str) -> str:
     from datetime import datetime  # slows down the start, and is rarely needed
 
-    if re.fullmatch(r"[0-9]{4}-[0-9]{2}-[0-9]{2}(T[0-9]{2}:[0-9]{2}(:[0-9]{2})?)?", text) is None:
+    if re.fullmatch(_DATE, text) is None:
         raise BadValue("is not a date.", 'Write it as "2005-03-01T10:00:00".')
     try:
         return datetime.fromisoformat(text).isoformat()
@@ -182,10 +190,9 @@ def _filled(text: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """A simple type: how to read it, its XML Schema base and pattern, and its meaning."""
+    """A simple type: how to read it, its pattern in XML Schema, and its meaning."""
 
     read: Callable[[str], Value]
-    xsd: str
     pattern: str
     doc: str
 
@@ -202,77 +209,62 @@ def _drawable(plain: Callable[[str], Value], pattern: str, doc: str) -> Kind:
     drawn = rf"{pattern} *\.\. *{pattern}|[a-z]+\([^()]*\)"
     is_drawn = re.compile(drawn)
     return Kind(
-        lambda text: text if is_drawn.fullmatch(text) else plain(text),
-        "xs:string",
-        f"{pattern}|{drawn}",
-        doc,
+        lambda text: text if is_drawn.fullmatch(text) else plain(text), f"{pattern}|{drawn}", doc
     )
 
 
-_XSD_DURATION = r"\+?([0-9]+(\.[0-9]*)?|\.[0-9]+)(ms|s)"
-_XSD_NUMBER = r"[+\-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+\-]?[0-9]+)?"
-
 KINDS: dict[str, Kind] = {
-    "duration": Kind(
-        _duration, "xs:string", _XSD_DURATION, "a time with its unit, as in 2s or 500ms"
-    ),
+    "duration": Kind(_duration, _DURATION, "a time with its unit, as in 2s or 500ms"),
     "delay": _drawable(
         _duration,
-        _XSD_DURATION,
+        _DURATION,
         "a time, as in 2s, or a distribution of times, as in normal(5s,1s) or 0s..20s",
     ),
-    "number": Kind(_number, "xs:string", _XSD_NUMBER, "a number, as in 1.5"),
+    "number": Kind(_number, _NUMBER, "a number, as in 1.5"),
     "quantity": _drawable(
         _number,
-        _XSD_NUMBER,
+        _NUMBER,
         "a number, as in 1.5, or a distribution of numbers, as in normal(1,0.2) or 0.5..2",
     ),
-    "integer": Kind(_integer, "xs:string", r"[+\-]?[0-9]{1,9}", "a whole number"),
-    "boolean": Kind(_boolean, "xs:string", "true|false", "true or false"),
+    "integer": Kind(_integer, _INTEGER, "a whole number"),
+    "boolean": Kind(_boolean, "true|false", "true or false"),
     "id": Kind(
         _pattern(NAME, "a name", 'Begin with a letter; letters, digits, ".", "-", "_" follow.'),
-        "xs:string",
         _XSD_NAME,
         "a name: a letter, then letters, digits, . - _",
     ),
     "variable": Kind(
         _pattern(VARIABLE, "a variable name", VARIABLE_REMEDY),
-        "xs:string",
         _XSD_VARIABLE,
         "the name of a variable",
     ),
     "variables": Kind(
         _list(VARIABLE, "a variable", "Write its name.", VARIABLE_REMEDY),
-        "xs:string",
         rf"{_XSD_VARIABLE}( {_XSD_VARIABLE})*",
         "names of variables, separated by spaces",
     ),
     "event": Kind(
         _pattern(EVENT, "an event name", EVENT_REMEDY),
-        "xs:string",
         _XSD_EVENT,
         "an event name: words joined by dots",
     ),
     "events": Kind(
         _list(EVENT, "an event", EVENT_REMEDY, EVENT_REMEDY),
-        "xs:string",
         rf"{_XSD_EVENT}( {_XSD_EVENT})*",
         "event names, separated by spaces",
     ),
-    "expression": Kind(_filled, "xs:string", r"[\s\S]*\S[\s\S]*", "an ECMAScript expression"),
-    "text": Kind(str, "xs:string", "", "any text"),
-    "target": Kind(_target, "xs:string", f"#{_XSD_NAME}", "# and the id of a form"),
-    "path": Kind(_filled, "xs:string", r"[\s\S]*\S[\s\S]*", "a file, relative to this document"),
+    "expression": Kind(_filled, _FILLED, "an ECMAScript expression"),
+    "text": Kind(str, "", "any text"),
+    "target": Kind(_target, f"#{_XSD_NAME}", "# and the id of a form"),
+    "path": Kind(_filled, _FILLED, "a file, relative to this document"),
     "language": Kind(
-        _pattern(r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*", "a language tag", 'Write one such as "en".'),
-        "xs:string",
-        r"[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*",
+        _pattern(LANGUAGE, "a language tag", 'Write one such as "en".'),
+        LANGUAGE,
         "a language tag, as in en or ja",
     ),
     "date": Kind(
         _date,
-        "xs:string",
-        r"[0-9]{4}-[0-9]{2}-[0-9]{2}(T[0-9]{2}:[0-9]{2}(:[0-9]{2})?)?",
+        _DATE,
         "a date and a time of day in UTC, as in 2005-03-01T10:00:00",
     ),
 }
