@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any, NoReturn
 
 from prima.interpreter.acts import (
@@ -29,21 +30,20 @@ from prima.interpreter.acts import (
 from prima.interpreter.elements import all_items
 from prima.interpreter.expressions import Evaluator
 from prima.interpreter.frame import Abandoned, Content, Fiber, GoForm
-from prima.interpreter.places import source, where
+from prima.interpreter.places import source
 from prima.interpreter.transfers import (
     GoBack,
     GoItem,
     GoOut,
     Thrown,
     Transfer,
-    failure,
     no_item,
     undeclared,
 )
 from prima.language.values import quoted, read_value, shown
 from prima.markup.tree import Node
 from prima.messages import Command, Group, Json, Notice, Say, Step
-from prima.script.evaluation import RESULT_LIMIT, ScriptError
+from prima.script.evaluation import RESULT_LIMIT
 
 MAX_NAME = 200
 """Characters of an event's name that are significant."""
@@ -101,11 +101,8 @@ class Executor(Evaluator):
 
     def foreach(self, act: Foreach, fiber: Fiber) -> Iterator[Sequence[Act]]:
         """Run content once for each element of an array."""
-        try:
-            elements = self.engine.elements(act.array.code, self.scopes(fiber), MAX_REPEATS)
-        except ScriptError as error:
-            raise failure(error, act.array.code, where(act.array, error)) from None
-        for element in elements:
+        elements = partial(self.engine.elements, most=MAX_REPEATS)
+        for element in self.by_engine(elements, act.array, fiber):
             self.owner.count_step(act.node)
             self.engine.put(self.local(fiber), act.item, element)
             yield act.content
@@ -146,10 +143,7 @@ class Executor(Evaluator):
 
     def assign(self, act: Assign, fiber: Fiber) -> None:
         """Give a declared variable a value; innermost scope first (VoiceXML 5.3.2)."""
-        try:
-            self.engine.assign_declared(act.name, act.expr.code, self.scopes(fiber))
-        except ScriptError as error:
-            raise failure(error, act.expr.code, where(act.expr, error)) from None
+        self.by_engine(self.engine.assign_declared, act.expr, fiber, act.name)
 
     def clear(self, act: Clear, fiber: Fiber) -> None:
         """Undefine variables and reset the counters of form items (VoiceXML 5.3.3)."""
@@ -210,15 +204,11 @@ class Executor(Evaluator):
         """Request Commands as one tree and wait for their end (U3, O4)."""
         steps = self.steps(act.steps, fiber)
         if steps:  # otherwise a par or seq without Commands
-            yield from self.await_run(self.owner.request(steps, fiber), fiber)
-
-    def await_run(self, number: int, fiber: Fiber) -> Content:
-        """Wait for a run to end; a failure becomes an event, a cancellation ends the content."""
-        notice = yield number
-        self.check(notice, fiber)
+            notice = yield self.owner.request(steps, fiber)
+            self.check(notice, fiber)
 
     def check(self, notice: Notice, fiber: Fiber) -> None:
-        """Check whether to continue after a run's end."""
+        """Go on after a run's end; a failure becomes an event, a cancellation ends the content."""
         if notice.what == "failed":
             fiber.commands = (notice.command.hook if notice.command else None) or ()
             place = notice.command.source if notice.command else ""

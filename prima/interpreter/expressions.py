@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 from prima.interpreter.acts import Declare, Expression, Pause, Script, Text
 from prima.interpreter.frame import Fiber
@@ -13,6 +14,8 @@ from prima.interpreter.transfers import failure
 from prima.markup.tree import Node
 from prima.messages import Cue, Json
 from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
+
+Made = TypeVar("Made")
 
 MAX_TEXT = 4000
 """Characters that a Command may say."""
@@ -40,19 +43,22 @@ class Evaluator:
             fiber.local = self.engine.scope()
         return fiber.local
 
-    def evaluate(self, expr: Expression, fiber: Fiber) -> Json:
-        """An expression's value as plain data."""
+    def by_engine(
+        self, method: Callable[..., Made], expr: Expression, fiber: Fiber, *given: object
+    ) -> Made:
+        """Let a method of the engine evaluate an expression; a failure is an event."""
         try:
-            return self.engine.value(expr.code, self.scopes(fiber))
+            return method(*given, expr.code, self.scopes(fiber))
         except ScriptError as error:
             raise failure(error, expr.code, where(expr, error)) from None
 
+    def evaluate(self, expr: Expression, fiber: Fiber) -> Json:
+        """An expression's value as plain data."""
+        return self.by_engine(self.engine.value, expr, fiber)
+
     def condition(self, expr: Expression, fiber: Fiber) -> bool:
         """An expression as a condition."""
-        try:
-            holds = self.engine.condition(expr.code, self.scopes(fiber))
-        except ScriptError as error:
-            raise failure(error, expr.code, where(expr, error)) from None
+        holds: bool = self.by_engine(self.engine.condition, expr, fiber)
         self.owner.note(expr.node, "true" if holds else "false")
         return holds
 
@@ -89,10 +95,8 @@ class Evaluator:
 
     def said(self, expr: Expression, fiber: Fiber) -> str:
         """An expression's value as text."""
-        try:
-            return self.engine.text(expr.code, self.scopes(fiber))
-        except ScriptError as error:
-            raise failure(error, expr.code, where(expr, error)) from None
+        said: str = self.by_engine(self.engine.text, expr, fiber)
+        return said
 
     def plain(self, value: Json | Expression, fiber: Fiber) -> Json:
         """A value, or the value of an expression."""
@@ -126,15 +130,13 @@ class Evaluator:
         """Declare a variable in a scope (VoiceXML 5.3.1)."""
         if act.expr is None:
             self.engine.unset(scope, act.name)
-            return
-        try:
-            self.engine.assign(scope, act.name, act.expr.code, self.scopes(fiber))
-        except ScriptError as error:
-            raise failure(error, act.expr.code, where(act.expr, error)) from None
+        else:
+            self.by_engine(self.engine.assign, act.expr, fiber, scope, act.name)
 
     def script(self, act: Script, scope: Scope, fiber: Fiber) -> None:
         """Run a script; what it declares belongs to the scope."""
-        try:
-            self.engine.script(act.code.code, scope, self.scopes(fiber))
-        except ScriptError as error:
-            raise failure(error, act.code.code, where(act.code, error)) from None
+
+        def run(code: str, scopes: tuple[Scope, ...]) -> None:
+            self.engine.script(code, scope, scopes)
+
+        self.by_engine(run, act.code, fiber)

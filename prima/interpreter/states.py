@@ -254,7 +254,7 @@ class States(App["AnyEngine | PythonEngine"]):
 
     def frame_for(self, form: Form, before: Frame | None) -> Frame:
         """A frame for a form entered by goto (keeping the document's scope) or at the start."""
-        document = before.document if before else self.new_document()
+        document = before.document if before else self.engine.named("document")
         frame = Frame(form, next(self.states), document, self.engine.named("dialog"))
         if before is None:
             frame.fresh = True
@@ -262,10 +262,6 @@ class States(App["AnyEngine | PythonEngine"]):
             frame.caller, frame.called_by = before.caller, before.called_by
             frame.given = before.given
         return frame
-
-    def new_document(self) -> object:
-        """An empty document scope."""
-        return self.engine.named("document")
 
     def set_up_document(self, frame: Frame) -> None:
         """Declare the document's variables and run its scripts, which see no dialog."""
