@@ -190,8 +190,8 @@ def _holder(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
     """The element allowed in the parent that may contain another; none if several could."""
     inside = [
         one
-        for one in vocabulary.children(parent.key)
-        if vocabulary.child(vocabulary.child(parent.key, one) or "", tag)
+        for one, key in vocabulary.children(parent.key).items()
+        if tag in vocabulary.children(key)
     ]
     return "block" if "block" in inside else inside[0] if len(inside) == 1 else ""
 

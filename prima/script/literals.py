@@ -21,13 +21,23 @@ class Beyond(Exception):
     """The code needs an engine."""
 
 
-def literal(code: Code, node: Node) -> Any:
-    """The value of a literal, which every evaluation copies (:func:`fresh`).
+def literal(code: Code, node: Node, depth: int = 0) -> Any:
+    """The value of a literal in so many arrays and objects; every evaluation copies it (:func:`fresh`).
 
     Raises:
         Beyond: it needs an engine.
     """
-    return _item(code, node, 0)
+    if depth > DEEPEST:
+        raise Beyond
+    if node.type == "array":
+        return _array(code, node, depth)
+    if node.type == "object":
+        return _object(code, node, depth)
+    if node.type == "unary_expression" and node.children[0].type == "-":
+        operand = node.children[1]
+        if operand.type == "number":
+            return -number(code, operand)
+    return _plain(code, node)
 
 
 def fresh(value: Any) -> Any:
@@ -91,26 +101,11 @@ def _plain(code: Code, node: Node) -> Any:
     raise Beyond
 
 
-def _item(code: Code, node: Node, depth: int) -> Any:
-    """A literal at a depth of so many arrays and objects."""
-    if depth > DEEPEST:
-        raise Beyond
-    if node.type == "array":
-        return _array(code, node, depth)
-    if node.type == "object":
-        return _object(code, node, depth)
-    if node.type == "unary_expression" and node.children[0].type == "-":
-        operand = node.children[1]
-        if operand.type == "number":
-            return -number(code, operand)
-    return _plain(code, node)
-
-
 def _array(code: Code, node: Node, depth: int) -> list[Any]:
     children = node.children
     if any(one.type in ("[", ",") and two.type == "," for one, two in pairwise(children)):
         raise Beyond  # an element is omitted
-    return [_item(code, one, depth + 1) for one in node.named_children]
+    return [literal(code, one, depth + 1) for one in node.named_children]
 
 
 def _object(code: Code, node: Node, depth: int) -> dict[str, Any]:
@@ -124,5 +119,5 @@ def _object(code: Code, node: Node, depth: int) -> dict[str, Any]:
         name = string(code, key) if key.type == "string" else code.of(key)
         if name.isdigit() or name == "__proto__" or "\\" in name or not name.isascii():
             raise Beyond
-        values[name] = _item(code, value, depth + 1)
+        values[name] = literal(code, value, depth + 1)
     return values
