@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from prima.checks.prices import Price, outline, prices
+from prima.checks.prices import Price, outline
 from prima.loading import read_application
 from prima.loading.files import read_file
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
@@ -66,7 +66,9 @@ def test_arranged_commands_cost_the_same_in_both_languages(
     body = f"<form><block>{around.format(prefixed(content))}<exit/></block></form>"
     found, fa, ea = voiced(tmp_path, body)
     document, _ = read_application(ea, read_file(Path(ea)))
-    theirs = [one for one in prices(document, PROFILE) if one.node.namespace == PRIMA_NAMESPACE]
+    theirs = [
+        one for one in outline(document, PROFILE).parts if one.node.namespace == PRIMA_NAMESPACE
+    ]
     assert list(map(told, own)) == list(map(told, theirs))
     units = [one.place for one in theirs if one.what == "unit"]
     assert (found.longest_unit is None) == (not units)
@@ -105,7 +107,7 @@ def voice_parts(folder: Path, body: str) -> list[Price]:
     _, _, ea = voiced(folder, body)
     document, problems = read_application(ea, read_file(Path(ea)))
     assert [str(one) for one in problems] == []
-    return prices(document, PROFILE)
+    return outline(document, PROFILE).parts
 
 
 def test_a_unit_around_items_of_voicexml_costs_its_longest(tmp_path: Path) -> None:

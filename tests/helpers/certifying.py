@@ -9,7 +9,7 @@ from prima.certificate import (
     Certificate,
     certificates,
 )
-from prima.checks.prices import Price, prices
+from prima.checks.prices import Price, outline
 from prima.devices.profile import read_robot
 from prima.devices.voice import duration
 from prima.loading import read_application
@@ -36,7 +36,7 @@ def priced(folder: Path, body: str) -> list[Price]:
     path = write(folder, "app", body)
     document, problems = read_application(path, read_file(path))
     assert [one for one in problems if one.severity == "error"] == []
-    return prices(document, PROFILE)
+    return outline(document, PROFILE).parts
 
 
 def block(content: str) -> str:

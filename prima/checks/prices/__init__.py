@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from prima.checks.prices.model import Gap, Outline, Price, PricedReaction, PricedState, worst
+from prima.checks.prices.model import Gap, Outline, Price, PricedReaction, worst
 from prima.devices.profile import Profile
 from prima.errors import Problem
 from prima.errors.diagnoses.behaviour import UNIT_PRICE
@@ -17,10 +17,7 @@ from prima.interpreter.elements import Document
 if TYPE_CHECKING:
     from prima.voicexml.document import VoiceDocument
 
-__all__ = [
-    "Gap", "Outline", "Price", "PricedReaction", "PricedState", "notes", "outline", "prices",
-    "worst",
-]  # fmt: skip
+__all__ = ["Gap", "Outline", "Price", "PricedReaction", "notes", "outline", "worst"]
 
 
 def outline(document: Document | VoiceDocument, profile: Profile) -> Outline:
@@ -39,19 +36,12 @@ UNIT_WAITS = UNIT_PRICE.says(
 )
 
 
-def prices(document: Document | VoiceDocument, profile: Profile) -> list[Price]:
-    """All indivisible parts of an application, in document order."""
-    if isinstance(document, Document):
-        from prima.checks.prices.dialogue import DialoguePrices
-
-        return DialoguePrices(document, profile).parts
-    return outline(document, profile).parts
-
-
 def notes(document: Document, profile: Profile) -> list[Problem]:
     """The cost of units, as notes for ``prima validate --notes``."""
+    from prima.checks.prices.dialogue import DialoguePrices
+
     return [
         UNIT_WAITS.at(price.place, seconds=price.seconds)
-        for price in prices(document, profile)
+        for price in DialoguePrices(document, profile).parts
         if price.what == "unit"
     ]
