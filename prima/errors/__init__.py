@@ -11,6 +11,7 @@ assertion.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Self
 
 from prima.errors.diagnosis import Diagnosis
 from prima.errors.guesses import (
@@ -66,6 +67,11 @@ class DocumentError(PrimaError):
     def __init__(self, problems: Iterable[Problem]) -> None:
         self.problems = sorted(problems)
         super().__init__("\n".join(map(str, listed(self.problems))))
+
+    @classmethod
+    def of(cls, place: Place, code: str, message: str, remedy: str | Hint = "") -> Self:
+        """An error of one problem, because of which a document is not read."""
+        return cls([Problem(place, "error", code, message, remedy)])
 
     def __reduce__(self) -> tuple[type[DocumentError], tuple[list[Problem]]]:
         return type(self), (self.problems,)  # the message is not an argument

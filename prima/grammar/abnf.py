@@ -13,7 +13,7 @@ from lark import Lark, TextSlice, Token, UnexpectedInput
 from prima.errors import Hint, Span
 from prima.grammar.abnferrors import unexpected
 from prima.grammar.abnfheader import header_end
-from prima.grammar.errors import GrammarError, Problems, Where, other_rule, refuse
+from prima.grammar.errors import GrammarError, Problems, Where, other_rule
 from prima.grammar.model import GrammarDocument, Part, Reference, Repeat, Rule, Special, Tag, Words
 from prima.grammar.text import fold, keys
 from prima.grammar.values import (
@@ -244,7 +244,7 @@ class _AbnfReader:
         if self.depth > MAX_DEPTH:
             message = f"Brackets are nested more than {MAX_DEPTH} deep."
             place = self.source.at(token.start_pos or 0)
-            raise refuse(GrammarError, place, "too-deep", message, "Make rules of the inner ones.")
+            raise GrammarError.of(place, "too-deep", message, "Make rules of the inner ones.")
 
     def RPAR(self, token: Token) -> None:
         self.depth -= 1

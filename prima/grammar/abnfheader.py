@@ -6,7 +6,7 @@ import codecs
 import re
 
 from prima.errors import Place
-from prima.grammar.errors import GrammarError, refuse
+from prima.grammar.errors import GrammarError
 from prima.grammar.media import FIRST_LINE, NO_HEADER
 from prima.markup.encodings import ENCODINGS, byte_place, with_line_feeds
 from prima.markup.tree import Source
@@ -25,14 +25,14 @@ def decode_abnf(file: str, data: bytes) -> str:
     if not _is_accepted(encoding):
         message = f'The encoding "{encoding[:40]}" is not accepted.'
         place = Place(file, 1, column)
-        raise refuse(GrammarError, place, "encoding", message, "Save it as UTF-8.")
+        raise GrammarError.of(place, "encoding", message, "Save it as UTF-8.")
     try:
         return with_line_feeds(data.decode(encoding))
     except UnicodeDecodeError as error:
         message = f"A byte here is not {encoding.upper().removesuffix('-SIG')}."
         remedy = "Save it as UTF-8, or name the encoding it has in the header."
         place = byte_place(file, encoding, error)
-        raise refuse(GrammarError, place, "encoding", message, remedy) from None
+        raise GrammarError.of(place, "encoding", message, remedy) from None
 
 
 def as_unicode(text: str) -> bytes:
@@ -77,9 +77,9 @@ def header_end(source: Source) -> int:
     if header is None or header[1] != "1.0":
         found = header[1] if header else ""
         message = f'Version "{found[:20]}" is not known.' if found else NO_HEADER
-        raise refuse(GrammarError, source.at(0), "not-abnf", message, FIRST_LINE)
+        raise GrammarError.of(source.at(0), "not-abnf", message, FIRST_LINE)
     if LINE_END.match(source.text, header.end()) is None:
         message = "The line goes on after the header."
         remedy = f'Put a line end after "{header[0]}".'
-        raise refuse(GrammarError, source.at(header.end()), "not-abnf", message, remedy)
+        raise GrammarError.of(source.at(header.end()), "not-abnf", message, remedy)
     return header.end()

@@ -88,13 +88,6 @@ class Problems:
             raise self.kind(self.found)
 
 
-def refuse(
-    kind: type[GrammarError], place: Place, code: str, message: str, remedy: str | Hint = ""
-) -> GrammarError:
-    """An error of one problem."""
-    return kind([Problem(place, "error", code, message, remedy)])
-
-
 def other_rule(name: str, known: Iterable[str], *spans: Span) -> Hint:
     """The remedy for an unknown rule: the nearest known one, or the first few."""
     rules = list(known)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from prima.errors import Problem
 from prima.grammar.chart import MAX_STEPS, Cell, Chart
-from prima.grammar.errors import GrammarError, Where, other_rule, refuse
+from prima.grammar.errors import GrammarError, Where, other_rule
 from prima.grammar.model import GrammarDocument, Mode, Part, Reference
 from prima.grammar.ranking import RankedParse, best, frames
 from prima.grammar.semantics import SemanticError, TagFailed, TagInterpreter
@@ -113,7 +113,7 @@ class Grammar:
         if name not in self._document.rules:
             message = f'There is no rule "{name}".'
             hint = other_rule(name, self._document.rules)
-            raise refuse(GrammarError, self._where(), "no-such-rule", message, hint)
+            raise GrammarError.of(self._where(), "no-such-rule", message, hint)
         return Grammar(self._document, name, self._where, self._lenient, self._warnings)
 
     def match(
@@ -216,7 +216,7 @@ class Grammar:
             message = "This grammar names no root rule, so it takes nothing by itself."
             root = '"root $name;"' if self._document.form == "ABNF" else 'root="..."'
             remedy = f'Write {root}, or name a rule: grammar.rule("...").'
-            raise refuse(GrammarError, self._where(), "no-root", message, remedy)
+            raise GrammarError.of(self._where(), "no-root", message, remedy)
         return Reference(f"#{self.root}", self._where, "", self._document, self.root)
 
     @property

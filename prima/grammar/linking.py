@@ -16,7 +16,6 @@ from prima.grammar.errors import (
     UnsupportedFormat,
     Where,
     other_rule,
-    refuse,
 )
 from prima.grammar.legacy import FORMATS, settle
 from prima.grammar.media import check_form, check_known, media_type
@@ -239,7 +238,7 @@ def joined(base: str, uri: str, where: Where) -> str:
         urlsplit(base)
     except ValueError as error:
         message = f'"{uri[:80]}" is not a URI: {error}.'
-        raise refuse(GrammarError, where(), "bad-value", message) from None
+        raise GrammarError.of(where(), "bad-value", message) from None
     return join(base, uri)
 
 

@@ -14,7 +14,6 @@ from prima.grammar.errors import (
     UnsupportedBuiltIn,
     UnsupportedLanguage,
     other_rule,
-    refuse,
 )
 from prima.grammar.grammar import Grammar
 from prima.grammar.linking import Fetch, Library, Refusal, joined
@@ -87,10 +86,10 @@ def load(
     if rule and rule not in document.rules:
         message = f'There is no rule "{rule}".'
         hint = other_rule(rule, document.rules)
-        raise refuse(GrammarError, document.where(), "no-such-rule", message, hint)
+        raise GrammarError.of(document.where(), "no-such-rule", message, hint)
     if lenient and rule and not document.rules[rule].public and rule != document.root:
         message = f'The rule "{rule}" is private: it is for this grammar alone.'
-        raise refuse(GrammarError, document.where(), "private-rule", message)
+        raise GrammarError.of(document.where(), "private-rule", message)
     return Grammar(document, rule, document.where, lenient, library.problems.warnings)
 
 
@@ -112,9 +111,9 @@ def _named(uri: str, mode: Mode | None, lang: str) -> Grammar:
     try:
         found = built_in(uri, lang)
     except Conflict as error:
-        raise refuse(GrammarError, where(), "exclusive", str(error)) from None
+        raise GrammarError.of(where(), "exclusive", str(error)) from None
     except ValueError as error:
-        raise refuse(UnsupportedBuiltIn, where(), "no-such-name", str(error)) from None
+        raise UnsupportedBuiltIn.of(where(), "no-such-name", str(error)) from None
     document = GrammarDocument(uri, where, mode or "", lang, found.name, dialect="literals")
     document.rules[found.name] = Rule(found.name, found, document, True)
     return Grammar(document, "", where)
@@ -170,14 +169,14 @@ def _external(
     if name and name in document.rules:
         if not document.rules[name].public:
             message = f'The rule "{name}" is private to its grammar.'
-            raise refuse(GrammarError, where(), "private-rule", message)
+            raise GrammarError.of(where(), "private-rule", message)
     elif name:
         message = f'The grammar "{uri}" has no rule "{name}".'
         hint = other_rule(name, document.public(), *value_span(node, "src", name))
-        raise refuse(GrammarError, where(), "no-such-rule", message, hint)
+        raise GrammarError.of(where(), "no-such-rule", message, hint)
     elif not document.root:
         message = f'The grammar "{uri}" names no root rule.'
-        raise refuse(GrammarError, where(), "no-root", message, "Name a rule: #name.")
+        raise GrammarError.of(where(), "no-root", message, "Name a rule: #name.")
     return document, name
 
 

@@ -6,7 +6,7 @@ import re
 from typing import Literal
 
 from prima.errors import Place
-from prima.grammar.errors import GrammarError, Problems, UnsupportedFormat, Where, refuse
+from prima.grammar.errors import GrammarError, Problems, UnsupportedFormat, Where
 
 Form = Literal["XML", "ABNF"]
 XML_TYPES = frozenset(
@@ -58,13 +58,13 @@ def check_known(media: str, place: Place, begin: str) -> None:
     for start, name in OTHERS.items():
         if begin.lstrip().startswith(start):
             message = f"This grammar is in {name}, which is not supported."
-            raise refuse(UnsupportedFormat, place, "format", message, remedy)
+            raise UnsupportedFormat.of(place, "format", message, remedy)
     if media == UNTYPED:
         message = "A grammar without a type is in JSGF in VoiceXML 1.0; JSGF is not supported."
-        raise refuse(UnsupportedFormat, place, "format", message, remedy)
+        raise UnsupportedFormat.of(place, "format", message, remedy)
     if media not in XML_TYPES | ABNF_TYPES | OPEN_TYPES:
         message = f'Grammars of type "{media[:80]}" are not supported.'
-        raise refuse(UnsupportedFormat, place, "format", message, remedy)
+        raise UnsupportedFormat.of(place, "format", message, remedy)
 
 
 def check_no_text(file: str, begin: str) -> None:
@@ -76,9 +76,9 @@ def check_no_text(file: str, begin: str) -> None:
     if not begin or begin.startswith("<"):
         return
     if looks_like_abnf(begin):
-        raise refuse(GrammarError, Place(file), "not-abnf", NO_HEADER, FIRST_LINE)
+        raise GrammarError.of(Place(file), "not-abnf", NO_HEADER, FIRST_LINE)
     remedy = "Begin with <grammar ...> for the XML form, or with #ABNF 1.0 UTF-8; for the other."
-    raise refuse(GrammarError, Place(file), "not-xml", "This is not an SRGS grammar.", remedy)
+    raise GrammarError.of(Place(file), "not-xml", "This is not an SRGS grammar.", remedy)
 
 
 def check_form(problems: Problems, media: str, form: Form, file: str, where: Where) -> None:

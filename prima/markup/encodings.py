@@ -5,9 +5,9 @@ from __future__ import annotations
 import codecs
 import re
 
-from prima.errors import Place, Problem, Span, replaced
+from prima.errors import DocumentError, Place, Problem, Span, replaced
 from prima.errors.diagnoses.reading import ENCODING as DECLARED_WRONGLY
-from prima.markup.limits import LIMITS, refusal, too_large
+from prima.markup.limits import LIMITS, too_large
 
 ENCODINGS = frozenset(
     ["utf-8", "ascii", "utf-16", "utf-16-le", "utf-16-be", "koi8-r", "koi8-u"]
@@ -53,7 +53,9 @@ def decode(file: str, data: bytes) -> str:
             return data.decode("iso-8859-1")
         message = f"A byte here is not {encoding.upper()}."
         remedy = "Save it as UTF-8, or declare the encoding it has."
-        raise refusal(byte_place(file, encoding, error), "encoding", message, remedy) from None
+        raise DocumentError.of(
+            byte_place(file, encoding, error), "encoding", message, remedy
+        ) from None
     return with_line_feeds(text)
 
 
@@ -65,12 +67,12 @@ def _encoding(file: str, data: bytes) -> str:
     place = Place(file, 1, declaration.start(1) + 1) if declaration else Place(file)
     if not marked and _codec(declared).startswith("utf-16"):
         message = f'The file says encoding="{declared}", but it is not in UTF-16.'
-        raise refusal(place, "encoding", message, "Declare the encoding it has.")
+        raise DocumentError.of(place, "encoding", message, "Declare the encoding it has.")
     encoding = marked or declared or "utf-8"
     if _codec(encoding) not in ENCODINGS:
         message = f'The encoding "{encoding}" is not accepted.'
         where = place if encoding == declared else Place(file)
-        raise refusal(where, "encoding", message, "Save it as UTF-8.")
+        raise DocumentError.of(where, "encoding", message, "Save it as UTF-8.")
     return encoding
 
 

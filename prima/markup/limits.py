@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from prima.errors import MOST_TOLD, DocumentError, Hint, Place, Problem
+from prima.errors import MOST_TOLD, DocumentError, Place
 
 
 @dataclass(slots=True)
@@ -27,19 +27,14 @@ LIMITS = Limits()
 """The limits of this process."""
 
 
-def refusal(place: Place, code: str, message: str, remedy: str | Hint = "") -> DocumentError:
-    """The error for a document that is not read."""
-    return DocumentError([Problem(place, "error", code, message, remedy)])
-
-
 def too_large(file: str, size: int) -> DocumentError:
     """The error for a file of too many bytes, which is not read."""
     message = f"The file has {size:,} bytes; at most {LIMITS.bytes:,} are read."
     remedy = f"Divide it, or raise the limit: --limit bytes={size}."
-    return refusal(Place(file), "too-large", message, remedy)
+    return DocumentError.of(Place(file), "too-large", message, remedy)
 
 
 def too_deep(place: Place) -> DocumentError:
     """The error for elements that are nested too deep."""
     message = f"Elements are nested more than {LIMITS.depth} deep."
-    return refusal(place, "too-deep", message, "Divide the document into smaller parts.")
+    return DocumentError.of(place, "too-deep", message, "Divide the document into smaller parts.")

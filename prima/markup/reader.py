@@ -13,7 +13,7 @@ from prima.errors import DocumentError, Place, Problem, Span, replaced
 from prima.markup.build import MAX_NAME, LimitReached, Unclear, build
 from prima.markup.check import check_tree
 from prima.markup.encodings import ENCODING, blank, decode
-from prima.markup.limits import LIMITS, refusal, too_deep
+from prima.markup.limits import LIMITS, too_deep
 from prima.markup.roots import check_root
 from prima.markup.tree import Node, Source
 from prima.markup.vocabulary import Vocabulary
@@ -48,7 +48,7 @@ def parse(file: str, data: bytes, vocabularies: Sequence[Vocabulary] = ()) -> No
     except Unclear as unclear:  # names of the fifth edition of XML 1.0
         message = "This is not well-formed XML: a name has a character that no name may have."
         place = Place(file, unclear.line, unclear.column)
-        raise refusal(place, "not-xml", message, "Take another name.") from None
+        raise DocumentError.of(place, "not-xml", message, "Take another name.") from None
 
 
 def _check_declaration(file: str, text: str) -> None:
@@ -63,7 +63,9 @@ def _check_declaration(file: str, text: str) -> None:
         right = f'<?xml version="1.0" encoding="{encoding[1].decode() if encoding else "UTF-8"}"?>'
         spans = () if "\n" in text else (Span.of(place, text),)
         hint = replaced(f"Write {right}.", right, *spans)
-        raise refusal(place, "not-xml", "The XML declaration does not begin with a version.", hint)
+        raise DocumentError.of(
+            place, "not-xml", "The XML declaration does not begin with a version.", hint
+        )
 
 
 def _beyond(much: LimitReached) -> DocumentError:
@@ -72,13 +74,13 @@ def _beyond(much: LimitReached) -> DocumentError:
         return too_deep(place)
     if much.what == "name":
         message = f"A name has more than {MAX_NAME:,} characters."
-        return refusal(place, "too-large", message, "Take a shorter one.")
+        return DocumentError.of(place, "too-large", message, "Take a shorter one.")
     if much.what == "attributes":
         message = f"<{tag}> has more than {LIMITS.attributes} attributes."
-        return refusal(place, "too-large", message, "Remove some.")
+        return DocumentError.of(place, "too-large", message, "Remove some.")
     message = f"The document has more than {LIMITS.elements:,} elements."
     remedy = f"Divide it, or raise the limit: --limit elements={10 * LIMITS.elements}."
-    return refusal(place, "too-large", message, remedy)
+    return DocumentError.of(place, "too-large", message, remedy)
 
 
 def read_tree(file: str, data: bytes, *vocabularies: Vocabulary) -> tuple[Node, list[Problem]]:

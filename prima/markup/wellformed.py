@@ -13,7 +13,7 @@ from xml.parsers import expat
 from prima.errors import DocumentError, Fix, Hint, Place, Span, nearest_word, replaced
 from prima.markup import endtags
 from prima.markup.endtags import MISMATCH, UNCLOSED, line_of, offset_of
-from prima.markup.limits import refusal, too_deep
+from prima.markup.limits import too_deep
 from prima.markup.tree import Source
 from prima.markup.vocabulary import Vocabulary
 
@@ -113,7 +113,9 @@ def explain(source: Source, vocabularies: Sequence[Vocabulary]) -> None:
         raise misspelt or _syntax_error(source, error, vocabularies) from None
     dtd = root.getroottree().docinfo.internalDTD
     if dtd is not None and (dtd.entities() or dtd.elements()):  # type: ignore[union-attr]
-        raise refusal(Place(source.file), "doctype", "A DOCTYPE may not declare anything itself.")
+        raise DocumentError.of(
+            Place(source.file), "doctype", "A DOCTYPE may not declare anything itself."
+        )
 
 
 def _check_prolog(source: Source) -> None:
@@ -122,7 +124,7 @@ def _check_prolog(source: Source) -> None:
 
     def doctype(_name: str, _system: str | None, _public: str | None, internal: bool) -> None:
         if internal:
-            raise refusal(
+            raise DocumentError.of(
                 Place(source.file, parser.CurrentLineNumber),
                 "doctype",
                 "A DOCTYPE may not declare anything itself.",
@@ -155,7 +157,7 @@ def _misspelt(
     place = Place(source.file, line, max(line_of(source, line).rfind(f"<{opened}") + 1, 1))
     name = Span.of(place._replace(column=place.column + 1), opened)
     remedy = replaced(f'Did you mean "{closed}"? The closing tag is right.', closed, name)
-    return refusal(place, "unknown-element", f"There is no <{opened}>.", remedy)
+    return DocumentError.of(place, "unknown-element", f"There is no <{opened}>.", remedy)
 
 
 def _said(error: etree.XMLSyntaxError) -> str:
@@ -169,12 +171,14 @@ def _syntax_error(
     text = source.text.strip()
     if not text:
         place = Place(source.file)
-        return refusal(place, "not-xml", "The file is empty.", "Begin with a root element.")
+        return DocumentError.of(
+            place, "not-xml", "The file is empty.", "Begin with a root element."
+        )
     line, column = error.position or (1, 1)
     place = Place(source.file, max(line or 1, 1), max(column or 1, 1))
     for beginnings, what, remedy in OTHER_FORMS:
         if text.startswith(beginnings):
-            return refusal(place, "not-xml", what, remedy)
+            return DocumentError.of(place, "not-xml", what, remedy)
     message = _said(error)
     if "depth" in message.lower():
         return too_deep(place)
@@ -182,7 +186,7 @@ def _syntax_error(
         name = message.split("'")[1]
         sentence = f"The entity &{name}; is not known: documents declare none."
         remedy = "Write the character itself; only &amp; &lt; &gt; &quot; &apos; are needed."
-        return refusal(_beginning(source, place, message), "entity", sentence, remedy)
+        return DocumentError.of(_beginning(source, place, message), "entity", sentence, remedy)
     return _not_well_formed(source, place, message, vocabularies)
 
 
@@ -208,7 +212,7 @@ def _not_well_formed(
     if TEMPLATE.search(source.text):
         remedy, fixes = "A server makes the document from this: run what it makes.", ()
     sentence = f"This is not well-formed XML: {sentence.rstrip('.')}."
-    return refusal(place, "not-xml", sentence, Hint(remedy, fixes))
+    return DocumentError.of(place, "not-xml", sentence, Hint(remedy, fixes))
 
 
 def _translated(table: Iterable[tuple[str, str]], message: str) -> str:

@@ -103,7 +103,7 @@ def test_documents_beside_examples_are_right() -> None:
     assert set(beside("mode")) == {"keys.grxml", "towns.gram"}
 
 
-NOTERS = {"Problem", "problem", "unsupported", "refuse", "_error"}
+NOTERS = {"Problem", "problem", "unsupported", "of", "_error"}
 """What the package calls to tell a problem; its code is one of the first arguments."""
 
 
@@ -115,7 +115,7 @@ def test_no_code_is_emitted_that_is_not_explained() -> None:
                 continue
             called = getattr(node.func, "attr", getattr(node.func, "id", ""))
             if called in NOTERS:
-                place = {"Problem": 2, "unsupported": 2, "refuse": 2}.get(called, 1)
+                place = {"Problem": 2, "unsupported": 2}.get(called, 1)
                 given: Any = node.args[place] if len(node.args) > max(place, 2) else None
                 if isinstance(given, ast.Constant) and isinstance(given.value, str):
                     found[given.value] = f"{path.name}:{node.lineno}"
