@@ -278,10 +278,8 @@ def _opener(held: list[socket.socket]) -> OpenerDirector:
             super().connect()
             held.append(self.sock)
 
-    class Secure(HTTPSConnection):
-        def connect(self) -> None:
-            super().connect()
-            held.append(self.sock)
+    class Secure(Plain, HTTPSConnection):
+        pass
 
     class OpensPlain(HTTPHandler):
         def http_open(self, req: Request) -> HTTPResponse:
