@@ -1,30 +1,33 @@
-"""Protocols: the requirements of an interpreter's parts on the whole and on each other.
+"""The requirements of an interpreter's parts on the whole and on each other.
 
 An interpreter of PRIMA's language is made of three parts: one runs content
 (:mod:`~prima.interpreter.content`), one visits the items of forms
 (:mod:`~prima.interpreter.form`), one finds and runs handlers
 (:mod:`~prima.interpreter.handling`). Each knows the others, and the interpreter that owns
-them all, by the protocols here alone.
+them all, by what is here alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence, Sized
-from typing import TYPE_CHECKING, NoReturn, Protocol
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from prima.interpreter.acts import Act, Expression, SendOut, Text
-from prima.interpreter.bounds import Visited
 from prima.interpreter.elements import Document, Form, Item, Unit
 from prima.interpreter.frame import Content, Fiber, Frame
+from prima.interpreter.protocol import App
 from prima.interpreter.transfers import GoItem, Thrown, Transfer
 from prima.markup.tree import Node
-from prima.messages import Action, Cue, Data, Json, Notice, Step
+from prima.messages import Cue, Data, Json, Notice, Step
 from prima.script.evaluation import Scope
 
 if TYPE_CHECKING:
     from prima.interpreter.pyengine import PythonEngine
     from prima.script.isolated import AnyEngine
 
+Evaluating: TypeAlias = "AnyEngine | PythonEngine"
+"""The evaluator of an application's code."""
 FORM_STEPS = 3
 """Beginning a form's own content, or a form item, counts as so many pieces of content."""
 
@@ -72,139 +75,94 @@ class Handlers(Protocol):
         """Give the variable ``sensor`` its new values."""
 
 
-class Owner(Protocol):
-    """The interpreter of one application."""
+class Owner(App[Evaluating]):
+    """The interpreter, as its parts know it besides what every application has."""
 
-    frame: Frame | None
+    execute: ContentRunner
+    handling: Handlers
+    algorithm: Forms
+    document: Document
+    arguments: Mapping[str, frozenset[str]]
+    """Motion arguments of the robot's own Commands."""
+    application: Scope
+    """The outermost scope."""
+    frame: Frame | None = None
     """The form that is visited, if any."""
-    cause: int | str | None
-    """The event to which the next request reacts (C5)."""
-    fresh: tuple[int | str, int] | None
+    cause: int | str | None = None
+    """The event that the next request reacts to: its serial, or the name of an own one (C5)."""
+    fresh: tuple[int | str, int] | None = None
     """A cause, and for how long (ms) a reaction to it is worth starting (X8)."""
-    untold: bool
-    """Whether the variable ``sensor`` has old values."""
-
-    # Its parts and what it keeps:
-
-    @property
-    def execute(self) -> ContentRunner:
-        """Runs its content."""
-
-    @property
-    def algorithm(self) -> Forms:
-        """Visits its items."""
-
-    @property
-    def handling(self) -> Handlers:
-        """Finds its handlers."""
-
-    @property
-    def engine(self) -> AnyEngine | PythonEngine:
-        """Evaluates its code."""
-
-    @property
-    def document(self) -> Document:
-        """The document that it runs."""
-
-    @property
-    def application(self) -> Scope:
-        """The outermost scope."""
-
-    @property
-    def arguments(self) -> Mapping[str, frozenset[str]]:
-        """Motion arguments of the robot's own Commands."""
-
-    @property
-    def actions(self) -> list[Action]:
-        """Its application's requests."""
-
-    @property
-    def units(self) -> Iterator[int]:
-        """Numbers for units."""
-
-    @property
-    def sensors(self) -> Mapping[str, Json]:
-        """The latest values."""
-
-    @property
-    def reports(self) -> int:
-        """How often sensors reported new values."""
-
-    @property
-    def reported(self) -> Mapping[str, int]:
-        """Which report was the latest, by the first part of a sensor's name."""
-
-    # Bounds:
-
-    def note(self, node: Node | None, what: Visited = "in", name: str = "") -> None:
-        """An element is gone through, or its condition has been evaluated."""
-
-    def count_handlers(self, node: Node, handlers: Sized) -> None:
-        """Bound the handlers looked at: a document may have very many."""
-
-    def count_step(self, node: Node, steps: int = 1) -> None:
-        """Bound the steps of one instant."""
-
-    def count_output(self, characters: int, node: Node) -> None:
-        """Bound the text said, logged, sent and passed on."""
-
-    def count_value(self, value: Json, node: Node) -> None:
-        """Count a value that leaves its variables."""
-
-    def give_up(self, node: Node, reason: str) -> NoReturn:
-        """End the application: it exceeded a limit."""
+    untold = False
+    """Whether the variable ``sensor`` is outdated: it is updated when code runs."""
+    reports = 0
+    """How often sensors reported new values."""
+    reported: dict[str, int]
+    """The number of the latest report, by the first part of a sensor's name."""
 
     # Its requests:
 
+    @abstractmethod
     def request(self, steps: list[Step], fiber: Fiber) -> int:
         """Request Commands; gives the number of the run."""
 
+    @abstractmethod
     def take_cause(self) -> int | None:
         """Take the serial of the event that a request reacts to; no later request does (C5)."""
 
+    @abstractmethod
     def connects(self, frame: Frame) -> bool:
         """Whether the robot has to face the user before the state's next word (X4)."""
 
-    def send(self, service: str, data: Data, place: str) -> int:
-        """Ask a service something."""
-
+    @abstractmethod
     def delay(self, act: SendOut, data: Data, milliseconds: int, fiber: Fiber) -> None:
         """Raise an event later, unless the state is left before."""
 
     # States:
 
+    @abstractmethod
     def frame_for(self, form: Form, before: Frame | None) -> Frame:
         """A frame for a form."""
 
+    @abstractmethod
     def begin(self, frame: Frame, setup: bool = True) -> tuple[Frame, Transfer] | None:
         """Start a form's own content; gives the transfer of control if it ends at once."""
 
+    @abstractmethod
     def set_up_document(self, frame: Frame) -> None:
         """Declare the document's variables and run its scripts."""
 
+    @abstractmethod
     def initialise(self, frame: Frame, fiber: Fiber) -> None:
         """Declare the form's variables and items."""
 
+    @abstractmethod
     def arm_watches(self, frame: Frame) -> None:
         """C6: arm a form's watches at its entry."""
 
+    @abstractmethod
     def go_item(self, frame: Frame, transfer: GoItem) -> tuple[Frame, Transfer] | None:
         """Go on with another item of the same form."""
 
+    @abstractmethod
     def transfer(self, frame: Frame, transfer: Transfer) -> None:
         """Leave a state for another."""
 
+    @abstractmethod
     def leave(self, frame: Frame) -> None:
         """O3: give up the content of a state."""
 
+    @abstractmethod
     def close_units(self, frame: Frame) -> None:
         """U5: conclude the units in which nothing is going on any more."""
 
+    @abstractmethod
     def drive(self, fiber: Fiber, notice: Notice | None) -> None:
         """Run a piece of content until it waits or ends, then carry out its transfer."""
 
+    @abstractmethod
     def go_on(self, frame: Frame) -> None:
         """Visit items again after a handler's end."""
 
+    @abstractmethod
     def forget(self, fiber: Fiber) -> None:
         """Give up a piece of content."""

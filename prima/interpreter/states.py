@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from prima.interpreter.acts import Declare, Script
 from prima.interpreter.bounds import ElementVisit
@@ -13,16 +13,12 @@ from prima.interpreter.elements import Document, Form, all_items
 from prima.interpreter.form import Algorithm
 from prima.interpreter.frame import Abandoned, Fiber, Frame, GoForm
 from prima.interpreter.handling import Handling
-from prima.interpreter.owner import FORM_STEPS
-from prima.interpreter.protocol import App
+from prima.interpreter.owner import FORM_STEPS, Evaluating, Owner
 from prima.interpreter.pyengine import PythonEngine, is_python
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, Transfer, thrown_of
 from prima.messages import CloseUnit, Data, LeaveState, Notice, Raise
 from prima.script.evaluation import Scope, ScriptError
 from prima.script.isolated import Engines
-
-if TYPE_CHECKING:
-    from prima.script.isolated import AnyEngine
 
 
 class Timer(NamedTuple):
@@ -36,7 +32,7 @@ class Timer(NamedTuple):
     """The state that it belongs to."""
 
 
-class States(App["AnyEngine | PythonEngine"]):
+class States(Owner):
     """One document with its active form, and the content waiting there.
 
     Args:
@@ -48,17 +44,8 @@ class States(App["AnyEngine | PythonEngine"]):
     execute: Executor
     handling: Handling
     algorithm: Algorithm
-    frame: Frame | None = None
     timers: tuple[Timer, ...] = ()
     """Delayed events, in the order in which they were asked for."""
-    untold = False
-    """Whether the variable ``sensor`` is outdated: it is updated when code runs."""
-    reports = 0
-    """How often sensors reported new values."""
-    cause: int | str | None = None
-    """The event that the next request reacts to: its serial, or the name of an own one (C5)."""
-    fresh: tuple[int | str, int] | None = None
-    """A cause, and for how long (ms) a reaction to it is worth starting (X8)."""
 
     def __init__(
         self,
@@ -72,8 +59,7 @@ class States(App["AnyEngine | PythonEngine"]):
         self.application = self.engine.named("application")
         self.visits.append(ElementVisit(self.name, 0, "document", document.node, document.file))
         self.waiting: dict[int, Fiber] = {}
-        self.reported: dict[str, int] = {}
-        """The number of the latest report, by the first part of a sensor's name."""
+        self.reported = {}
 
     def guard(self, act: Callable[..., object], *given: Any) -> None:
         """Do something for the application, handling its errors."""
@@ -317,6 +303,6 @@ class States(App["AnyEngine | PythonEngine"]):
                 self.execute.declare(Declare(one.name, one.expr, one.node), frame.dialog, fiber)
 
 
-def evaluator_of(document: Document, engines: Engines) -> AnyEngine | PythonEngine:
+def evaluator_of(document: Document, engines: Engines) -> Evaluating:
     """The evaluator of a document's code: Python if that is all it needs."""
     return PythonEngine() if is_python(document) else engines.engine(document.id, document.kind)
