@@ -16,7 +16,7 @@ from prima.interpreter.elements import (
     Unit,
     all_items,
 )
-from prima.interpreter.frame import Abandoned, Content, Fiber, Frame, GoForm
+from prima.interpreter.frame import Abandoned, Content, Fiber, Frame
 from prima.interpreter.owner import FORM_STEPS, Owner
 from prima.interpreter.places import source
 from prima.interpreter.selection import satisfied, select_item, select_prompts
@@ -212,14 +212,7 @@ class Algorithm:
         given = self.owner.execute.passed(item.params, fiber, item.node)
         inner = self.owner.frame_for(form, None)
         inner.caller, inner.called_by, inner.given = frame, item, given
-        result: Notice | None = None
-        pending = self.owner.begin(inner)
-        if pending is not None and isinstance(pending[1], GoBack) and pending[0] is inner:
-            result = self._returned(inner, pending[1])
-        elif pending is not None:
-            # The called form continues elsewhere at once; this content is in the middle of
-            # being driven, so the rest happens when the driver is free again.
-            result = self._chase(frame, *pending)
+        result = self._chase(frame, self.owner.begin(inner))
         if result is None:
             result = yield 0
         if result.event:
@@ -233,21 +226,16 @@ class Algorithm:
         self.owner.frame = frame.caller
         return Notice("done", 0, data={"result": back.values}, event=back.event)
 
-    def _chase(self, caller: Frame, frame: Frame, transfer: Transfer) -> Notice | None:
-        """Follow a subdialog's first transfers of control until it waits or returns."""
-        pending: tuple[Frame, Transfer] | None = (frame, transfer)
+    def _chase(self, caller: Frame, pending: tuple[Frame, Transfer] | None) -> Notice | None:
+        """Follow a subdialog's first transfers of control until it waits or returns.
+
+        It is in the middle of being driven: the driver does so only when it is free again.
+        """
         while pending is not None:
             frame, transfer = pending
             if isinstance(transfer, GoBack) and frame.caller is caller:
                 return self._returned(frame, transfer)
-            if isinstance(transfer, GoForm):
-                self.owner.leave(frame)
-                form = self.owner.document.forms[transfer.form]
-                pending = self.owner.begin(self.owner.frame_for(form, frame))
-            elif isinstance(transfer, GoItem):
-                pending = self.owner.go_item(frame, transfer)
-            else:
-                raise transfer
+            pending = self.owner.go_to(frame, transfer)
         return None
 
     def _span(self, frame: Frame, fiber: Fiber, unit: Unit) -> Content:

@@ -17,7 +17,7 @@ from prima.interpreter.acts import Act, Expression, SendOut, Text
 from prima.interpreter.elements import Document, Form, Item, Unit
 from prima.interpreter.frame import Content, Fiber, Frame
 from prima.interpreter.protocol import App
-from prima.interpreter.transfers import GoItem, Thrown, Transfer
+from prima.interpreter.transfers import Thrown, Transfer
 from prima.markup.tree import Node
 from prima.messages import Cue, Data, Json, Notice, Step
 from prima.script.evaluation import Scope
@@ -140,8 +140,8 @@ class Owner(App[Evaluating]):
         """C6: arm a form's watches at its entry."""
 
     @abstractmethod
-    def go_item(self, frame: Frame, transfer: GoItem) -> tuple[Frame, Transfer] | None:
-        """Go on with another item of the same form."""
+    def go_to(self, frame: Frame, transfer: Transfer) -> tuple[Frame, Transfer] | None:
+        """Go to a form or an item; gives the transfer of control if that ends at once."""
 
     @abstractmethod
     def transfer(self, frame: Frame, transfer: Transfer) -> None:

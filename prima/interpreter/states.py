@@ -11,7 +11,7 @@ from prima.interpreter.bounds import ElementVisit
 from prima.interpreter.content import Executor
 from prima.interpreter.elements import Document, Form, all_items
 from prima.interpreter.form import Algorithm
-from prima.interpreter.frame import Abandoned, Fiber, Frame, GoForm
+from prima.interpreter.frame import Abandoned, Content, Fiber, Frame, GoForm
 from prima.interpreter.handling import Handling
 from prima.interpreter.owner import FORM_STEPS, Evaluating, Owner
 from prima.interpreter.pyengine import PythonEngine, is_python
@@ -143,19 +143,25 @@ class States(Owner):
         pending: tuple[Frame, Transfer] | None = (frame, transfer)
         while pending is not None:
             frame, transfer = pending
-            if isinstance(transfer, GoForm):
-                self.leave(frame)
-                form = self.document.forms[transfer.form]
-                pending = self.begin(self.frame_for(form, frame))
-            elif isinstance(transfer, GoOut):
-                raise transfer
-            elif isinstance(transfer, GoItem):
-                pending = self.go_item(frame, transfer)
-            else:
-                assert isinstance(transfer, GoBack)
+            if isinstance(transfer, GoBack):
                 pending = self._go_back(frame, transfer)
+            else:
+                pending = self.go_to(frame, transfer)
 
-    def go_item(self, frame: Frame, transfer: GoItem) -> tuple[Frame, Transfer] | None:
+    def go_to(self, frame: Frame, transfer: Transfer) -> tuple[Frame, Transfer] | None:
+        """Go to a form or an item; gives the transfer of control if that ends at once.
+
+        Raises:
+            Transfer: it leads out of the application, or back from a subdialog.
+        """
+        if isinstance(transfer, GoForm):
+            self.leave(frame)
+            return self.begin(self.frame_for(self.document.forms[transfer.form], frame))
+        if isinstance(transfer, GoItem):
+            return self._go_item(frame, transfer)
+        raise transfer
+
+    def _go_item(self, frame: Frame, transfer: GoItem) -> tuple[Frame, Transfer] | None:
         """Go to another item of the same form; the form's own content restarts there."""
         if any(fiber.main for fiber in frame.fibers):
             # A handler leaves what the state was doing: O3 for the item instead of the form.
@@ -179,16 +185,23 @@ class States(Owner):
         if main is None or main.content is None:
             return None
         notice = Notice("done", 0, data={"result": transfer.values}, event=transfer.event)
+        return self._go_along(main, lambda content: content.send(notice))
+
+    def _go_along(
+        self, fiber: Fiber, resume: Callable[[Content], object]
+    ) -> tuple[Frame, Transfer] | None:
+        """Run a state's own content until it waits or ends; gives the transfer that ends it."""
+        assert fiber.content is not None
         try:
-            main.content.send(notice)
+            resume(fiber.content)
         except (Thrown, ScriptError):
-            self._drop(main)
+            self._drop(fiber)
             raise
         except (StopIteration, Abandoned):
-            self._drop(main)
-        except Transfer as further:
-            self._drop(main)
-            return caller, further
+            self._drop(fiber)
+        except Transfer as transfer:
+            self._drop(fiber)
+            return fiber.frame, transfer
         return None
 
     def _look_again(self, form: Form) -> None:
@@ -273,17 +286,7 @@ class States(Owner):
         fiber = Fiber(frame, main=True)
         fiber.content = self.algorithm.interpret(frame, fiber, setup)
         frame.fibers += (fiber,)
-        try:
-            next(fiber.content)
-        except (Thrown, ScriptError):
-            self._drop(fiber)
-            raise
-        except (StopIteration, Abandoned):
-            self._drop(fiber)
-        except Transfer as transfer:
-            self._drop(fiber)
-            return frame, transfer
-        return None
+        return self._go_along(fiber, next)
 
     def initialise(self, frame: Frame, fiber: Fiber) -> None:
         """Declare the form's variables and items (the algorithm's initialisation)."""
