@@ -65,7 +65,7 @@ class DialogueGrammarReader:
     def __init__(self, note: Note, node: Node) -> None:
         self.note = note
         self.node = node
-        self.document = GrammarDocument("", partial(node.place_of, ""), dialect="last")
+        self.document = GrammarDocument("", partial(node.attribute_place, ""), dialect="last")
 
     def grammar(self) -> Grammar:
         """The grammar; a rule with a problem matches nothing."""
@@ -139,13 +139,13 @@ class DialogueGrammarReader:
             case "item":
                 return self._expansion(node)
             case "ruleref":
-                found = Reference(_named(node), partial(node.place_of, ""))
+                found = Reference(_named(node), partial(node.attribute_place, ""))
                 self.document.references.append(found)
                 return found
             case "tag":
                 if "=" in node.text and _is_code(node.text):
                     self.note(TAG_IS_TEXT, node, text=node.text)
-                return Tag(node.text, partial(node.place_of, ""))
+                return Tag(node.text, partial(node.attribute_place, ""))
         return None
 
     def _repeated(self, node: Node, part: Part) -> Part:

@@ -131,7 +131,7 @@ def _element(
         base = joined(base, node.get("xml:base"), partial(node.attribute_place, "xml:base"))
     if "src" in node.attributes:
         return _external(library, node, base, media, rule)
-    where = partial(node.place_of, "")
+    where = partial(node.attribute_place, "")
     document = GrammarDocument(base, where, mode or "voice", node.get("xml:lang", lang))
     check_known(media, where(), node.own_text)
     if not node.nodes and (media in ABNF_TYPES or node.own_text.lstrip().startswith("#ABNF")):
@@ -218,7 +218,7 @@ def _document(
         node = parse(file, data)
     except DocumentError as error:
         raise GrammarError(error.problems) from None
-    document.where = partial(node.place_of, "")
+    document.where = partial(node.attribute_place, "")
     read_xml(node, document, library.problems, inline=False, lenient=lenient)
     return document
 

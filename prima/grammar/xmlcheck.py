@@ -41,7 +41,7 @@ class GrammarChecker:
         self, node: Node, code: str, message: str, remedy: str | Hint = "", attribute: str = ""
     ) -> None:
         """Note a problem at an element, or at one of its attributes."""
-        self.problems.note(partial(node.place_of, attribute), code, message, remedy)
+        self.problems.note(partial(node.attribute_place, attribute), code, message, remedy)
 
     def known(self, node: Node, parent: Node) -> bool:
         """Whether it is an element of SRGS; those of other languages are ignored."""

@@ -62,14 +62,14 @@ class _Reader(GrammarChecker):
             message = "scope has no effect in a grammar's file."
             remedy = "Write it where VoiceXML names the file."
             self.problems.warn(
-                partial(node.place_of, "scope"), "unknown-attribute", message, remedy
+                partial(node.attribute_place, "scope"), "unknown-attribute", message, remedy
             )
         self._version(node)
         self._mode(node)
         self._language(node)
         document = self.document
         document.tag_format = node.get("tag-format").strip()
-        document.formatted = partial(node.place_of, "tag-format")
+        document.formatted = partial(node.attribute_place, "tag-format")
         document.base = node.get("xml:base").strip()
         document.root = node.get("root").strip()
         self._children(node)
@@ -101,7 +101,7 @@ class _Reader(GrammarChecker):
             tell = self.problems.warn if lang else self.problems.note
             message = "A grammar for voice says its language."
             remedy = 'Write xml:lang="en-US" or the like.'
-            tell(partial(node.place_of, "xml:lang"), "missing-attribute", message, remedy)
+            tell(partial(node.attribute_place, "xml:lang"), "missing-attribute", message, remedy)
         self.document.lang = lang or self.document.lang
 
     def _children(self, node: Node) -> None:
@@ -128,7 +128,7 @@ class _Reader(GrammarChecker):
         if node.tag in ("meta", "lexicon") and node.text:
             self.note(node, "stray-text", f"<{node.tag}> holds nothing.", "Remove the text.")
         if node.tag == "tag":
-            self.document.globals.append(Tag(node.own_text, partial(node.place_of, "")))
+            self.document.globals.append(Tag(node.own_text, partial(node.attribute_place, "")))
         elif node.tag == "lexicon" and not node.get("uri"):
             self.note(node, "missing-attribute", "<lexicon> needs a uri.")
         elif node.tag == "meta":
@@ -202,7 +202,7 @@ class _Reader(GrammarChecker):
                 return self._one_of(node, depth)
             case "tag":
                 self.no_elements(node)
-                tag = Tag(node.own_text, partial(node.place_of, ""))
+                tag = Tag(node.own_text, partial(node.attribute_place, ""))
                 self.document.tags.append(tag)
                 return [tag]
             case _:
@@ -264,7 +264,7 @@ class _Reader(GrammarChecker):
                 )
                 self.note(node, "bad-value", message, remedy, "special")
             return [Special(special)]
-        found = Reference(uri, partial(node.place_of, "uri"), node.get("type"))
+        found = Reference(uri, partial(node.attribute_place, "uri"), node.get("type"))
         self.document.references.append(found)
         return [found]
 

@@ -76,7 +76,7 @@ class AttributeReader:
         **parameters: object,
     ) -> None:
         """Note a problem at an element or at the value of one of its attributes."""
-        self.problems.append(diagnosis.at(node.place_of(attribute), hint, **parameters))
+        self.problems.append(diagnosis.at(node.attribute_place(attribute), hint, **parameters))
 
     def value(self, node: Node, name: str, kind: str, default: Json) -> Json:
         """An attribute as a value of its kind, within its bounds."""

@@ -60,5 +60,5 @@ def long_group(node: Node, ms: int, longest: int) -> Iterator[Problem]:
     if ms <= longest:
         yield from long_unit(node, ms)
     else:
-        place = node.attribute_place("longest") if "longest" in node.attributes else node.place
-        yield TOO_LATE.at(place, seconds=f"{round(ms / 1000, 1):g}")
+        seconds = f"{round(ms / 1000, 1):g}"
+        yield TOO_LATE.at(node.attribute_place("longest"), seconds=seconds)

@@ -219,12 +219,8 @@ class Node:
         return self.source.place(self.index)
 
     def attribute_place(self, name: str, value: bool = True) -> Place:
-        """The place of an attribute's value, or of its name."""
+        """The place of an attribute's value, or its name; the element's, if it lacks the attribute."""
         return self.source.place(self.index, name, value)
-
-    def place_of(self, attribute: str) -> Place:
-        """Where an attribute's value begins, or the element if it lacks the attribute."""
-        return self.attribute_place(attribute) if attribute in self.attributes else self.place
 
     def code_place(self, attribute: str, line: int, column: int) -> Place:
         """The place of a line and column of the code in an attribute, or in the text if ``""``.

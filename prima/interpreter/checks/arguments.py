@@ -54,7 +54,7 @@ def _argument(node: Node, name: str, argument: Argument, text: str) -> Iterator[
     """The problem of a motion argument's value, in a param or an attribute of the element."""
     param = next((one for one in node.all("param") if one.get("name") == name), None)
     holder, attribute = (node, name) if param is None else (param, "value")
-    place = holder.place_of(attribute)
+    place = holder.attribute_place(attribute)
     try:
         check_argument(name, argument, text)
     except BadValue as error:

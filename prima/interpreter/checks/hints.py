@@ -56,27 +56,27 @@ def check_hints(facts: Facts) -> Iterator[Problem]:
     speaking = _speaking(facts)
     for handler in facts.handlers:
         if "fresh-for" in handler.node.attributes and _is_no_reaction(handler.node):
-            yield NO_REACTION.at(handler.node.place_of("fresh-for"))
+            yield NO_REACTION.at(handler.node.attribute_place("fresh-for"))
     for form, items in facts.forms:
         yield from _stream(facts, form, form)
         for item in items:
             yield from _stream(facts, form, item)
         silent = not facts.document.handlers and form.id not in speaking
         if form.connect and silent and not _asks(items):
-            yield NO_WORD.at(form.node.place_of("channel"))
+            yield NO_WORD.at(form.node.attribute_place("channel"))
 
 
 def _stream(facts: Facts, form: Form, one: Form | Item) -> Iterator[Problem]:
     node, document = one.node, facts.document
     if "hold-for" in node.attributes and "stream" not in node.attributes:
-        yield NOTHING_HELD.at(node.place_of("hold-for"))
+        yield NOTHING_HELD.at(node.attribute_place("hold-for"))
     if not one.hold or "stream" not in node.attributes or _bad_hold(node):
         return
     handlers = (*form.handlers, *document.handlers)
     if handlers or form.watches or form.links or document.links:
-        yield HOLD_PRICE.at(node.place_of("stream"), seconds=f"{one.hold / 1000:g}")
+        yield HOLD_PRICE.at(node.attribute_place("stream"), seconds=f"{one.hold / 1000:g}")
     else:
-        yield NO_EVENT.at(node.place_of("stream"))
+        yield NO_EVENT.at(node.attribute_place("stream"))
 
 
 def _is_no_reaction(node: Node) -> bool:

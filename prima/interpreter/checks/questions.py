@@ -88,7 +88,7 @@ def check_first_prompts(facts: Facts) -> Iterator[Problem]:
     spoken = _spoken_before(facts) if late else set()
     for form, prompt in late:
         if form in begun or not {form.id, ANY} & spoken:
-            yield ASKED_LATER.at(prompt.node.place_of("count"), count=prompt.count)
+            yield ASKED_LATER.at(prompt.node.attribute_place("count"), count=prompt.count)
 
 
 def _late_prompt(form: Form) -> Prompt | None:

@@ -74,10 +74,10 @@ def check_reachable(facts: Facts) -> Iterator[Problem]:
         if not name:
             continue  # nothing can name it, which the schema reports
         if name not in reached:
-            yield UNREACHABLE_FORM.at(form.node.place_of("id"), form=name)
+            yield UNREACHABLE_FORM.at(form.node.attribute_place("id"), form=name)
         elif name not in left:
             diagnosis = DEAD_END_INSIDE if name in inside else DEAD_END
-            yield diagnosis.at(form.node.place_of("id"), form=name)
+            yield diagnosis.at(form.node.attribute_place("id"), form=name)
     yield from _returning(facts, reached - inside)
 
 

@@ -70,7 +70,7 @@ def _round(last: Goto, ring: list[str]) -> Problem:
     diagnosis = GOES_TO_ITSELF if len(ring) == 1 else GOES_ROUND
     more = ", ..." if len(ring) > MANY_FORMS else ""
     forms = ", ".join(ring[:MANY_FORMS]) + more
-    return diagnosis.at(last.node.place_of("next"), forms=forms)
+    return diagnosis.at(last.node.attribute_place("next"), forms=forms)
 
 
 def _always(form: Form) -> Goto | None:

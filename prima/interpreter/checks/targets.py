@@ -64,7 +64,7 @@ def _computed(
     """Names that an expression has as literals, and that nothing has."""
     for name in names:
         if name not in known:
-            place = expr.node.place_of(expr.attribute)
+            place = expr.node.attribute_place(expr.attribute)
             yield diagnosis.at(place, suggestion(name, known), name=name)
 
 
@@ -80,7 +80,7 @@ def _form(facts: Facts, name: str, node: Node, attribute: str) -> Iterator[Probl
     """The problem of a form that is missing."""
     if node.get(attribute).strip().startswith("#"):  # otherwise the schema reports it
         hint = suggestion(name, facts.document.forms, *value_span(node, attribute, name))
-        yield UNKNOWN_FORM.at(node.place_of(attribute), hint, name=name)
+        yield UNKNOWN_FORM.at(node.attribute_place(attribute), hint, name=name)
 
 
 def _item(facts: Facts, act: Goto, name: str, names: set[str]) -> Problem:
@@ -88,7 +88,7 @@ def _item(facts: Facts, act: Goto, name: str, names: set[str]) -> Problem:
     if name in facts.document.forms:
         remedy = f'It is a form: write next="#{name}".'
         hint = instead(remedy, act.node, "nextitem", "next", f"#{name}")
-    return UNKNOWN_ITEM.at(act.node.place_of("nextitem"), hint, name=name)
+    return UNKNOWN_ITEM.at(act.node.attribute_place("nextitem"), hint, name=name)
 
 
 def check_items(facts: Facts) -> Iterator[Problem]:
@@ -106,7 +106,7 @@ def _two_items(form: Form, items: Sequence[Item]) -> Iterator[Problem]:
     seen: set[str] = set()
     for item in items:
         if item.name in seen:
-            yield TWO_ITEMS.at(item.node.place_of("name"), form=form.id, name=item.name)
+            yield TWO_ITEMS.at(item.node.attribute_place("name"), form=form.id, name=item.name)
         seen.add(item.name)
 
 
@@ -115,4 +115,4 @@ def _namelist(holder: Filled | Clear, names: Sequence[str], known: NameScope) ->
         if name not in known:
             spans = value_span(holder.node, "namelist", name)
             hint = suggestion(name, known.written, *spans)
-            yield UNKNOWN_FIELD.at(holder.node.place_of("namelist"), hint, name=name)
+            yield UNKNOWN_FIELD.at(holder.node.attribute_place("namelist"), hint, name=name)
