@@ -30,11 +30,17 @@ LARGEST = 2**53
 class ScriptError(Exception):
     """An expression or script failed; becomes ``error.semantic`` in the application."""
 
-    def __init__(self, message: str, places: list[tuple[int, int]] | None = None) -> None:
+    def __init__(
+        self,
+        message: str,
+        places: list[tuple[int, int]] | None = None,
+        place: tuple[int, int] | None = None,
+    ) -> None:
+        """``place`` is the line and column in the code; by default the outermost of ``places``."""
         super().__init__(message)
         self.places = places or []
         """Lines and columns in the functions on the call stack, innermost first."""
-        self.line, self.column = self.places[-1] if self.places else (0, 0)
+        self.line, self.column = place or (self.places[-1] if self.places else (0, 0))
 
 
 class EngineLost(ScriptError):

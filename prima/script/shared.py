@@ -107,6 +107,4 @@ class IsolatedSyntax(Remote):
         if (code, is_script) not in self._faults:
             self._call(method, code)
         elif fault := self._faults[code, is_script]:
-            error = ScriptError(fault[0])
-            error.line, error.column = fault[1:]
-            raise error
+            raise ScriptError(fault[0], place=fault[1:])

@@ -155,10 +155,6 @@ def _placed(said: str, code: str) -> ScriptError:
     line, column = (int(place[1]) - 3, int(place[2])) if place else (0, 0)
     lines = code.split("\n")
     if line > len(lines):
-        failure = ScriptError("it ends too early")
-        failure.line, failure.column = len(lines), len(lines[-1]) + 1
-        return failure
-    failure = ScriptError(reason(said, TIME_LIMIT))
-    if line > 0:
-        failure.line, failure.column = line, column_in(code, line, column)
-    return failure
+        return ScriptError("it ends too early", place=(len(lines), len(lines[-1]) + 1))
+    there = (line, column_in(code, line, column)) if line > 0 else None
+    return ScriptError(reason(said, TIME_LIMIT), place=there)

@@ -57,12 +57,6 @@ class Nobody:
     now, spent = 0, 0.0
 
 
-def _error(message: str, places: list[list[int]], line: int, column: int) -> ScriptError:
-    error = ScriptError(message, [(one, two) for one, two in places])
-    error.line, error.column = line, column
-    return error
-
-
 class Worker:
     """A process with engines; its methods may be called from any thread, one at a time.
 
@@ -141,7 +135,8 @@ class Worker:
         if kind == "value":
             return Handle(result, queue)
         if kind == "error":
-            raise _error(*result)
+            message, places, line, column = result
+            raise ScriptError(message, [(one, two) for one, two in places], (line, column))
         if kind == "defect":
             raise RuntimeError(result)
         return result
