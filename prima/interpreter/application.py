@@ -97,7 +97,8 @@ class Interpreter(States):
         else:
             fiber = self.waiting.pop(notice.run, None)
             if fiber is not None and fiber.waiting == notice.run:
-                self.guard(self.count_wait, fiber.began, self._going_on_at(fiber))
+                at = fiber.frame.item or fiber.frame.form
+                self.guard(self.count_wait, fiber.began, at.node)
                 if self.over:
                     return
                 self.cause = notice.cause
@@ -105,12 +106,6 @@ class Interpreter(States):
                 self.cause = None
             if notice.what == "cancelled":
                 self.guard(self.handling.command_event, notice, notice.event.partition(".")[0])
-
-    @staticmethod
-    def _going_on_at(fiber: Fiber) -> Node:
-        """The element at which a piece of content continues."""
-        frame = fiber.frame
-        return frame.item.node if frame.item is not None else frame.form.node
 
     def sensed(self, now: int, values: Data) -> list[str]:
         """Note new sensor values; gives the events whose conditions turned true (C6)."""

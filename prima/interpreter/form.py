@@ -89,14 +89,10 @@ class Algorithm:
             frame.item = unit
 
     def _selected(self, frame: Frame, fiber: Fiber, items: Sequence[Item]) -> Item | Thrown | None:
-        """The next item; after a condition's error nothing more can be selected."""
-        try:
-            return self.select_item(frame, fiber, items)
-        except Thrown as error:
-            return thrown_of(error)
+        """The item that a goto names, else the first undefined one whose condition holds.
 
-    def select_item(self, frame: Frame, fiber: Fiber, items: Sequence[Item]) -> Item | None:
-        """The item that a goto names, else the first undefined one whose condition holds."""
+        After a condition's error nothing more can be selected: its event is returned.
+        """
 
         def first_undefined(some: Sequence[Item]) -> int:
             names = (one.name for one in some)
@@ -105,7 +101,10 @@ class Algorithm:
         def is_wanted(one: Item) -> bool:
             return one.cond is None or self.owner.execute.condition(one.cond, fiber)
 
-        item = select_item(items, frame.next_item, holds, first_undefined, is_wanted)
+        try:
+            item = select_item(items, frame.next_item, holds, first_undefined, is_wanted)
+        except Thrown as error:
+            return thrown_of(error)
         if item is not None:
             self.owner.note(item.node)
             if item.name == frame.next_item:

@@ -8,7 +8,7 @@ copy of it (thesis 5.3 (6)).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Literal
 
@@ -134,10 +134,6 @@ _ANGLE = Argument("number", "degrees to turn, counter-clockwise positive", -360,
 _DRIVE = "locomotion localization"
 
 
-def _choice(argument: Argument) -> Argument:
-    return Argument(argument.kind, argument.doc, argument.low, argument.high, choice="direction")
-
-
 TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
     {
         row.name: row
@@ -203,7 +199,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 "Turns by an angle or toward a place and says its text.",
                 effects="direction",
                 text="required",
-                angle=_choice(_ANGLE),
+                angle=replace(_ANGLE, choice="direction"),
                 toward=_TOWARD,
             ),
             _row(
@@ -212,7 +208,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 _DRIVE,
                 "Turns to a heading of the map or toward a place.",
                 effects="direction",
-                heading=_choice(_HEADING),
+                heading=replace(_HEADING, choice="direction"),
                 toward=_TOWARD,
             ),
             _row(
@@ -221,7 +217,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 "locomotion",
                 "Turns the body by an angle.",
                 effects="direction",
-                angle=Argument("number", _ANGLE.doc, -360, 360, required=True),
+                angle=replace(_ANGLE, required=True),
             ),
             _row(
                 "set-speed-and-time",
@@ -306,7 +302,7 @@ TABLE_4_2: Mapping[str, CommandType] = MappingProxyType(
                 effects="position direction",
                 x=_X,
                 y=_Y,
-                heading=Argument("number", _HEADING.doc, -360, 360, required=True),
+                heading=replace(_HEADING, required=True),
             ),
         )
     }
