@@ -23,10 +23,6 @@ PIECE = re.compile(
 )
 """A piece of text as written: it means no character, one, or several unchanged ones."""
 
-AS_IT_IS = re.compile(r"[^<&]+\Z")
-"""Text without references and markup."""
-NEAR = 100
-"""Length of a text up to which each character is searched for anew."""
 WORD = re.compile(r"[\w.\-]+")
 """A word of a value, such as a name."""
 
@@ -118,10 +114,6 @@ class Source:
             if not attribute:
                 match = MARKUP.match(self.text, offset)
                 offset = match.end() if match else offset
-            if 0 <= characters < NEAR and AS_IT_IS.match(
-                self.text, offset, offset + characters + 1
-            ):
-                return self.at(offset + characters)
             self._written = _Written((index, attribute), self.text, offset)
         return self.at(self._written.offset(max(characters, 0)))
 
