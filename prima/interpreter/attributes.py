@@ -114,13 +114,13 @@ class AttributeReader:
         self.expressions.append(made)
         return made
 
-    def either(self, node: Node, name: str, default: str = "") -> str | Expression:
+    def either(self, node: Node, name: str) -> str | Expression:
         """An attribute, or the expression in NAME-expr; never both."""
         if f"{name}-expr" not in node.attributes:
-            return node.attributes.get(name, default)
+            return node.get(name)
         found = self.expression(node, f"{name}-expr")
         if found is None:
-            return node.get(name, default)
+            return node.get(name)
         if name in node.attributes:
             self.exclusive(node, name, f"{name}-expr")
         return found

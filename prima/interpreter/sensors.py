@@ -29,7 +29,7 @@ def hides_sensors(document: Document) -> bool:
 def names_in(document: Document) -> Iterator[Names]:
     """The names in each piece of a document's code."""
     yield from (expression_names(expression.code) for expression in document.expressions)
-    yield from (script_names(code) for code in _scripts(document))
+    yield from map(script_names, document.scripts)
 
 
 @lru_cache(maxsize=1000)
@@ -119,14 +119,10 @@ def _member(code: Code, node: Node | None) -> str:
     return code.of(part) if part is not None else ""
 
 
-def _scripts(document: Document) -> Iterator[str]:
-    return (node.own_text for node in document.node.walk() if node.tag == "script")
-
-
 def _codes(document: Document) -> Iterator[Code | None]:
     """All code of a document, with the variables that elements name."""
     yield from (parse_expression(expression.code) for expression in document.expressions)
-    yield from (parse_script(code) for code in _scripts(document))
+    yield from map(parse_script, document.scripts)
     for node in document.node.walk():
         for name in ("name", "namelist"):
             value = node.attributes.get(name, "")
