@@ -57,10 +57,11 @@ def in_words(error: UsageError) -> str:
     """The message of a wrong use, with the name of a file like one that is not there."""
     if not isinstance(error, MissingFile):
         return str(error)
-    from prima.loading.files import path_of
+    from pathlib import Path
+
     from prima.loading.similar import alike
 
-    path = path_of(error.args[0])
+    path = Path(error.args[0])
     similar = alike(path, {})
     return f'{error} Did you mean "{path.with_name(similar)}"?' if similar else str(error)
 

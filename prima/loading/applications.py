@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
+from urllib.parse import unquote
 
 from prima.errors import (
     DocumentError,
@@ -14,13 +16,11 @@ from prima.errors import (
 )
 from prima.interpreter.elements import Document
 from prima.interpreter.reader import read_document
-from prima.loading.files import Folder, absolute, path_of, read_file
+from prima.loading.files import Folder, absolute, read_file
 from prima.loading.kinds import is_voicexml
 from prima.loading.similar import alike
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from prima.devices.endpoints import Endpoint
     from prima.grammar import Grammar
     from prima.session import AnyDocument
@@ -56,7 +56,7 @@ def read_application(
     from prima.voicexml.document import VoiceDocument
     from prima.voicexml.reading import read_page
 
-    file = path_of(path)
+    file = Path(path)
     page = read_page(site.name(site.uri) if site else file.name, path, data, site)
     own = name or re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "voice"
     folder = Folder(str(absolute(site.folder if site else file.parent)))
@@ -70,7 +70,7 @@ def read_native(
 ) -> tuple[Document, list[Problem]]:
     """Read an application in PRIMA's own language, with the grammars in its folder."""
 
-    fetched = fetcher(path_of(path).parent)
+    fetched = fetcher(Path(path).parent)
 
     def fetch(uri: str) -> bytes:
         found = fetched(uri)
@@ -99,8 +99,6 @@ def fetcher(folder: Path, site: Site | None = None) -> Callable[[str], bytes]:
     listed: dict[Path, list[Path]] = {}
 
     def fetch(uri: str) -> bytes:
-        from urllib.parse import unquote
-
         from prima.grammar.errors import NotThere
         from prima.voicexml.document import FetchError
 
@@ -147,7 +145,7 @@ def services_of(path: str, data: bytes) -> list[Endpoint]:
     from prima.devices.endpoints import read_services
     from prima.grammar import load
 
-    folder = path_of(path).parent
+    folder = Path(path).parent
     fetch = fetcher(folder)
 
     def grammar(name: str) -> Grammar:

@@ -8,13 +8,12 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from os.path import abspath, exists, getsize, isdir, isfile, join, normpath
-from typing import TYPE_CHECKING, Protocol
+from pathlib import Path
+from typing import Protocol
+from urllib.parse import unquote, urlsplit
 
 from prima.errors import DocumentError, MissingFile, UsageError
 from prima.markup.limits import LIMITS, too_large
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 class Files(Protocol):
@@ -63,13 +62,6 @@ def in_place_of_files(files: Files) -> Iterator[None]:
         yield
     finally:
         _files.reset(token)
-
-
-def path_of(path: str | Path) -> Path:
-    """A path as an object; code that reads a file by its name does not import these modules."""
-    from pathlib import Path
-
-    return Path(path)
 
 
 def check_name(path: object) -> None:
@@ -157,7 +149,7 @@ def check_texts(given: object, argument: str) -> dict[str, str]:
 def absolute(path: str | Path) -> Path:
     """An absolute path without following links; relative ones start at the documents' folder."""
     files = _files.get()
-    return path_of(abspath(join(files.folder if files else "", path)))
+    return Path(abspath(join(files.folder if files else "", path)))
 
 
 def _open_text(path: str | Path) -> bytes | None:
@@ -272,15 +264,13 @@ class Folder:
 
     def _inside(self, uri: str) -> Path:
         """The path of a file in the folder; others are refused."""
-        from urllib.parse import unquote, urlsplit
-
         from prima.voicexml.document import FetchError
 
         parts = urlsplit(uri)
         if parts.scheme or parts.netloc:
             raise FetchError(f"{parts.scheme or parts.netloc}: is not fetched: no network is used")
         root = absolute(self.path)
-        target = path_of(normpath(root / unquote(parts.path).lstrip("/")))
+        target = Path(normpath(root / unquote(parts.path).lstrip("/")))
         try:
             inside = target.resolve().is_relative_to(root.resolve())
         except (OSError, ValueError, RuntimeError) as error:  # a NUL, cyclic links

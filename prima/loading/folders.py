@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from prima.loading.files import path_of
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from pathlib import Path
 
 
 def shipped(name: str, folder: str = "") -> Path:
     """A file or folder of the package; in a checkout it is beside the package, in a folder."""
-    package = path_of(__file__).parent.parent
+    package = Path(__file__).parent.parent
     inside = package / name
     return inside if inside.exists() else package.parent / folder / name
 

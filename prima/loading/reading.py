@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import partial
 from os.path import normpath
+from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from prima.errors import (
@@ -34,7 +35,7 @@ from prima.loading.diagnoses import (
     RUNS_AS_OTHER,
     UNREADABLE,
 )
-from prima.loading.files import path_of, read_file
+from prima.loading.files import read_file
 from prima.loading.kinds import is_voicexml
 from prima.loading.similar import nearby
 from prima.loading.voicedocuments import voicexml_problems
@@ -43,8 +44,6 @@ from prima.markup.roots import kind_of
 from prima.markup.spans import value_span
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from prima.devices.profile import Profile
     from prima.markup.tree import Node
     from prima.session import AnyDocument
@@ -78,7 +77,7 @@ class Reading:
         """A document that the scenario names, or None if it cannot be read."""
         if not name:
             return None  # reported already by the schema
-        target = path_of(normpath(self.path.parent / name))
+        target = Path(normpath(self.path.parent / name))
         content = b""
         try:
             content = read_file(target)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from prima.checks.ignores import Ignores
@@ -15,13 +16,11 @@ from prima.errors import (
     in_order,
 )
 from prima.loading.applications import digest
-from prima.loading.files import path_of, read_file
+from prima.loading.files import read_file
 from prima.loading.reading import Reading
 from prima.markup.collecting import seldom_collected
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from prima.sim.devices import Cast
 
 
@@ -62,7 +61,7 @@ def load_text(path: str | Path, data: bytes, robot: str = "") -> Loaded:
     Raises:
         DocumentError: with the problems of all files, if any is an error.
     """
-    return without_ignored(load_whole(path_of(path), data, robot=robot))
+    return without_ignored(load_whole(Path(path), data, robot=robot))
 
 
 def with_scenario(loaded: Loaded, path: str | Path, data: bytes) -> Loaded:
@@ -79,7 +78,7 @@ def with_scenario(loaded: Loaded, path: str | Path, data: bytes) -> Loaded:
             reply.body = old.body
     for name, user in loaded.cast.scenario.users.items():
         scenario.take(name, user)
-    files = {**loaded.files, path_of(path).name: digest(data)}
+    files = {**loaded.files, Path(path).name: digest(data)}
     return Loaded(replace(loaded.cast, scenario=scenario), files, loaded.problems)
 
 

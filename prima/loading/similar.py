@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from itertools import islice
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from prima.errors import Hint, Span, meant
 from prima.interpreter.events import near
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 MOST_BESIDE = 300
 """How many files of a folder are considered in a guess."""

@@ -5,19 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from itertools import repeat
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from prima.errors import DocumentError, Problem, UsageError
 from prima.loading.applications import read_application
-from prima.loading.files import check_path, path_of, paths_of, read_file, texts_of
+from prima.loading.files import check_path, paths_of, read_file, texts_of
 from prima.loading.folders import documents_folder
 from prima.loading.reading import STAGE, other_kind
 from prima.loading.scenarios import Loaded, load_whole, without_ignored
 from prima.loading.voicedocuments import mappings
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from prima.sim.map import Map
 
 UNFIT = "[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
@@ -60,7 +59,7 @@ def stage(
     taken_up = entrances and _offers(place, there, alone=not given)
     inside = f"{_standing(there)}{_applications(given, maps)}{_answers(says)}"
     try:
-        loaded = load_whole(path_of(STAGE), _scenario(place, body, taken_up, inside))
+        loaded = load_whole(Path(STAGE), _scenario(place, body, taken_up, inside))
     except DocumentError as error:
         own = (one.code for one in error.problems if one.place.file == STAGE)
         if "duplicate-id" in own:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from prima.checks.ignores import Ignores
 from prima.errors import (
@@ -16,7 +16,7 @@ from prima.errors import (
 from prima.interpreter.elements import Document
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.loading.applications import fetcher, in_folder, read_native, services_of
-from prima.loading.files import path_of, paths_of, read_file
+from prima.loading.files import paths_of, read_file
 from prima.loading.folders import documents_folder
 from prima.loading.kinds import GRAMMAR_FILES, is_grammar, is_surely_ours, is_voicexml
 from prima.loading.reading import Reading
@@ -27,9 +27,6 @@ from prima.markup.encodings import misread
 from prima.markup.limits import LIMITS
 from prima.markup.reader import parse
 from prima.markup.roots import check_root
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def validate(paths: str | Path | Iterable[str | Path], maps: Iterable[str] = ()) -> list[Problem]:
@@ -109,7 +106,7 @@ def _problems_by_kind(path: str, data: bytes, maps: Mapping[str, str]) -> list[P
     if is_voicexml(data):
         return list(voicexml_problems(path, data, mapped_site(path, maps)))
     if is_grammar(data) or path.lower().endswith(GRAMMAR_FILES):
-        return _grammar_problems(path_of(path), data)
+        return _grammar_problems(Path(path), data)
     return _problems_by_namespace(path, data)
 
 
@@ -140,7 +137,7 @@ def _problems_by_namespace(path: str, data: bytes) -> list[Problem]:
         case USER.namespace:
             read_user(path, data)
         case _:
-            return load_whole(path_of(path), data, whole=True).problems
+            return load_whole(Path(path), data, whole=True).problems
     return []
 
 
@@ -149,7 +146,7 @@ def _world_problems(path: str, data: bytes) -> list[Problem]:
     from prima.sim.map import read_world
 
     world = read_world(path, data)
-    reading = Reading(path_of(path), {}, [*world.warnings])
+    reading = Reading(Path(path), {}, [*world.warnings])
     for area in world.areas:
         if area.src not in reading.files:
             reading.offered(area.src, area)

@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from os.path import exists
+from pathlib import Path
 from typing import TYPE_CHECKING
+from urllib.parse import unquote
 
 from prima.errors import (
     Hint,
@@ -18,14 +20,12 @@ from prima.loading.diagnoses import (
     NO_FILE_HERE,
     OUTSIDE,
 )
-from prima.loading.files import Folder, path_of, texts_of
+from prima.loading.files import Folder, texts_of
 from prima.loading.similar import nearby
 from prima.markup.limits import LIMITS
 from prima.markup.spans import value_span
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from prima.markup.tree import Node
     from prima.voicexml.document import Page
     from prima.voicexml.site import Site
@@ -78,8 +78,8 @@ def voicexml_problems(
     from prima.voicexml.upgrade import is_other_version
     from prima.voicexml.variables import check_variables
 
-    folder = path_of(site.folder) if site else path_of(path).parent
-    first = read_page(site.name(site.uri) if site else path_of(path).name, path, data, site)
+    folder = Path(site.folder) if site else Path(path).parent
+    first = read_page(site.name(site.uri) if site else Path(path).name, path, data, site)
     pages = Pages(first, path, Folder(str(folder)).fetch)
 
     def script(page: Page, node: Node) -> str | None:
@@ -148,8 +148,6 @@ def _not_there(
 
 def _files_named(page: Page, answered: tuple[str, ...]) -> Iterator[tuple[Node, str, str]]:
     """The files that elements name, with the attribute, except URIs ``answered`` by services."""
-    from urllib.parse import unquote
-
     for node in page.root.walk():
         for name, tags in NAMING_FILES.items():
             uri = node.get(name).strip()
