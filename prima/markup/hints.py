@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Collection
 
 from prima.errors import nearest_word, one_of, with_article
@@ -107,8 +108,6 @@ def meant_choice(text: str, choices: Collection[str]) -> str:
 def half(text: str) -> str:
     """Text converted to half-width characters."""
     straight = re.sub("[“”„«»]", '"', text)
-    import unicodedata  # needed for problems only
-
     return unicodedata.normalize("NFKC", re.sub("[‘’‚]", "'", straight))
 
 

@@ -6,6 +6,7 @@ and ``dict``.
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Callable, Mapping
@@ -212,10 +213,7 @@ def stringify(value: Any, around: tuple[int, ...] = ()) -> str:
 
 
 def _quoted(value: str) -> str:
-    """A text as JSON, which few documents need."""
-    from json import dumps
-
-    return dumps(value, ensure_ascii=False)
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _position(pair: tuple[str, Any]) -> tuple[bool, int]:
@@ -256,7 +254,5 @@ def outward(value: Any) -> Json:
     if isinstance(value, str):
         return bounded(well_formed(value))
     if isinstance(value, list | dict):
-        from json import loads
-
-        return loads(bounded(well_formed(stringify(value))))
+        return json.loads(bounded(well_formed(stringify(value))))
     return plain_number(value)

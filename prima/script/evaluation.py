@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
@@ -79,10 +80,8 @@ def read_json(text: str) -> Json:
     Raises:
         ScriptError: it is too long, or nested too deep.
     """
-    from json import loads  # which few documents need
-
     try:
-        value: Json = loads(bounded(text))
+        value: Json = json.loads(bounded(text))
     except RecursionError:
         raise ScriptError("it is nested too deep") from None
     level: list[Json] = [value]

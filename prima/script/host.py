@@ -8,6 +8,7 @@ caller needs to know.
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import sys
@@ -154,8 +155,6 @@ def serve(requests: int, replies: int) -> None:
 
 def main() -> None:
     """Run as a program: its argument is where Python finds modules."""
-    import json
-
     sys.path[:] = json.loads(sys.argv[1])
     import prima.script.engine
     import prima.script.syntax
