@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from os.path import dirname, isabs, isfile, join, realpath, relpath
+from pathlib import Path
 from typing import Any
 
 from prima.errors import DocumentError, Place, Problem, UsageError, suggestion
@@ -186,8 +187,6 @@ class Ignores:
         """Whether an entry is unused, and all documents that it names are checked and right."""
         if ignore.used:
             return False
-        from pathlib import Path  # seldom needed
-
         within = Path(settings.path).parent.rglob("*")
         documents = (str(one) for one in within if one.suffix in KINDS)
         return all(

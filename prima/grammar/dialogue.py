@@ -18,6 +18,7 @@ from prima.grammar.text import fold
 from prima.grammar.values import choice, repeat, sequence
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
+from prima.script.names import script_names
 
 if TYPE_CHECKING:
     from typing import Protocol
@@ -169,6 +170,4 @@ def _named(node: Node) -> str:
 
 def _is_code(tag: str) -> bool:
     """Whether a tag, read as a script, names the result of a rule (SISR)."""
-    from prima.script.names import script_names
-
     return any(use.name in RESULTS for use in script_names(tag).uses)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from prima.errors import Problem, few_guesses, in_order
 from prima.interpreter.build import Builder
+from prima.interpreter.checks import check_document
 from prima.interpreter.elements import Document
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.markup.collecting import seldom_collected
@@ -82,8 +83,6 @@ def _keep(file: str, read: _Read) -> None:
 
 def _read(file: str, data: bytes, fetch: Fetch | None) -> tuple[Document, list[Problem], bool]:
     """The document, its problems, and whether it names files."""
-    from prima.interpreter.checks import check_document
-
     root, problems = read_tree(file, data, DIALOGUE)
     wrong = bool(problems)
     builder = Builder(root, fetch)

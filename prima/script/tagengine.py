@@ -13,6 +13,7 @@ import _quickjs as quickjs
 
 from prima.script.budget import TIME_LIMIT
 from prima.script.evaluation import ScriptError, bounded, read_json
+from prima.script.parse import parse_script, spliced
 from prima.script.sandbox import (
     CLOCK,
     DATE,
@@ -49,8 +50,6 @@ def shared(code: str) -> str:
     """
     if not any(word in code for word in ("let", "const", "class")):
         return code
-    from prima.script.parse import parse_script, spliced
-
     parsed = parse_script(code)
     if parsed is None or not parsed.sound:
         return code

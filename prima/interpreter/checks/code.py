@@ -30,6 +30,7 @@ from prima.interpreter.checks.facts import Facts
 from prima.interpreter.checks.variables import Variables, place_in
 from prima.interpreter.elements import Document, Field, Form, Item, Prompt, Subdialog
 from prima.interpreter.steps import no_step
+from prima.markup.hints import half
 from prima.script.compile import compiled
 from prima.script.data import declared
 from prima.script.evaluation import EngineLost, ScriptError
@@ -221,8 +222,6 @@ def _of_full_width(code: str) -> str:
     """The first few full-width characters of code, as they should be."""
     if code.isascii():
         return ""
-    from prima.markup.hints import half
-
     wide = [half(one) for one in code if not one.isascii()]
     return " ".join([one for one in wide if one.isascii() and one.strip()][:5])
 
