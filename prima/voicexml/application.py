@@ -4,36 +4,30 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from pathlib import PurePath
 
 from prima.grammar.answers import Answers
-from prima.interpreter.bounds import ElementVisit
-from prima.interpreter.protocol import Answer
+from prima.interpreter.protocol import Answer, App
 from prima.interpreter.transfers import GoOut, Thrown
-from prima.markup.tree import Node
 from prima.messages import Command, Data, Event, Hypothesis, Json, Notice, Say, Understood
 from prima.messages import Heard as Spoken
-from prima.script.isolated import Engines
-from prima.voicexml.document import Page, VoiceDocument
+from prima.script.isolated import AnyEngine, Engines
+from prima.voicexml.document import VoiceDocument
 from prima.voicexml.machine import Machine
-from prima.voicexml.owner import VoiceApplication
+from prima.voicexml.shared import SharedState
 from prima.voicexml.state import SCOPES, Flow, Resume, TakenUtterance, thrown_of_event
-from prima.voicexml.waits import Waits
 
 
-class VoiceInterpreter(VoiceApplication):
+class VoiceInterpreter(App[AnyEngine]):
     """Runs one VoiceXML application."""
 
     def __init__(self, document: VoiceDocument, engines: Engines | None = None) -> None:
-        self.document = document
         engine = (engines or Engines()).engine(document.id, document.kind, SCOPES)
         super().__init__(document.id, document.kind, engine)
-        self.heard = None
-        self.note_document(document.page)
-        self.waits = Waits(self, self._here, self._begun)
-        self._machine = Machine(self)
+        self._shared = SharedState(self, document)
+        self._shared.note_document(document.page)
+        self.waits = self._shared.waits
+        self._machine = Machine(self._shared)
         self._flow: Flow | None = None
-        self.marked = None
         self._missed: deque[Event] = deque()
         """Events that arrived while waiting for an answer (4.1.8): none is lost."""
 
@@ -45,15 +39,9 @@ class VoiceInterpreter(VoiceApplication):
         self._flow = self._machine.start()
         self._drive(None)
 
-    def note_document(self, page: Page) -> None:
-        """Note a loaded document, usable or not; its path is relative to the first one's."""
-        first, file = self.document.page, self.document.file
-        path = file if page is first else str(PurePath(file).parent / page.root.source.file)
-        self.visits.append(ElementVisit(self.name, max(self.now, 0), "document", page.root, path))
-
     def takes(self, name: str) -> bool:
         """Whether a handler in scope takes an event of the robot."""
-        context, thrown = self._machine.context, thrown_of_event(Event(name, 0, shared=True))
+        context, thrown = self._shared.context, thrown_of_event(Event(name, 0, shared=True))
         return context is not None and self._machine.events.takes(context, thrown)
 
     def event(self, now: int, event: Event) -> None:
@@ -72,7 +60,7 @@ class VoiceInterpreter(VoiceApplication):
         return self.waits.leaving and not _hangs_up(event)
 
     def _happened(self, event: Event) -> None:
-        context = self._machine.context
+        context = self._shared.context
         if self.over or context is None or not (self.waits.run or self.waits.calling):
             return
         thrown = thrown_of_event(event)
@@ -86,7 +74,7 @@ class VoiceInterpreter(VoiceApplication):
 
     def _tell(self, event: Event) -> None:
         """Set ``session.event`` to an event's data: VoiceXML has no variable for it."""
-        session = self._machine.documents.session
+        session = self._shared.session
         self.engine.set(session, "event", {"name": event.name, "data": dict(event.data)})
 
     def notice(self, now: int, notice: Notice) -> None:
@@ -134,32 +122,32 @@ class VoiceInterpreter(VoiceApplication):
 
     def answer(self, run: int, said: Sequence[Hypothesis]) -> Understood | None:
         """How the active grammars interpret what the user said; None if none takes it."""
-        context = self._machine.context
+        context = self._shared.context
         if context is None or run != self.waits.run or self.over:
             return None
         try:
-            self.heard = self._machine.inputs.hear(context, said)
+            self._shared.heard = self._machine.inputs.hear(context, said)
         except Thrown:
             return None  # reported when the question was asked
-        if self.heard is None and context.item is not None and context.item.tag == "record":
+        if self._shared.heard is None and context.item is not None and context.item.tag == "record":
             text, sure = said[0]
-            self.heard = TakenUtterance(text, text, context.item, context.page, sure)
-            self.heard.recognised = False
-        if self.heard is None:
+            self._shared.heard = TakenUtterance(text, text, context.item, context.page, sure)
+            self._shared.heard.recognised = False
+        if self._shared.heard is None:
             return None
-        self.heard.mark = self.marked
-        heard, found = self.heard, self.heard.interpretation
+        self._shared.heard.mark = self._shared.marked
+        heard, found = self._shared.heard, self._shared.heard.interpretation
         value = found if found is not None else heard.utterance
         return Understood(value, heard.utterance, heard.confidence)
 
     def heeds(self, text: str) -> bool:
         """Whether the input mode of an utterance is listened to (VoiceXML 6.3.6)."""
-        context = self._machine.context
+        context = self._shared.context
         return context is not None and self._machine.inputs.noted(context, text) is not None
 
     def answers(self, run: int) -> Answers | None:
         """The answers to the question of a run."""
-        context = self._machine.context
+        context = self._shared.context
         if context is None or run != self.waits.run or self.over:
             return None
         return self._machine.inputs.words(context)
@@ -188,9 +176,9 @@ class VoiceInterpreter(VoiceApplication):
             outcome: dict[str, Json] = {"outcome": "maxspeechtimeout", "utterance": heard.text}
         else:
             answer = self.answer(self.waits.run, said)
-            if answer is None or self.heard is None:
+            if answer is None or self._shared.heard is None:
                 return False
-            self.heard.mark = None  # the last one played, which the device reports
+            self._shared.heard.mark = None  # the last one played, which the device reports
             outcome = heard.filled(answer)
         self.leave_states()
         self._drive(Resume(outcome))
@@ -207,17 +195,6 @@ class VoiceInterpreter(VoiceApplication):
     def leave_states(self) -> None:
         """O3: give up what is requested and awaited."""
         self.waits.leave_state()
-
-    def _here(self) -> Node:
-        """Where the application is."""
-        context = self._machine.context
-        item = context.item if context is not None else None
-        return item or self.document.node
-
-    def _begun(self) -> None:
-        """The queue has been requested: its last mark counts from now on."""
-        content = self._machine.content
-        self.marked, content.mark = content.mark, None
 
     def _catch_up(self) -> None:
         """Deliver the events that arrived while waiting for an answer, once there is a wait."""

@@ -10,10 +10,13 @@ from prima.interpreter.transfers import GoOut, Thrown
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json, Transferred
+from prima.voicexml.content import Content
 from prima.voicexml.fetching import gathered
-from prima.voicexml.owner import MachineOwner
+from prima.voicexml.inputs import Inputs
+from prima.voicexml.items import Items
 from prima.voicexml.platform import uncalled
 from prima.voicexml.results import marked_and_recorded
+from prima.voicexml.shared import SharedState
 from prima.voicexml.state import Context, Flow, HungUp, Resume, TakenUtterance, thrown_outside
 
 CONNECT_MS = 60_000
@@ -48,9 +51,12 @@ class Call:
 class Calls:
     """Makes the calls of one application."""
 
-    def __init__(self, owner: MachineOwner) -> None:
-        self.owner = owner
-        self.app = owner.app
+    def __init__(self, shared: SharedState, content: Content, inputs: Inputs, items: Items) -> None:
+        self.shared = shared
+        self.content = content
+        self.inputs = inputs
+        self.items = items
+        self.app = shared.app
 
     def transfer(self, context: Context, item: Node) -> Flow:
         """Visit a transfer: give its variable the call's outcome, or throw an event.
@@ -60,16 +66,16 @@ class Calls:
                 ``connection.disconnect.hangup`` where they hang up, ``error.connection`` and
                 ``error.unsupported`` as the platform reports them (2.3.7.3).
         """
-        content, nothing = self.owner.content, self.owner.engine.nothing
-        if self.owner.gone:
-            raise GoOut(self.owner.gone)
+        content, nothing = self.content, self.shared.engine.nothing
+        if self.shared.gone:
+            raise GoOut(self.shared.gone)
         call = Call(item, content.word(item, "dest", context, nothing), kind_of(item))
         aai = content.word(item, "aai", context, nothing)
         if (refused := uncalled(call.to)) is not None:
             raise Thrown.at(item, *refused)
         if call.listens:
-            yield from gathered(self.owner, lambda: self.owner.inputs.activate(context))
-        self.owner.items_of.forget_results(context)
+            yield from gathered(self.shared, lambda: self.inputs.activate(context))
+        self.items.forget_results(context)
         yield from self._announce(context, call)
         outcome = NEAR_END
         if call.heard is None:
@@ -86,17 +92,17 @@ class Calls:
         lasted = 0 if call.connected is None else self.app.now - call.connected
         shadow: dict[str, Json] = {"duration": lasted / 1000}
         if call.heard is not None:
-            self.owner.items_of.remember(context, call.heard)
+            self.items.remember(context, call.heard)
             shadow |= {"inputmode": call.heard.mode, "utterance": call.heard.utterance}
             shadow |= marked_and_recorded(call.heard)
-        self.owner.items_of.fill(context, call.item, outcome, shadow)
-        yield from self.owner.items_of.run_filled(context, [call.item])
+        self.items.fill(context, call.item, outcome, shadow)
+        yield from self.items.run_filled(context, [call.item])
 
     # Before the call ------------------------------------------------------------------
 
     def _announce(self, context: Context, call: Call) -> Flow:
         """Play what is queued; an utterance that a grammar takes meanwhile prevents the call."""
-        queue = self.owner.queue
+        queue = self.shared.queue
         if not queue:
             return
         opened: list[Command] = []
@@ -107,8 +113,8 @@ class Calls:
             question.args["bargein"] = bool(last.hook)
             opened = queue.open_to_answers(question)
             queue.put(question)
-        self.app.heard = None
-        resume = yield from self.app.waits.wait(queue.take(), opened)
+        self.shared.heard = None
+        resume = yield from self.shared.waits.wait(queue.take(), opened)
         self._note(call, resume)
 
     def _question(
@@ -130,7 +136,7 @@ class Calls:
         if resume.event is not None:
             raise thrown_outside(resume)
         if resume.data.get("outcome") == "filled":
-            call.heard = self.app.heard
+            call.heard = self.shared.heard
             if call.heard is not None:
                 call.heard.take_mark(resume.data)
 
@@ -143,20 +149,20 @@ class Calls:
         longest = milliseconds(item.get("maxtime"), 0) if call.kind == "bridge" else 0
         data: dict[str, Json] = {"transfer": call.kind, "params": {"aai": aai} if aai else {}}
         late = Transferred(self.app.name, 0, call.to, "noanswer")
-        self.app.waits.ask(call.to, data, late, connect, item)
+        self.shared.waits.ask(call.to, data, late, connect, item)
         call.serial = late.serial
         try:
             outcome = yield from self._wait(context, call, self._audio(context, call))
             if outcome == ANSWERED and call.kind == "bridge" and call.heard is None:
                 call.connected = self.app.now
                 late = Transferred(self.app.name, call.serial, call.to, "maxtime_disconnect")
-                self.app.waits.expect(late, longest or None)
+                self.shared.waits.expect(late, longest or None)
                 outcome = yield from self._wait(context, call, None)
         except Thrown as thrown:
             self._over(call, thrown.name)
             raise
         finally:
-            self.app.waits.expect_nothing()
+            self.shared.waits.expect_nothing()
         if call.heard is not None or (call.given_up and call.kind != "blind"):
             self._over(call, outcome)
         return outcome
@@ -183,10 +189,10 @@ class Calls:
             commands = [audio] if audio is not None else []
             if call.listens:
                 commands = [self._question(context, call, LISTEN, audio)]
-            self.app.heard, audio = None, None
-            found = yield from self.app.waits.answer_or_input(commands)
+            self.shared.heard, audio = None, None
+            found = yield from self.shared.waits.answer_or_input(commands)
             if isinstance(found, Transferred):
-                call.given_up = self.app.waits.overdue
+                call.given_up = self.shared.waits.overdue
                 return found.outcome
             if isinstance(found, Resume):
                 self._note(call, found)

@@ -7,43 +7,45 @@ from collections.abc import Sequence
 from prima.interpreter.selection import select_item, select_prompts
 from prima.markup.tree import Node
 from prima.voicexml.arranging import holds, is_unit
+from prima.voicexml.content import Content
 from prima.voicexml.elements import ITEMS, handler_number
-from prima.voicexml.owner import MachineOwner
 from prima.voicexml.settings import form_items
+from prima.voicexml.shared import SharedState
 from prima.voicexml.state import Context
 
 
 class ItemSelection:
     """Declares the variables of form items, and selects by them; selects prompts by their counts."""
 
-    def __init__(self, owner: MachineOwner) -> None:
-        self._owner = owner
+    def __init__(self, shared: SharedState, content: Content) -> None:
+        self._shared = shared
+        self._content = content
 
     def declare(self, context: Context, item: Node) -> None:
         """Initialise an item's variable; an item without a name is only visited or not."""
-        nothing = self._owner.engine.nothing
+        nothing = self._shared.engine.nothing
         if name := item.get("name"):
-            self._owner.content.check_name(item)
-            self._owner.engine.unset(context.dialog, name)  # even if a var has declared it (C)
+            self._content.check_name(item)
+            self._shared.engine.unset(context.dialog, name)  # even if a var has declared it (C)
             if "expr" in item.attributes:
-                self._owner.content.put(context.dialog, name, item, "expr", context, nothing)
+                self._content.put(context.dialog, name, item, "expr", context, nothing)
             return
         if "expr" in item.attributes:
-            guard, name = self._owner.local(), "guard"
-            self._owner.content.put(guard, name, item, "expr", context, nothing)
-            if self._owner.engine.defined(guard, name):  # null is a value
+            guard, name = self._shared.local(), "guard"
+            self._content.put(guard, name, item, "expr", context, nothing)
+            if self._shared.engine.defined(guard, name):  # null is a value
                 context.visited.add(item.index)
 
     def select(self, context: Context, wanted: str) -> Node | None:
         """The item that a goto names, or its unit; else the first unfilled one whose condition holds."""
-        items, nothing = self._next_to(context), self._owner.engine.nothing
+        items, nothing = self._next_to(context), self._shared.engine.nothing
 
         def first_undefined(some: Sequence[Node]) -> int:
             each = enumerate(some)
             return next((at for at, one in each if not self._is_over(context, one)), len(some))
 
         def is_wanted(one: Node) -> bool:
-            return self._owner.content.holds(one, context, nothing)
+            return self._content.holds(one, context, nothing)
 
         return select_item(items, wanted, holds, first_undefined, is_wanted)
 
@@ -64,12 +66,12 @@ class ItemSelection:
         """Whether an item's variable is defined, so that it is not visited."""
         name = item.get("name")
         if name:
-            return self._owner.engine.defined(context.dialog, name)
+            return self._shared.engine.defined(context.dialog, name)
         return item.index in context.visited
 
     def prompts(self, context: Context, item: Node) -> list[Node | str]:
         """The prompts of an item that its counter has reached (4.1.6)."""
-        content, nothing = self._owner.content, self._owner.engine.nothing
+        content, nothing = self._content, self._shared.engine.nothing
 
         def spoken(piece: Node | str) -> bool:
             return isinstance(piece, str) or content.holds(piece, context, nothing)

@@ -16,11 +16,12 @@ from prima.voicexml.dom import DOM, plain_tree
 from prima.voicexml.elements import INPUTS, branches
 from prima.voicexml.evaluating import is_worded
 from prima.voicexml.fetching import decoded, fetch
-from prima.voicexml.owner import MachineOwner
 from prima.voicexml.prompts import Speaker
 from prima.voicexml.settings import form_items
+from prima.voicexml.shared import SharedState
 from prima.voicexml.speech import Speech
 from prima.voicexml.state import HANGUP, SCOPES, Context, Flow, GoDialog, HungUp, UriRequest
+from prima.voicexml.targets import go_to
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 STEP_TAGS = 10
@@ -30,13 +31,13 @@ STEP_TAGS = 10
 class Content(Speaker):
     """Runs executable content for one application; only fetching takes time."""
 
-    def __init__(self, owner: MachineOwner) -> None:
-        super().__init__(owner)
+    def __init__(self, shared: SharedState) -> None:
+        super().__init__(shared)
         self._maker: Scope | None = None
 
     def run(self, node: Node, context: Context, local: Scope) -> Flow:
         """Run all that an element holds, in document order."""
-        self.owner.app.note(node)
+        self.shared.app.note(node)
         yield from self.run_all(node.content, context, local)
 
     def run_all(self, content: Iterable[Node | str], context: Context, local: Scope) -> Flow:
@@ -51,7 +52,7 @@ class Content(Speaker):
                 continue
             self.flush(speech)
             self.note_bargein(context)
-            self.owner.app.count_step(item)
+            self.shared.app.count_step(item)
             if item.namespace == PRIMA_NAMESPACE:
                 self.enqueue(item, context, local)
             elif item.tag == "prompt":
@@ -81,7 +82,7 @@ class Content(Speaker):
             case "log":
                 self.log(node, context, local)
             case "reprompt":
-                self.owner.reprompted = True
+                self.shared.reprompted = True
             case "data":
                 yield from self.data(node, local, context, local)
             case _:
@@ -101,7 +102,7 @@ class Content(Speaker):
                 raise GoOut()
             case "disconnect":
                 self.report(node, context, local)
-                if self.owner.gone == HANGUP:  # there is nobody left to disconnect (1.5.4)
+                if self.shared.gone == HANGUP:  # there is nobody left to disconnect (1.5.4)
                     raise GoOut(HANGUP)
                 raise HungUp(HANGUP, "", source(node))
             case "return":
@@ -140,7 +141,7 @@ class Content(Speaker):
         # A menu is not a form item: its counters are reset when it is entered, not here (4.1.6, 5.2.2).
         items = [one for one in form_items(context) if one.tag != "menu"]
         names = node.get("namelist").split()
-        self.owner.app.count_step(node, len(names) or len(items))
+        self.shared.app.count_step(node, len(names) or len(items))
         named = defaultdict(list)
         for item in items:
             named[item.get("name")].append(item)
@@ -187,7 +188,7 @@ class Content(Speaker):
                 found[name] = self.engine.value(name, context.scopes(local))
             except ScriptError as error:
                 raise self.failure(error, node, "namelist") from None
-            self.owner.app.count_value(found[name], node)
+            self.shared.app.count_value(found[name], node)
         return found
 
     def sent(self, node: Node, names: list[str], context: Context, local: Scope) -> dict[str, Json]:
@@ -215,7 +216,7 @@ class Content(Speaker):
                 context.item = None  # it is handled in the dialog's scope
                 raise no_item(node, item)
             raise GoItem(item)
-        yield from self.owner.documents.go(context, self.word(node, "next", context, local), node)
+        yield from go_to(self.shared, context, self.word(node, "next", context, local), node)
 
     def submit(self, node: Node, context: Context, local: Scope) -> Flow:
         """Submit values and go to the document returned, or send them and go on (5.3.8)."""
@@ -226,11 +227,11 @@ class Content(Speaker):
         service, _, dialog = uri.removeprefix(SERVICE).partition("#")
         if not uri.startswith(SERVICE) or not dialog:
             request = UriRequest(node.get("method"), values)
-            yield from self.owner.documents.go(context, uri, node, request)
+            yield from go_to(self.shared, context, uri, node, request)
             return
         if context.page.dialog(dialog) is None:
             raise Thrown.at(node, "error.badfetch", f'there is no dialog "{dialog}"')
-        self.owner.app.send(service, {"params": values}, source(node))
+        self.shared.app.send(service, {"params": values}, source(node))
         raise GoDialog(None, dialog)
 
     def give_back(self, node: Node, context: Context, local: Scope) -> None:
@@ -240,7 +241,7 @@ class Content(Speaker):
         values = self.engine.scope()
         for name in node.get("namelist").split():
             try:
-                self.owner.app.count_step(node)
+                self.shared.app.count_step(node)
                 self.engine.assign(values, name, name, context.scopes(local))
                 self.engine.detach(values, name)
             except ScriptError as error:
@@ -256,7 +257,7 @@ class Content(Speaker):
         code = node.own_text
         attribute = next((one for one in ("src", "srcexpr") if one in node.attributes), "")
         if attribute:
-            data = yield from fetch(self.owner, self.resource(node, context, local), node)
+            data = yield from fetch(self.shared, self.resource(node, context, local), node)
             code = decoded(data, node.get("charset"))
         try:
             self.engine.script(code, scope, context.scopes(local))
@@ -283,11 +284,11 @@ class Content(Speaker):
         values = self.sent(node, node.get("namelist").split(), context, local)
         request = UriRequest(node.get("method"), values)
         uri = self.resource(node, context, local)
-        content = yield from fetch(self.owner, uri, node, request)
+        content = yield from fetch(self.shared, uri, node, request)
         if not node.get("name"):
             return
         for _ in range(content.count(b"<") // STEP_TAGS):
-            self.owner.app.count_step(node)
+            self.shared.app.count_step(node)
         tree, host = plain_tree(uri, content, source(node)), host_of_page(context.page)
         if not may_read(tree, host):
             message = f"{uri}: its access-control does not name {host}"
@@ -306,7 +307,7 @@ class Content(Speaker):
         if self._maker is None:
             scopes = (self.engine.nothing,) * 5
             self._maker = self.engine.raw(DOM, scopes)
-            maker, session = self.engine.scope(), self.owner.documents.session
+            maker, session = self.engine.scope(), self.shared.session
             self.engine.put(maker, "dom", self._maker)
             for name in ("Node", "DOMException"):
                 self.engine.assign(session, name, f"dom.{name}", (*scopes[:-1], maker))
@@ -332,5 +333,5 @@ class Content(Speaker):
     def write(self, text: str, node: Node) -> None:
         """Write a line into the transcript."""
         said = text[:RESULT_LIMIT]
-        self.owner.app.count_output(len(said), node)
-        self.owner.app.actions.append(Say("log", said, source(node)))
+        self.shared.app.count_output(len(said), node)
+        self.shared.app.actions.append(Say("log", said, source(node)))

@@ -8,7 +8,7 @@ from prima.interpreter.transfers import Thrown, failure
 from prima.markup.tree import Node
 from prima.messages import Json
 from prima.script.evaluation import Scope, ScriptError, statement_place
-from prima.voicexml.owner import MachineOwner
+from prima.voicexml.shared import SharedState
 from prima.voicexml.state import Context
 from prima.voicexml.variablenames import wrong_name
 
@@ -34,9 +34,9 @@ def is_worded(node: Node) -> bool:
 class VoiceEvaluator:
     """Evaluates attributes, and gives the place of what fails."""
 
-    def __init__(self, owner: MachineOwner) -> None:
-        self.owner = owner
-        self.engine = owner.engine
+    def __init__(self, shared: SharedState) -> None:
+        self.shared = shared
+        self.engine = shared.engine
 
     def failure(self, error: ScriptError, node: Node, attribute: str) -> Thrown:
         """``error.semantic`` with the place of what failed (5.2.6).
@@ -73,7 +73,7 @@ class VoiceEvaluator:
             found = self.engine.condition(node.get("cond"), context.scopes(local))
         except ScriptError as error:
             raise self.failure(error, node, "cond") from None
-        self.owner.app.note(node, "true" if found else "false")
+        self.shared.app.note(node, "true" if found else "false")
         return found
 
     def word(self, node: Node, name: str, context: Context, local: Scope) -> str:
@@ -129,7 +129,7 @@ class VoiceEvaluator:
         except ScriptError as error:
             raise self.failure(error, node, "array") from None
         for _ in found:
-            self.owner.app.count_step(node)
+            self.shared.app.count_step(node)
         return found
 
     @staticmethod

@@ -6,10 +6,11 @@ from prima.interpreter.selection import Candidate, Takers, select_handler, takes
 from prima.interpreter.transfers import MAX_DEPTH, GoBack, GoItem, GoOut, Thrown, thrown_of
 from prima.markup.tree import Node
 from prima.script.evaluation import Scope, ScriptError
+from prima.voicexml.content import Content
 from prima.voicexml.document import Page
 from prima.voicexml.elements import HANDLERS, handler_names, handler_number
-from prima.voicexml.owner import MachineOwner
 from prima.voicexml.platform import own_words
+from prima.voicexml.shared import SharedState
 from prima.voicexml.state import Context, Flow, HungUp, Unasked
 
 ASKED_AGAIN = ("noinput", "nomatch", "help", "maxspeechtimeout")
@@ -19,9 +20,10 @@ ASKED_AGAIN = ("noinput", "nomatch", "help", "maxspeechtimeout")
 class Events:
     """Handles the events of one application."""
 
-    def __init__(self, owner: MachineOwner) -> None:
-        self.owner = owner
-        self.engine = owner.engine
+    def __init__(self, shared: SharedState, content: Content) -> None:
+        self.shared = shared
+        self.content = content
+        self.engine = shared.engine
         self._page: Page | None = None
         self._kept: Takers[Node] = Takers()
         """Of that document alone: the handlers would keep others in memory."""
@@ -39,7 +41,7 @@ class Events:
             yield from self._run(context, handler, thrown)
         except (Thrown, ScriptError) as error:
             again = thrown_of(error)
-            self.owner.app.count_step(self.owner.document.node)
+            self.shared.app.count_step(self.shared.document.node)
             if depth > MAX_DEPTH:
                 message = f"error.semantic: {again.source}: its handlers throw without end"
                 raise GoOut(message, True) from None
@@ -49,11 +51,11 @@ class Events:
         """The handler of an event: innermost scope, prefix, condition, count, order (5.2.4)."""
         local, where = self._scope(thrown), _place(context)
         found = self._takers(context, thrown)
-        self.owner.app.count_handlers(self.owner.document.node, found)
+        self.shared.app.count_handlers(self.shared.document.node, found)
         return select_handler(
             found,
             lambda name: context.counters.seen(where, name),
-            lambda one: self.owner.content.holds(one, context, local),
+            lambda one: self.content.holds(one, context, local),
         )
 
     def takes(self, context: Context, thrown: Thrown) -> bool:
@@ -76,9 +78,18 @@ class Events:
         finally:
             context.counters = held
 
+    def finish(self, context: Context) -> Flow:
+        """Play what is queued at an application's end (4.1.8); no events are handled any more."""
+        self.shared.context = None
+        if self.shared.queue and not self.shared.gone:
+            try:
+                yield from self.shared.play()
+            except Thrown as thrown:
+                yield from self.unhandled(context, thrown)
+
     def unhandled(self, context: Context, thrown: Thrown) -> Flow:
         """Play what is queued, then end the application with an unhandled event."""
-        yield from self.owner.finish(context)
+        yield from self.finish(context)
         raise GoOut(thrown.reason, True, thrown.source)
 
     def _count(self, context: Context, thrown: Thrown) -> None:
@@ -98,7 +109,7 @@ class Events:
         takers = self._kept.get(key)
         if takers is None:
             found = [one for node in scopes if node is not None for one in node.all(*HANDLERS)]
-            self.owner.app.count_handlers(self.owner.document.node, found)
+            self.shared.app.count_handlers(self.shared.document.node, found)
             known = (
                 Candidate(one, tuple(handler_names(one)), handler_number(one)) for one in found
             )
@@ -114,21 +125,21 @@ class Events:
 
     def _run(self, context: Context, handler: Node, thrown: Thrown) -> Flow:
         """Run a handler as if where the event was thrown; the next item may be quiet."""
-        self.owner.reprompted = False
+        self.shared.reprompted = False
         try:
-            yield from self.owner.content.run(handler, context, self._scope(thrown))
+            yield from self.content.run(handler, context, self._scope(thrown))
         except GoItem:
-            context.quiet = not self.owner.reprompted  # the dialog is still the same (5.3.6)
+            context.quiet = not self.shared.reprompted  # the dialog is still the same (5.3.6)
             raise
-        context.quiet = not self.owner.reprompted
+        context.quiet = not self.shared.reprompted
 
     def _hang_up(self, thrown: HungUp) -> Flow:
         """The user is gone: play what is queued before, and nothing after (5.3.11)."""
         try:
-            if self.owner.queue and not (thrown.outside or self.owner.gone):
-                yield from self.owner.play()
+            if self.shared.queue and not (thrown.outside or self.shared.gone):
+                yield from self.shared.play()
         finally:
-            self.owner.gone = thrown.name
+            self.shared.gone = thrown.name
 
     def _default(self, context: Context, thrown: Thrown) -> Flow:
         """The platform's own handlers (5.2.5)."""
@@ -137,7 +148,7 @@ class Events:
             lang = context.page.lang
             words = own_words(lang).items()
             said = next((text for one, text in words if takes(one, thrown.name)), "")
-            self.owner.content.say(said, lang, thrown.source)
+            self.content.say(said, lang, thrown.source)
         elif takes("cancel", thrown.name):
             context.quiet = True
         elif isinstance(thrown, Unasked):

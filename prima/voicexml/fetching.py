@@ -16,9 +16,9 @@ from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Data, Fetched
 from prima.voicexml.document import FetchError, Page, broken, of_web
-from prima.voicexml.owner import MachineOwner
 from prima.voicexml.reading import read_page
 from prima.voicexml.settings import setting
+from prima.voicexml.shared import SharedState
 from prima.voicexml.state import Flow, Resume, UriRequest
 
 STEP_BYTES = 200
@@ -40,7 +40,7 @@ class Missing(Thrown):
 
 
 def load_page(
-    owner: MachineOwner, uri: str, node: Node, request: UriRequest | None = None
+    shared: SharedState, uri: str, node: Node, request: UriRequest | None = None
 ) -> Generator[None, Resume, Page]:
     """Fetch and read another document of the application.
 
@@ -48,14 +48,14 @@ def load_page(
         Thrown: ``error.badfetch``, with what is wrong with the document; ``error.semantic``
             for an application root that names a root itself (1.5.2).
     """
-    asks = node.tag != "vxml" and bool(owner.document.outside(uri))  # a root is kept (6.1.2)
-    page = None if asks else owner.pages.get(uri)
+    asks = node.tag != "vxml" and bool(shared.document.outside(uri))  # a root is kept (6.1.2)
+    page = None if asks else shared.pages.get(uri)
     if page is not None:
         _check_reach(page.root.source.file, uri, node)
     else:
-        data = yield from fetch(owner, uri, node, request)
+        data = yield from fetch(shared, uri, node, request)
         try:
-            page = _read(owner, uri, data)
+            page = _read(shared, uri, data)
             error = broken(page)
         except DocumentError as failure:
             error = failure
@@ -63,23 +63,23 @@ def load_page(
             message = str(error.problems[0]) if error else uri
             raise Thrown.at(node, "error.badfetch", message)
         if not asks:
-            owner.pages[uri] = page
+            shared.pages[uri] = page
     if node.tag == "vxml" and page.application:
         message = f"{uri} names an application root itself"
         raise Thrown.at(node, "error.semantic", message)
     return page
 
 
-def _read(owner: MachineOwner, uri: str, data: bytes) -> Page:
+def _read(shared: SharedState, uri: str, data: bytes) -> Page:
     """Read a document; one from a host is not part of the folder, whatever URI the folder maps."""
-    if uri in owner.hosted:
-        where = owner.hosted[uri]
+    if uri in shared.hosted:
+        where = shared.hosted[uri]
         return read_page(where, where, data)
-    return read_page(uri, owner.document.seen(uri), data, owner.document.page.site)
+    return read_page(uri, shared.document.seen(uri), data, shared.document.page.site)
 
 
 def fetch(
-    owner: MachineOwner, uri: str, node: Node, request: UriRequest | None = None
+    shared: SharedState, uri: str, node: Node, request: UriRequest | None = None
 ) -> Generator[None, Resume, bytes]:
     """A resource's bytes.
 
@@ -87,44 +87,44 @@ def fetch(
         Thrown: ``error.badfetch``, with ``.http.STATUS`` where a host has answered so (5.2.6).
     """
     whole = urldefrag(uri)[0]
-    asked = owner.document.outside(whole)
+    asked = shared.document.outside(whole)
     if not asked:
-        return _weighed(owner, _file(owner, whole, node), node)
-    answer = yield from _asked(owner, asked, node, request or UriRequest())
+        return _weighed(shared, _file(shared, whole, node), node)
+    answer = yield from _asked(shared, asked, node, request or UriRequest())
     if answer.problem:
         lacks = asked != whole  # the folder represents the server, which has no such file
-        status = answer.status or (404 if lacks and not owner.app.waits.overdue else 0)
+        status = answer.status or (404 if lacks and not shared.waits.overdue else 0)
         name = f"error.badfetch.http.{status}" if status else "error.badfetch"
         missing = "the folder has no such file; " if lacks else ""
         raise Thrown.at(node, name, f"{asked}: {missing}{answer.problem}")
     if answer.host:
-        owner.hosted[whole] = urldefrag(answer.moved)[0] or asked
+        shared.hosted[whole] = urldefrag(answer.moved)[0] or asked
     else:
-        owner.hosted.pop(whole, None)
-    return _weighed(owner, answer.body.encode(answer.charset), node)
+        shared.hosted.pop(whole, None)
+    return _weighed(shared, answer.body.encode(answer.charset), node)
 
 
-def _weighed(owner: MachineOwner, data: bytes, node: Node) -> bytes:
+def _weighed(shared: SharedState, data: bytes, node: Node) -> bytes:
     """Count the bytes to read as steps: reading a lot again and again is a loop as well."""
     for _ in range(len(data) // STEP_BYTES):
-        owner.app.count_step(node)
+        shared.app.count_step(node)
     return data
 
 
 def _asked(
-    owner: MachineOwner, uri: str, node: Node, request: UriRequest
+    shared: SharedState, uri: str, node: Node, request: UriRequest
 ) -> Generator[None, Resume, Fetched]:
     """Request a resource, and play prompts and fetch audio until the answer arrives (6.1.1)."""
-    timeout = milliseconds(_setting(owner, node, "fetchtimeout"), FETCH_TIMEOUT)
+    timeout = milliseconds(_setting(shared, node, "fetchtimeout"), FETCH_TIMEOUT)
     data: Data = {"method": request.method or "get", "params": dict(request.values)}
-    late = Fetched(owner.app.name, 0, "", problem="no answer within its fetchtimeout")
-    owner.app.waits.ask(uri, data, late, timeout, node)
-    audio = "" if node.tag in WITHOUT_AUDIO else _setting(owner, node, "fetchaudio")
-    if audio and not owner.gone:
+    late = Fetched(shared.app.name, 0, "", problem="no answer within its fetchtimeout")
+    shared.waits.ask(uri, data, late, timeout, node)
+    audio = "" if node.tag in WITHOUT_AUDIO else _setting(shared, node, "fetchaudio")
+    if audio and not shared.gone:
         said = Command("speak", text=f"[{audio.rpartition('/')[2]}]", source=source(node))
-        queued = owner.queue.take()
-        yield from owner.app.waits.pass_time(queued, [said])
-    return (yield from owner.app.waits.fetched())
+        queued = shared.queue.take()
+        yield from shared.waits.pass_time(queued, [said])
+    return (yield from shared.waits.fetched())
 
 
 def _check_reach(where: str, uri: str, node: Node) -> None:
@@ -137,16 +137,16 @@ def _check_reach(where: str, uri: str, node: Node) -> None:
         raise Thrown.at(node, "error.badfetch", f"{uri}: {HOSTS_ONLY}")
 
 
-def _setting(owner: MachineOwner, node: Node, name: str) -> str:
+def _setting(shared: SharedState, node: Node, name: str) -> str:
     """A setting of a fetch: the element's attribute, or the property of that name (6.3.5)."""
     own = node.get(name)
-    return own or (setting(owner.context, name) if owner.context is not None else "")
+    return own or (setting(shared.context, name) if shared.context is not None else "")
 
 
-def _file(owner: MachineOwner, uri: str, node: Node) -> bytes:
+def _file(shared: SharedState, uri: str, node: Node) -> bytes:
     _check_reach(uri, uri, node)
     try:
-        return owner.document.fetch(uri)
+        return shared.document.fetch(uri)
     except FetchError as error:
         raise Thrown.at(node, "error.badfetch", f"{uri}: {error}") from None
 
@@ -154,43 +154,43 @@ def _file(owner: MachineOwner, uri: str, node: Node) -> bytes:
 # Grammars -----------------------------------------------------------------------------------
 
 
-def held(owner: MachineOwner, uri: str, node: Node) -> bytes:
+def held(shared: SharedState, uri: str, node: Node) -> bytes:
     """The bytes of a grammar: of a file, or fetched by :func:`gathered`.
 
     Raises:
         Thrown: ``error.badfetch``; :class:`Missing` if it has not been fetched yet.
     """
-    whole = _held_as(owner, uri, node)
-    if not owner.document.outside(whole):
-        return _file(owner, whole, node)
-    found = owner.resources.get(whole)
+    whole = _held_as(shared, uri, node)
+    if not shared.document.outside(whole):
+        return _file(shared, whole, node)
+    found = shared.resources.get(whole)
     if found is None:
         raise Missing(whole, node)
     return found
 
 
-def _held_as(owner: MachineOwner, uri: str, node: Node) -> str:
+def _held_as(shared: SharedState, uri: str, node: Node) -> str:
     """The key of a resource that a grammar names: its name if it is in the folder."""
-    whole, site = urldefrag(uri)[0], owner.document.page.site
+    whole, site = urldefrag(uri)[0], shared.document.page.site
     return whole if site is None or of_web(node.source.file) else site.name(whole)
 
 
-def refusal(owner: MachineOwner, by: str, uri: str, node: Node) -> str:
+def refusal(shared: SharedState, by: str, uri: str, node: Node) -> str:
     """Why one grammar may not refer to another, by their URIs; nothing if it may."""
-    if _held_as(owner, by, node) not in owner.hosted:
+    if _held_as(shared, by, node) not in shared.hosted:
         return ""
-    return "" if owner.document.outside(_held_as(owner, uri, node)) else HOSTS_ONLY
+    return "" if shared.document.outside(_held_as(shared, uri, node)) else HOSTS_ONLY
 
 
-def gathered(owner: MachineOwner, use: Callable[[], object]) -> Flow:
+def gathered(shared: SharedState, use: Callable[[], object]) -> Flow:
     """Do what needs grammars, once all their resources have been fetched."""
     while True:
         try:
             use()
             return
         except Missing as missing:
-            owner.app.count_step(missing.node)
-            owner.resources[missing.uri] = yield from fetch(owner, missing.uri, missing.node)
+            shared.app.count_step(missing.node)
+            shared.resources[missing.uri] = yield from fetch(shared, missing.uri, missing.node)
 
 
 def decoded(data: bytes, charset: str) -> str:

@@ -12,12 +12,13 @@ from prima.interpreter.transfers import Thrown
 from prima.markup.tree import Node
 from prima.messages import Hypothesis, Json, Say
 from prima.script.budget import Budget
+from prima.voicexml.content import Content
 from prima.voicexml.document import Page
 from prima.voicexml.elements import numbered, words_of
 from prima.voicexml.fetching import held, refusal
 from prima.voicexml.matching import GrammarMatch, Listener, keys, listener, phrase, ways
-from prima.voicexml.owner import MachineOwner
 from prima.voicexml.settings import setting
+from prima.voicexml.shared import SharedState
 from prima.voicexml.state import Context, TakenUtterance
 
 UNIVERSALS = {"help": "help", "cancel": "cancel", "exit": "exit"}
@@ -45,8 +46,9 @@ Taken = tuple[Active, GrammarMatch]
 class Inputs:
     """Finds and matches the grammars of one application."""
 
-    def __init__(self, owner: MachineOwner) -> None:
-        self.owner = owner
+    def __init__(self, shared: SharedState, content: Content) -> None:
+        self.shared = shared
+        self.content = content
         self._loaded: dict[tuple[str, int, str], tuple[Page, Listener]] = {}
         """With the page of each: the next page of the same URI may be another document."""
         self._budget = Budget()
@@ -87,7 +89,7 @@ class Inputs:
         are of the others. Of all results the surest comes first (5.1.5).
         """
         most = self.most_results(context)
-        self._budget = self.owner.app.utterance()
+        self._budget = self.shared.app.utterance()
         results: list[Taken] = []
         for text, sure in said:
             if len(results) >= most:
@@ -151,7 +153,7 @@ class Inputs:
                     results.append((active, found))
                     first = first or active
             if self._budget.steps <= 0:
-                self.owner.app.give_up(active.owner, "what it listens for takes too long")
+                self.shared.app.give_up(active.owner, "what it listens for takes too long")
         return results
 
     # Which grammars listen --------------------------------------------------------------
@@ -242,7 +244,7 @@ class Inputs:
     ) -> Active:
         uri = node.get("src")
         if "srcexpr" in node.attributes:  # evaluated whenever the grammar listens (2.1, 2)
-            uri = self.owner.content.word(node, "src", context, self.owner.engine.nothing)
+            uri = self.content.word(node, "src", context, self.shared.engine.nothing)
         if uri and not uri.startswith("builtin:"):
             uri = page.resolve(uri, node)
         return Active(self._load(node, page, uri), owner, page, level)
@@ -256,8 +258,8 @@ class Inputs:
             node,
             page,
             uri,
-            lambda name: held(self.owner, name, node),
-            lambda by, name: refusal(self.owner, by, name, node),
+            lambda name: held(self.shared, name, node),
+            lambda by, name: refusal(self.shared, by, name, node),
             self._failed,
             lambda: self._budget,
         )
@@ -266,4 +268,4 @@ class Inputs:
 
     def _failed(self, node: Node, message: str) -> None:
         """A tag failed on the utterance, so the grammar does not take it."""
-        self.owner.app.actions.append(Say("log", f"no match: {message}", source(node)))
+        self.shared.app.actions.append(Say("log", f"no match: {message}", source(node)))

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from typing import Any
 
-from prima.interpreter.places import source
 from prima.interpreter.selection import satisfied
-from prima.interpreter.transfers import GoBack, Thrown, check_depth
 from prima.markup.tree import Node
 from prima.messages import Json
 from prima.voicexml.arranging import parts_of
-from prima.voicexml.calls import Calls
+from prima.voicexml.choosing import ItemSelection
+from prima.voicexml.content import Content
 from prima.voicexml.document import Page
 from prima.voicexml.elements import INPUTS
-from prima.voicexml.owner import MachineOwner
-from prima.voicexml.recorder import RecordItems
 from prima.voicexml.results import RESULTS, shadow
 from prima.voicexml.settings import form_items, setting
-from prima.voicexml.state import Context, Flow, GoDialog, Params, TakenUtterance, UriRequest
+from prima.voicexml.shared import SharedState
+from prima.voicexml.state import Context, Flow, GoDialog, TakenUtterance
+from prima.voicexml.targets import go_to
 
 ABSENT = object()
 """Marks a slot that an interpretation lacks: null is a value."""
@@ -26,18 +25,18 @@ ABSENT = object()
 class Items:
     """Fills the form items of one application."""
 
-    def __init__(self, owner: MachineOwner) -> None:
-        self.owner = owner
-        self.engine = owner.engine
-        self.recorder = RecordItems(owner)
-        self.calls = Calls(owner)
+    def __init__(self, shared: SharedState, content: Content, selection: ItemSelection) -> None:
+        self.shared = shared
+        self.content = content
+        self.selection = selection
+        self.engine = shared.engine
 
     # What the user said ---------------------------------------------------------------
 
     def process(self, context: Context, heard: TakenUtterance) -> Flow:
         """Pass what the user said to the item, form, link or choice that took it."""
         owner = heard.owner
-        self.owner.app.note(owner, "in" if owner.tag in ("link", "choice") else "heard")
+        self.shared.app.note(owner, "in" if owner.tag in ("link", "choice") else "heard")
         dialog = _dialog_of(heard.page, owner)
         if dialog is not None and dialog is not context.form:
             page = heard.page if heard.page is not context.page else None
@@ -57,11 +56,11 @@ class Items:
 
         A link's attributes are evaluated where it was heard, not where it is written.
         """
-        content, nothing = self.owner.content, self.engine.nothing
+        content, nothing = self.content, self.engine.nothing
         if not node.attributes.keys().isdisjoint(("event", "eventexpr")):
             raise content.raised(node, context, nothing)
         uri = content.word(node, "next", context, nothing)
-        yield from self.owner.documents.go(context, uri, node)
+        yield from go_to(self.shared, context, uri, node)
 
     def remember(self, context: Context, heard: TakenUtterance) -> None:
         """Set ``application.lastresult$`` (5.1.5); record what was said if that is requested.
@@ -69,14 +68,14 @@ class Items:
         With ``recordutterance`` the words heard are the recording (2.1, 7.2).
         """
         if heard.mode == "voice" and setting(context, "recordutterance") == "true":
-            heard.recorded = self.recorder.keep(heard.utterance)
+            heard.recorded = self.shared.keep_recording(heard.utterance)
         results = [shadow(heard)]
         for utterance, interpretation, confidence in heard.others:
             further = TakenUtterance(
                 utterance, interpretation, heard.owner, heard.page, confidence, heard.mode
             )
             results.append(shadow(further))
-        local = self.owner.local()
+        local = self.shared.local()
         self.engine.set(local, "$results", results)
         self.engine.assign(context.application, "lastresult$", RESULTS, context.scopes(local))
 
@@ -126,15 +125,15 @@ class Items:
             elif node.tag == "filled":
                 context.item = None
                 if self._satisfied(context, node, filled):
-                    yield from self.owner.content.run(node, context, self.owner.local())
+                    yield from self.content.run(node, context, self.shared.local())
 
     def _run_own(self, context: Context, item: Node) -> Flow:
         """Run the filled elements in an item."""
         context.item = item
         for action in item.all("filled"):
-            if not self.owner.selection.guarded(context, item):
+            if not self.selection.guarded(context, item):
                 break  # an earlier one has cleared it
-            yield from self.owner.content.run(action, context, self.owner.local())
+            yield from self.content.run(action, context, self.shared.local())
 
     def _satisfied(self, context: Context, node: Node, filled: list[Node]) -> bool:
         """Whether a form's filled is to run: for any, or all, of its items (2.4)."""
@@ -143,52 +142,7 @@ class Items:
         if names:
             items = [item for item in items if item.get("name") in names]
         mode = node.get("mode")
-        return satisfied(
-            mode, items, filled, lambda item: self.owner.selection.guarded(context, item)
-        )
-
-    # Items with results of their own --------------------------------------------------
-
-    def call(self, context: Context, item: Node) -> Flow:
-        """A subdialog, in a context of its own (2.3.4)."""
-        check_depth(context.depth, item)
-        params, nothing = self._params(context, item), self.engine.nothing
-        uri = self.owner.content.word(item, "src", context, nothing)
-        names, method = item.get("namelist").split(), item.get("method")
-        values = self.owner.content.sent(item, names, context, nothing)
-        request = UriRequest(method, values) if names or method == "post" else None
-        fetched, dialog = yield from self.owner.documents.find(context, uri, item, request)
-        page = fetched or context.page
-        if fetched is not None:
-            yield from self.owner.documents.root(fetched)  # its own, which is not the caller's
-        inner = Context(context.session, page, nothing, nothing, self.engine.named("dialog"))
-        inner.params, inner.depth = params, context.depth + 1
-        self.owner.context = inner
-        try:
-            yield from self.owner.execute(inner, page, dialog)
-        except GoBack as back:
-            result = back
-        finally:
-            self.owner.context = context
-        if result.event:
-            thrown = Thrown(result.event, result.message, source(item))
-            thrown.worded = result.worded
-            raise thrown
-        self.fill(context, item, result.values)
-        yield from self.run_filled(context, [item])
-
-    def _params(self, context: Context, item: Node) -> Params:
-        """The params of a subdialog, by value (6.4)."""
-        nothing, given = self.engine.nothing, Params(self.engine.scope())
-        for param in item.all("param"):
-            name = param.get("name")
-            given.names[name] = None
-            if "expr" in param.attributes:
-                self.owner.content.put(given.values, name, param, "expr", context, nothing)
-                self.engine.detach(given.values, name)
-            else:
-                self.engine.set(given.values, name, param.get("value"))
-        return given
+        return satisfied(mode, items, filled, lambda item: self.selection.guarded(context, item))
 
 
 def _dialog_of(page: Page, owner: Node) -> Node | None:

@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator
 
+from prima.interpreter.places import source
 from prima.interpreter.selection import Counters
-from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, thrown_of
+from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, check_depth, thrown_of
 from prima.markup.tree import Node
-from prima.messages import Command
-from prima.script.evaluation import Scope, ScriptError
-from prima.voicexml.arranging import Queued, holds_inside, is_unit, parts_of
+from prima.script.evaluation import ScriptError
+from prima.voicexml.arranging import holds_inside, is_unit, parts_of
+from prima.voicexml.calls import Calls
 from prima.voicexml.choosing import ItemSelection
 from prima.voicexml.content import Content
 from prima.voicexml.document import Page
-from prima.voicexml.elements import ITEMS, numbered, words_of
+from prima.voicexml.elements import ITEMS
 from prima.voicexml.events import Events
 from prima.voicexml.inputs import Inputs
 from prima.voicexml.items import Items
-from prima.voicexml.owner import VoiceApplication
-from prima.voicexml.platform import NO_CHOICES
 from prima.voicexml.questions import Questions
-from prima.voicexml.queue import PromptQueue
+from prima.voicexml.recorder import RecordItems
 from prima.voicexml.scopes import Documents
-from prima.voicexml.speech import Speech
+from prima.voicexml.shared import SharedState
 from prima.voicexml.state import (
     Context,
     Flow,
@@ -31,8 +30,9 @@ from prima.voicexml.state import (
     Resume,
     TakenUtterance,
     Unasked,
-    thrown_outside,
+    UriRequest,
 )
+from prima.voicexml.targets import find_dialog, root_of
 from prima.voicexml.units import Units
 
 DIALOG_STEPS = 100
@@ -44,65 +44,32 @@ ITEM_STEPS = 10
 class Machine:
     """Runs one application's dialogs; everything it does itself takes no time."""
 
-    def __init__(self, app: VoiceApplication) -> None:
-        self.app = app
-        self.engine = app.engine
-        self.document = app.document
-        self.pages: dict[str, Page] = {app.document.page.uri: app.document.page}
-        self.resources: dict[str, bytes] = {}
-        """Resources of grammars that are not files, once they have been fetched."""
-        self.hosted: dict[str, str] = {}
-        """Names and URIs that a real host, not a service, has answered, and where it did."""
-        self.queue = PromptQueue()
-        self.reprompted = False
-        self.gone = ""
-        """The event by which the user left: nothing is waited for any more (1.5.4)."""
-        self.content = Content(self)
-        self.inputs = Inputs(self)
-        self.documents = Documents(self)
-        self.items_of = Items(self)
-        self.questions = Questions(self)
-        self.events = Events(self)
-        self.units = Units(self)
-        self.selection = ItemSelection(self)
-        self.context: Context | None = None
+    def __init__(self, shared: SharedState) -> None:
+        self.shared = shared
+        self.app = shared.app
+        self.engine = shared.engine
+        self.content = Content(shared)
+        self.documents = Documents(shared, self.content)
+        self.inputs = Inputs(shared, self.content)
+        self.events = Events(shared, self.content)
+        self.selection = ItemSelection(shared, self.content)
+        self.items = Items(shared, self.content, self.selection)
+        self.calls = Calls(shared, self.content, self.inputs, self.items)
+        recorder = RecordItems(shared, self.inputs, self.items)
+        self.questions = Questions(shared, self.inputs, self.items, recorder)
+        self.units = Units(shared, self.items, self.selection, self.events, self.visit_all)
         self.state = ""
         """The dialog that is active, by its name."""
-
-    # For content --------------------------------------------------------------------
-
-    def local(self) -> Scope:
-        """A new anonymous scope."""
-        return self.engine.scope()
-
-    def enumeration(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
-        """Read an enumerate: each choice, in its own words (2.2.4)."""
-        owner = context.item if context.item is not None else context.form
-        choices = owner.all("choice", "option") if owner is not None else []
-        if owner is None or not choices or _holds_enumerate(node):
-            raise Thrown.at(node, *NO_CHOICES)
-        keys = numbered(owner)
-        if not node.content:
-            speech.parts.append("; ".join(filter(None, map(words_of, choices))))
-            return
-        for choice in choices:
-            self.engine.set(local, "_prompt", words_of(choice))
-            if keys[choice.index] and not choice.all("grammar"):
-                self.engine.set(local, "_dtmf", " ".join("".join(keys[choice.index].split())))
-            else:
-                self.engine.unset(local, "_dtmf")
-            self.content.read_all(node, context, local, speech)
-            speech.parts.append(" " if choice is not choices[-1] else "")
 
     # Documents -----------------------------------------------------------------------
 
     def start(self) -> Flow:
         """Run the application from its first dialog to its end (1.5.1)."""
-        page, nothing = self.document.page, self.engine.nothing
+        page, nothing = self.shared.document.page, self.engine.nothing
         context = Context(
             self.documents.begin(), page, nothing, nothing, self.engine.named("dialog")
         )
-        self.context = context
+        self.shared.context = context
         reason = GoOut()
         try:
             yield from self.execute(context, page, "")
@@ -111,17 +78,8 @@ class Machine:
         except GoBack:
             pass
         if not reason.failed:
-            yield from self.finish(context)
+            yield from self.events.finish(context)
         raise reason
-
-    def finish(self, context: Context) -> Flow:
-        """Play what is queued at an application's end (4.1.8); no events are handled any more."""
-        self.context = None
-        if self.queue and not self.gone:
-            try:
-                yield from self.play()
-            except Thrown as thrown:
-                yield from self.events.unhandled(context, thrown)
 
     def execute(self, context: Context, page: Page, dialog: str) -> Flow:
         """Run documents and dialogs of one context until it is left."""
@@ -161,7 +119,7 @@ class Machine:
         outer, app = self.state, self.app
         for page in (context.page, context.root):
             if page is not None:
-                app.note_document(page)
+                self.shared.note_document(page)
         named = context.page.dialogs.items()
         self.state = next((name for name, one in named if one is form), "")
         app.note(form, "enter", self.state)
@@ -187,7 +145,7 @@ class Machine:
             self.app.count_step(form)
             context.item = form if form.tag == "menu" else None
             try:
-                yield from self.items_of.process(context, heard)
+                yield from self.items.process(context, heard)
             except GoItem as go:
                 wanted = go.item
             except (Thrown, ScriptError) as error:
@@ -205,7 +163,7 @@ class Machine:
         """
         unit, more = context.unit, True
         while more:
-            self.app.count_step(unit or context.form or self.document.node, ITEM_STEPS)
+            self.app.count_step(unit or context.form or self.shared.document.node, ITEM_STEPS)
             context.item = None
             try:
                 more = yield from self._visit_next(context, wanted)
@@ -225,8 +183,8 @@ class Machine:
         if item is not None:
             context.item = item
             yield from self.visit(context, item, wanted)
-        elif context.unit is not None and self.queue and not self.gone:
-            yield from self.play()  # a unit ends when all of it has been played
+        elif context.unit is not None and self.shared.queue and not self.shared.gone:
+            yield from self.shared.play()  # a unit ends when all of it has been played
         else:
             return False
         return True
@@ -267,21 +225,64 @@ class Machine:
             return
         quiet, context.quiet = context.quiet, False
         if item.tag == "block":
-            self.items_of.mark(context, item)
-            yield from self.content.run(item, context, self.local())
+            self.items.mark(context, item)
+            yield from self.content.run(item, context, self.shared.local())
             return
         if not quiet:
             yield from self._prompt(context, item)
         match item.tag:
             case "subdialog":
-                yield from self.items_of.call(context, item)
+                yield from self._call(context, item)
             case "object":
                 name = item.get("classid") or "object"
                 raise Thrown.at(item, "error.unsupported.objectname", name)
             case "transfer":
-                yield from self.items_of.calls.transfer(context, item)
+                yield from self.calls.transfer(context, item)
             case _:
                 yield from self.questions.ask(context, item)
+
+    # Subdialogs -----------------------------------------------------------------------
+
+    def _call(self, context: Context, item: Node) -> Flow:
+        """A subdialog, in a context of its own (2.3.4)."""
+        check_depth(context.depth, item)
+        params, nothing = self._params(context, item), self.engine.nothing
+        uri = self.content.word(item, "src", context, nothing)
+        names, method = item.get("namelist").split(), item.get("method")
+        values = self.content.sent(item, names, context, nothing)
+        request = UriRequest(method, values) if names or method == "post" else None
+        fetched, dialog = yield from find_dialog(self.shared, context, uri, item, request)
+        page = fetched or context.page
+        if fetched is not None:
+            yield from root_of(self.shared, fetched)  # its own, which is not the caller's
+        inner = Context(context.session, page, nothing, nothing, self.engine.named("dialog"))
+        inner.params, inner.depth = params, context.depth + 1
+        self.shared.context = inner
+        try:
+            yield from self.execute(inner, page, dialog)
+        except GoBack as back:
+            result = back
+        finally:
+            self.shared.context = context
+        if result.event:
+            thrown = Thrown(result.event, result.message, source(item))
+            thrown.worded = result.worded
+            raise thrown
+        self.items.fill(context, item, result.values)
+        yield from self.items.run_filled(context, [item])
+
+    def _params(self, context: Context, item: Node) -> Params:
+        """The params of a subdialog, by value (6.4)."""
+        nothing, given = self.engine.nothing, Params(self.engine.scope())
+        for param in item.all("param"):
+            name = param.get("name")
+            given.names[name] = None
+            if "expr" in param.attributes:
+                self.content.put(given.values, name, param, "expr", context, nothing)
+                self.engine.detach(given.values, name)
+            else:
+                self.engine.set(given.values, name, param.get("value"))
+        return given
 
     # Prompts --------------------------------------------------------------------------
 
@@ -293,27 +294,7 @@ class Machine:
             if isinstance(piece, str) or piece.tag != "prompt":
                 bare.append(piece)
                 continue
-            yield from self.content.run_all(bare, context, self.local())
+            yield from self.content.run_all(bare, context, self.shared.local())
             bare = []
-            self.content.utter(piece, context, self.local())
-        yield from self.content.run_all(bare, context, self.local())
-
-    # Waiting --------------------------------------------------------------------------
-
-    def play(self) -> Flow:
-        """Play what is queued and wait until it has been said."""
-        resume = yield from self.wait(self.queue.take())
-        if resume.event is not None:
-            raise thrown_outside(resume)
-
-    def wait(
-        self, commands: Sequence[Queued], open_to_answers: Sequence[Command] = ()
-    ) -> Generator[None, Resume, Resume]:
-        """Wait for the end of Commands; without a user the application ends (1.5.4)."""
-        if self.gone:
-            raise GoOut(self.gone)
-        return (yield from self.app.waits.wait(commands, open_to_answers))
-
-
-def _holds_enumerate(node: Node) -> bool:
-    return any(one.tag == "enumerate" or _holds_enumerate(one) for one in node.nodes)
+            self.content.utter(piece, context, self.shared.local())
+        yield from self.content.run_all(bare, context, self.shared.local())

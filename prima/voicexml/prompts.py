@@ -7,6 +7,7 @@ from urllib.parse import urldefrag
 
 from prima.interpreter.acts import arrange
 from prima.interpreter.places import source
+from prima.interpreter.transfers import Thrown
 from prima.interpreter.units import ARRANGING
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
@@ -15,10 +16,11 @@ from prima.script.evaluation import Scope
 from prima.voicexml.arranging import Arranged, longest_of, type_of
 from prima.voicexml.cues import MAX_NAME
 from prima.voicexml.document import FetchError, Page, of_web
-from prima.voicexml.elements import SILENT
+from prima.voicexml.elements import SILENT, numbered, words_of
 from prima.voicexml.evaluating import WORD, VoiceEvaluator
-from prima.voicexml.owner import MachineOwner
+from prima.voicexml.platform import NO_CHOICES
 from prima.voicexml.settings import answering, setting
+from prima.voicexml.shared import SharedState
 from prima.voicexml.speech import Speech, language_of, read_markup
 from prima.voicexml.state import Context
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
@@ -36,10 +38,8 @@ Maker = Callable[[Node], Command]
 class Speaker(VoiceEvaluator):
     """Reads prompts for their words."""
 
-    def __init__(self, owner: MachineOwner) -> None:
-        super().__init__(owner)
-        self.mark: str | None = None
-        """The last mark queued, for devices that report none (VoiceXML 2.1, 4)."""
+    def __init__(self, shared: SharedState) -> None:
+        super().__init__(shared)
         self._known: dict[str, int | None] = {}
 
     def prompt(self, node: Node, context: Context, local: Scope) -> None:
@@ -57,7 +57,7 @@ class Speaker(VoiceEvaluator):
 
         ``own`` is the prompt's attribute.
         """
-        self.owner.queue.note_bargein((own or setting(context, "bargein")) != "false")
+        self.shared.queue.note_bargein((own or setting(context, "bargein")) != "false")
 
     @staticmethod
     def lang(node: Node, context: Context) -> str:
@@ -81,7 +81,7 @@ class Speaker(VoiceEvaluator):
     def flush(self, speech: Speech, prompt: Node | None = None) -> None:
         """Queue what has been read, of a prompt or between prompts."""
         text, cues = speech.take()
-        self.owner.app.count_output(len(text), self.owner.document.node)
+        self.shared.app.count_output(len(text), self.shared.document.node)
         self.say(text, speech.lang, speech.place, cues, prompt)
 
     def say(
@@ -93,7 +93,7 @@ class Speaker(VoiceEvaluator):
         prompt: Node | None = None,
     ) -> None:
         """Queue speech, and how it may be answered."""
-        context, queue = self.owner.context, self.owner.queue
+        context, queue = self.shared.context, self.shared.queue
         if context is not None and (prompt is not None or text):
             queue.answering = answering(context, prompt)
         queue.say(text, lang, place, cues)
@@ -108,7 +108,7 @@ class Speaker(VoiceEvaluator):
         if isinstance(item, str):
             speech.parts.append(item)
             return
-        self.owner.app.count_step(item)
+        self.shared.app.count_step(item)
         lang = language_of(item, speech.lang)
         if item.namespace == PRIMA_NAMESPACE:
             self.flush(speech)
@@ -127,18 +127,37 @@ class Speaker(VoiceEvaluator):
         match node.tag:
             case "value":
                 text = self.text(node, context, local)
-                self.owner.app.count_output(len(text), node)
+                self.shared.app.count_output(len(text), node)
                 speech.parts.append(text)
             case "audio":
                 self.audio(node, context, local, speech)
             case "mark":
                 self.mark_here(node, context, local, speech)
             case "enumerate":
-                self.owner.enumeration(node, context, local, speech)
+                self.enumeration(node, context, local, speech)
             case "foreach":
                 self.read_each(node, context, local, speech)
             case _:
                 read_markup(node, speech, lambda: self.read_all(node, context, local, speech))
+
+    def enumeration(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
+        """Read an enumerate: each choice, in its own words (2.2.4)."""
+        owner = context.item if context.item is not None else context.form
+        choices = owner.all("choice", "option") if owner is not None else []
+        if owner is None or not choices or _holds_enumerate(node):
+            raise Thrown.at(node, *NO_CHOICES)
+        keys = numbered(owner)
+        if not node.content:
+            speech.parts.append("; ".join(filter(None, map(words_of, choices))))
+            return
+        for choice in choices:
+            self.engine.set(local, "_prompt", words_of(choice))
+            if keys[choice.index] and not choice.all("grammar"):
+                self.engine.set(local, "_dtmf", " ".join("".join(keys[choice.index].split())))
+            else:
+                self.engine.unset(local, "_dtmf")
+            self.read_all(node, context, local, speech)
+            speech.parts.append(" " if choice is not choices[-1] else "")
 
     def read_each(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
         """Read a ``foreach`` once for each element of its array."""
@@ -150,10 +169,10 @@ class Speaker(VoiceEvaluator):
     def mark_here(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
         """Set a mark that is reported when passed (VoiceXML 2.1, 4)."""
         name = self.word(node, "name", context, local)[:MAX_NAME]
-        self.owner.app.count_output(len(name), node)
+        self.shared.app.count_output(len(name), node)
         speech.parts.append(" ")
         if not speech.silent:
-            self.mark = name
+            self.shared.mark = name
             speech.parts += [Cue(0, "mark", name), " "]
 
     def audio(self, node: Node, context: Context, local: Scope, speech: Speech) -> None:
@@ -167,7 +186,7 @@ class Speaker(VoiceEvaluator):
             if uri is None:
                 return  # neither an undefined one nor its content is played
             name = str(uri)
-            ms = self.owner.items_of.recorder.lengths.get(name)
+            ms = self.shared.lengths.get(name)
             if ms is not None:  # a record's recording is played back as its words (2.3.6)
                 opened = speech.open(ms)
                 speech.parts += [Cue(0, "sound", name), f" {name} "]
@@ -200,7 +219,7 @@ class Speaker(VoiceEvaluator):
             if uri not in self._known:
                 if len(self._known) >= MAX_KNOWN:
                     self._known.clear()
-                self._known[uri] = self.owner.document.recording_ms(uri)
+                self._known[uri] = self.shared.document.recording_ms(uri)
         except (FetchError, ValueError):
             return None
         return self._known[uri]
@@ -210,18 +229,18 @@ class Speaker(VoiceEvaluator):
     def enqueue(self, node: Node, context: Context, local: Scope, lang: str = "") -> None:
         """Queue a Command of PRIMA's namespace, or several that are arranged."""
         if node.tag not in ARRANGING:
-            self.owner.queue.put(self.command(node, context, local, lang))
+            self.shared.queue.put(self.command(node, context, local, lang))
             return
         steps = self.steps([node], lambda one: self.command(one, context, local, lang))
         if steps:
-            self.owner.queue.put(Arranged(steps))
+            self.shared.queue.put(Arranged(steps))
 
     def steps(self, nodes: list[Node], make: Maker) -> list[Step]:
         """Commands and units of them, one after another but for branches (U3)."""
         made: list[tuple[Command | Group, tuple[int, ...]]] = arrange(
             nodes,
             lambda one: self.unit(one, make) if one.tag == "iu" else make(one),
-            self.owner.app.count_step,
+            self.shared.app.count_step,
         )
         return [Step(what, after) for what, after in made]
 
@@ -248,7 +267,11 @@ class Speaker(VoiceEvaluator):
         speech = Speech(language_of(node, lang or context.page.lang), source(node))
         self.read_all(node, context, local, speech)
         said, cues = speech.take()
-        self.owner.app.count_output(len(said), node)
+        self.shared.app.count_output(len(said), node)
         made = Command(name, args, said or None, lang=speech.lang)
         made.source = source(node)
-        return self.owner.queue.cued(made, cues) if said else made
+        return self.shared.queue.cued(made, cues) if said else made
+
+
+def _holds_enumerate(node: Node) -> bool:
+    return any(one.tag == "enumerate" or _holds_enumerate(one) for one in node.nodes)

@@ -8,36 +8,27 @@ from prima.interpreter.transfers import Thrown
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import BEEP, Command, Cue, Data, Event, Json
+from prima.voicexml.inputs import Inputs
+from prima.voicexml.items import Items
 from prima.voicexml.matching import KEYS
-from prima.voicexml.owner import MachineOwner
 from prima.voicexml.platform import unrecorded
 from prima.voicexml.results import marked_and_recorded
 from prima.voicexml.settings import setting
+from prima.voicexml.shared import SharedState
 from prima.voicexml.state import Context, Flow, TakenUtterance
 
 BEEP_MS = 500
 END_KEYS = "#*"
 """Keys that may end a spoken recording; others would be taken for its last word."""
-MS_A_LETTER = 100
-"""The assumed duration of a letter if the device does not report how long it heard."""
-MAX_KNOWN = 1000
-"""Maximum number of recordings recognised when played back."""
 
 
 class RecordItems:
     """Fills the record items of one application."""
 
-    def __init__(self, owner: MachineOwner) -> None:
-        self.owner = owner
-        self.lengths: dict[str, int] = {}
-        """The lengths of recordings (ms), by their URIs."""
-
-    def keep(self, said: str, ms: float | None = None) -> int:
-        """Keep an utterance as a recording; gives its duration (ms), a guess if not reported."""
-        while len(self.lengths) >= MAX_KNOWN:
-            self.lengths.pop(next(iter(self.lengths)))
-        self.lengths[said] = MS_A_LETTER * len(said) if ms is None else int(ms)
-        return self.lengths[said]
+    def __init__(self, shared: SharedState, inputs: Inputs, items: Items) -> None:
+        self.shared = shared
+        self.inputs = inputs
+        self.items = items
 
     def check(self, context: Context, item: Node) -> None:
         """Refuse a format that cannot be recorded, of a record item or of ``recordutterance``.
@@ -73,13 +64,12 @@ class RecordItems:
         If only keys are pressed, nothing has been recorded: its variable stays as it is, and
         the keys are found in ``application.lastresult$``.
         """
-        items = self.owner.items_of
-        listens = "dtmf" in self.owner.inputs.modes(context)
+        listens = "dtmf" in self.inputs.modes(context)
         said, key = divided(heard, listens and item.get("dtmfterm") != "false")
         if key and not heard.recognised:
             heard = replace(heard, utterance=key, interpretation=key, confidence=1.0, mode="dtmf")
         if key or heard.recognised:
-            items.remember(context, heard)
+            self.items.remember(context, heard)
         if not said:
             return
         more: dict[str, Json] = {"maxtime": bool(data.get("maxtime"))}
@@ -88,7 +78,7 @@ class RecordItems:
         if not key and heard.recognised:
             more |= {"utterance": heard.utterance, "confidence": heard.confidence}
         self._fill(context, item, said, data, more)
-        yield from items.run_filled(context, [item])
+        yield from self.items.run_filled(context, [item])
 
     def broken_off(self, context: Context, item: Node, event: Event) -> None:
         """Keep what was recorded until the user hung up."""
@@ -99,10 +89,10 @@ class RecordItems:
     def _fill(
         self, context: Context, item: Node, said: str, data: Data, more: dict[str, Json]
     ) -> None:
-        ms = self.keep(said, data.get("duration"))
+        ms = self.shared.keep_recording(said, data.get("duration"))
         size = data.get("size", len(said.encode()))
         shadow = {"duration": ms, "size": size, **more}
-        self.owner.items_of.fill(context, item, said, shadow)
+        self.items.fill(context, item, said, shadow)
 
 
 def divided(heard: TakenUtterance, ends: bool) -> tuple[str, str]:

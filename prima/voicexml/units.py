@@ -8,14 +8,19 @@ unit, once the form goes on.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from prima.interpreter.transfers import GoOut, Thrown, Transfer
 from prima.interpreter.units import Reach
 from prima.markup.tree import Node
 from prima.script.evaluation import ScriptError
 from prima.voicexml.arranging import longest_of
+from prima.voicexml.choosing import ItemSelection
 from prima.voicexml.document import Page
 from prima.voicexml.elements import HANDLERS, ITEMS
-from prima.voicexml.owner import MachineOwner
+from prima.voicexml.events import Events
+from prima.voicexml.items import Items
+from prima.voicexml.shared import SharedState
 from prima.voicexml.sketch import Sketch
 from prima.voicexml.state import Context, Flow, HungUp, UnitOver
 
@@ -23,8 +28,19 @@ from prima.voicexml.state import Context, Flow, HungUp, UnitOver
 class Units:
     """Opens and closes the units of one application."""
 
-    def __init__(self, owner: MachineOwner) -> None:
-        self.owner = owner
+    def __init__(
+        self,
+        shared: SharedState,
+        items: Items,
+        selection: ItemSelection,
+        events: Events,
+        visit_all: Callable[[Context, str], Flow],
+    ) -> None:
+        self.shared = shared
+        self._items = items
+        self._selection = selection
+        self._events = events
+        self._visit_all = visit_all
         self._reached: dict[int, tuple[Node, Page | None, Reach]] = {}
         """The content that each unit reaches, with its document's application root at that time."""
 
@@ -33,32 +49,32 @@ class Units:
 
         ``wanted`` is the name of the item in it to begin with, if a goto names one.
         """
-        if self.owner.queue:
-            yield from self.owner.play()  # earlier speech is not part of it
-        app, items = self.owner.app, self.owner.items_of
-        app.waits.open_unit(self._reach(context, unit), longest_of(unit), unit)
+        if self.shared.queue:
+            yield from self.shared.play()  # earlier speech is not part of it
+        self.shared.waits.open_unit(self._reach(context, unit), longest_of(unit), unit)
         context.unit = unit
-        items.mark(context, unit)
+        self._items.mark(context, unit)
         try:
-            yield from self.owner.visit_all(context, wanted)
-            items.mark(context, unit)  # a clear in it makes its items be visited again, not itself
+            yield from self._visit_all(context, wanted)
+            # A clear in it makes its items be visited again, not itself.
+            self._items.mark(context, unit)
         except Transfer as way:
             if not (isinstance(way, GoOut) and way.failed):
                 yield from self._say_rest()
             raise
         finally:
             context.item, context.unit = unit, None
-            app.waits.close_unit()
+            self.shared.waits.close_unit()
 
     def _say_rest(self) -> Flow:
         """Play what is queued before a unit is left: it belongs to the unit (O3), uninterrupted."""
-        if not self.owner.queue or self.owner.gone:
+        if not self.shared.queue or self.shared.gone:
             return
-        self.owner.app.waits.leaving = True
+        self.shared.waits.leaving = True
         try:
-            yield from self.owner.play()
+            yield from self.shared.play()
         finally:
-            self.owner.app.waits.leaving = False
+            self.shared.waits.leaving = False
 
     def left_by(self, context: Context, error: Thrown | ScriptError) -> bool:
         """Whether an event leaves the unit that the dialog is in before it is handled."""
@@ -69,14 +85,14 @@ class Units:
             return False
         if not isinstance(error, HungUp) and self._takes(context, unit, error):
             return False
-        if any(not self.owner.selection.guarded(context, one) for one in unit.all(*ITEMS)):
+        if any(not self._selection.guarded(context, one) for one in unit.all(*ITEMS)):
             self._unmark(context, unit)
         return True
 
     def _takes(self, context: Context, unit: Node, thrown: Thrown) -> bool:
         """Whether a handler in a unit takes an event, or may take it."""
         try:
-            handler = self.owner.events.taker(context, thrown)
+            handler = self._events.taker(context, thrown)
         except Thrown:
             return True
         inside = [unit, *([context.item] if context.item is not None else [])]
@@ -86,7 +102,7 @@ class Units:
         """Let the form visit a unit again."""
         context.visited.discard(unit.index)
         if unit.get("name"):
-            self.owner.engine.unset(context.dialog, unit.get("name"))
+            self.shared.engine.unset(context.dialog, unit.get("name"))
 
     def _reach(self, context: Context, unit: Node) -> Reach:
         """The Commands that may be requested in a unit, by all handlers that it can reach."""
