@@ -11,7 +11,6 @@ from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json, Transferred
 from prima.voicexml.content import Content
-from prima.voicexml.fetching import gathered
 from prima.voicexml.inputs import Inputs
 from prima.voicexml.items import Items
 from prima.voicexml.platform import uncalled
@@ -74,7 +73,7 @@ class Calls:
         if (refused := uncalled(call.to)) is not None:
             raise Thrown.at(item, *refused)
         if call.listens:
-            yield from gathered(self.shared, lambda: self.inputs.activate(context))
+            yield from self.inputs.activate(context)
         self.items.forget_results(context)
         yield from self._announce(context, call)
         outcome = NEAR_END

@@ -6,7 +6,7 @@ takes time: the application asks, and is in its transitioning state until the an
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from urllib.parse import urldefrag
 
 from prima.errors import DocumentError
@@ -19,7 +19,7 @@ from prima.voicexml.document import FetchError, Page, broken, of_web
 from prima.voicexml.reading import read_page
 from prima.voicexml.settings import setting
 from prima.voicexml.shared import SharedState
-from prima.voicexml.state import Flow, Resume, UriRequest
+from prima.voicexml.state import Resume, UriRequest
 
 STEP_BYTES = 200
 """How many bytes of a resource count as one step."""
@@ -155,7 +155,7 @@ def _file(shared: SharedState, uri: str, node: Node) -> bytes:
 
 
 def held(shared: SharedState, uri: str, node: Node) -> bytes:
-    """The bytes of a grammar: of a file, or fetched by :func:`gathered`.
+    """The bytes of a grammar: of a file, or fetched when it was found missing.
 
     Raises:
         Thrown: ``error.badfetch``; :class:`Missing` if it has not been fetched yet.
@@ -180,17 +180,6 @@ def refusal(shared: SharedState, by: str, uri: str, node: Node) -> str:
     if _held_as(shared, by, node) not in shared.hosted:
         return ""
     return "" if shared.document.outside(_held_as(shared, uri, node)) else HOSTS_ONLY
-
-
-def gathered(shared: SharedState, use: Callable[[], object]) -> Flow:
-    """Do what needs grammars, once all their resources have been fetched."""
-    while True:
-        try:
-            use()
-            return
-        except Missing as missing:
-            shared.app.count_step(missing.node)
-            shared.resources[missing.uri] = yield from fetch(shared, missing.uri, missing.node)
 
 
 def decoded(data: bytes, charset: str) -> str:

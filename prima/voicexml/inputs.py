@@ -15,11 +15,11 @@ from prima.script.budget import Budget
 from prima.voicexml.content import Content
 from prima.voicexml.document import Page
 from prima.voicexml.elements import numbered, words_of
-from prima.voicexml.fetching import held, refusal
+from prima.voicexml.fetching import Missing, fetch, held, refusal
 from prima.voicexml.matching import GrammarMatch, Listener, keys, listener, phrase, ways
 from prima.voicexml.settings import setting
 from prima.voicexml.shared import SharedState
-from prima.voicexml.state import Context, TakenUtterance
+from prima.voicexml.state import Context, Flow, TakenUtterance
 
 UNIVERSALS = {"help": "help", "cancel": "cancel", "exit": "exit"}
 """Commands that listen everywhere once the property ``universals`` names them (6.3.6)."""
@@ -60,14 +60,22 @@ class Inputs:
 
     # Hearing ------------------------------------------------------------------------
 
-    def activate(self, context: Context) -> None:
+    def activate(self, context: Context) -> Flow:
         """Load all grammars that listen now; they stay active until the wait ends (3.1.4).
+
+        Resources that they lack are fetched first.
 
         Raises:
             Thrown: for a grammar that cannot be used; ``error.semantic`` where none listens.
         """
-        self._active, self._words = list(self.active(context)), None
-        item = context.item
+        shared, active, item = self.shared, None, context.item
+        while active is None:
+            try:
+                active = list(self.active(context))
+            except Missing as missing:
+                shared.app.count_step(missing.node)
+                shared.resources[missing.uri] = yield from fetch(shared, missing.uri, missing.node)
+        self._active, self._words = active, None
         if not self._active and item is not None and item.tag not in DEAF:
             raise Thrown.at(item, "error.semantic", "no grammar listens here")
 

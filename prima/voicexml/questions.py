@@ -10,7 +10,6 @@ from prima.language.values import milliseconds
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Data, Json
 from prima.messages import Heard as Spoken
-from prima.voicexml.fetching import gathered
 from prima.voicexml.inputs import Inputs
 from prima.voicexml.items import Items
 from prima.voicexml.recorder import RecordItems
@@ -34,7 +33,7 @@ class Questions:
         """Play what is queued, then wait for the user (C4)."""
         shared = self.shared
         # A grammar that cannot be used is reported before anything is said.
-        yield from gathered(shared, lambda: self.inputs.activate(context))
+        yield from self.inputs.activate(context)
         self.recorder.check(context, item)
         asked = shared.queue.take_last_said()
         question = self._question(context, item, asked)
