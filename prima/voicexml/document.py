@@ -11,7 +11,7 @@ from prima.errors import DocumentError, Problem
 from prima.markup.tree import Node
 from prima.markup.uris import join
 from prima.voicexml.checks import check_code
-from prima.voicexml.recordings import HEADER_BYTES, length_ms
+from prima.voicexml.recordings import length_ms
 from prima.voicexml.site import Site
 
 REMOTE = frozenset(["http", "https", "service"])
@@ -91,8 +91,8 @@ class VoiceDocument:
     page: Page
     fetch: Fetch
     node: Node
-    glance: Glance | None = None
-    """Where recordings are looked up; without it they are fetched."""
+    glance: Glance
+    """Looks up recordings, and whether there is a file."""
 
     @property
     def folder(self) -> str:
@@ -109,10 +109,7 @@ class VoiceDocument:
 
     def _has(self, name: str) -> bool:
         try:
-            if self.glance is None:
-                self.fetch(name)
-            else:
-                self.glance(name)
+            self.glance(name)
         except FetchError:
             return False
         return True
@@ -123,10 +120,7 @@ class VoiceDocument:
         Raises:
             FetchError: it is not there.
         """
-        if self.glance is not None:
-            return length_ms(*self.glance(name))
-        whole = self.fetch(name)
-        return length_ms(whole[:HEADER_BYTES], len(whole))
+        return length_ms(*self.glance(name))
 
     def seen(self, name: str) -> str:
         """A name in the folder as messages show it: relative to the first document's folder."""

@@ -52,11 +52,8 @@ def _without_namespace(root: Node) -> list[Problem]:
     """
     if root.tag != "vxml" or root.namespace:
         return []
-    stack = [root]
-    while stack:
-        node = stack.pop()
+    for node in root.walk():
         node.namespace = node.namespace or NAMESPACE
-        stack.extend(node.nodes)
     if root.get("version", VERSIONS[0]).strip() not in VERSIONS:
         return []  # VoiceXML 1.0 has no namespace
     hint = with_namespace(f'Write <vxml xmlns="{NAMESPACE}">.', root, NAMESPACE)

@@ -31,7 +31,11 @@ def voice(text: str, name: str = "app", kind: str = "ea", **files: str) -> Voice
             raise FetchError("there is no such file")
         return held[uri].encode()
 
-    return VoiceDocument(name, kind, f"{name}.vxml", page, fetch, page.root)
+    def glance(uri: str) -> tuple[bytes, int]:
+        whole = fetch(uri)
+        return whole, len(whole)
+
+    return VoiceDocument(name, kind, f"{name}.vxml", page, fetch, page.root, glance)
 
 
 class Call(Bench):
