@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from prima.grammar.answers import Answers
 from prima.language.commands import LATE_MS
-from prima.messages import Command, Ended, Event, Heard, Hypothesis, Json, Order
+from prima.messages import Command, Ended, Event, Heard, Json, Order
 from prima.scheduler.behavior import WAITING, Behavior
 from prima.session.applications import AnyApp
 from prima.session.wiring import Wiring
@@ -57,18 +57,17 @@ class Hearing:
             question = None
         late = self._late_for(value, question)
         self._record(value, late)
-        said = value.hypotheses
         if late is not None:
-            self._answer_late(late, value, said)
+            self._answer_late(late, value)
             return
         taken = self._answer(question, value) if question is not None else self._breaks_in(value)
-        if taken or self._follow_links(value.text, said, question):
+        if taken or self._follow_links(value, question):
             return
         if question is None:
             self.unheard = value.text
         elif question.silent:  # U5: of a unit that has been left
             self._conclude(question.id, {"outcome": "nomatch", "utterance": value.text})
-        elif not self._offer(value, said):
+        elif not self._offer(value):
             self._refuse(question, value)
 
     def _record(self, value: Heard, late: AnyApp | None) -> None:
@@ -87,21 +86,19 @@ class Hearing:
 
     def _answer(self, question: Behavior, value: Heard) -> bool:
         """Whether the user's words end the question: as an answer, a link, or by their length."""
-        asked, said = question.command, value.hypotheses
+        asked = question.command
         if value.data.get("toolong") and asked is not None and asked.cued("longest"):
             self._conclude(question.id, {"outcome": "maxspeechtimeout", "utterance": value.text})
             return True
         if question.run is None or question.silent:  # nobody would learn how it has ended
             return False
-        app, answer, link = self.wiring.apps.named[question.app.name], None, None
-        with self.wiring.apps.contained(app):
-            answer = app.answer(question.run.number, said)
-        if answer is not None:
+        app, link = self.wiring.apps.named[question.app.name], None
+        if (filled := self._filled(question, value)) is not None:
             self.refused.pop(app.name, None)
-            self._conclude(question.id, value.filled(answer))
+            self._conclude(question.id, filled)
             return True
         with self.wiring.apps.contained(app):
-            link = app.listens_to(said)
+            link = app.listens_to(value.hypotheses)
         if app.over:  # what it listens for took too long, and its question has ended with it
             self.wiring.act(app)
             return True
@@ -110,6 +107,15 @@ class Hearing:
         # As in VoiceXML, a link ends the input of the field that is being visited.
         self._conclude(question.id, {"outcome": link.event, "utterance": value.text})
         return True
+
+    def _filled(self, question: Behavior, value: Heard) -> dict[str, Json] | None:
+        """How a question ends by the user's words as its answer; None if it does not take them."""
+        answer = None
+        if question.run is not None:
+            app = self.wiring.apps.named[question.app.name]
+            with self.wiring.apps.contained(app):
+                answer = app.answer(question.run.number, value.hypotheses)
+        return value.filled(answer) if answer is not None else None
 
     def _refuse(self, question: Behavior, value: Heard) -> None:
         """Words that nobody has taken are the question's nomatch; with a hotword it listens on."""
@@ -142,7 +148,7 @@ class Hearing:
             return None
         return None if question is not None and question.app.name == name else app
 
-    def _answer_late(self, app: AnyApp, value: Heard, said: list[Hypothesis]) -> None:
+    def _answer_late(self, app: AnyApp, value: Heard) -> None:
         """X10: to its next question, else to its links, else as its event ``late``.
 
         If the application has ended meanwhile, the words are dropped.
@@ -150,16 +156,13 @@ class Hearing:
         if app.over:
             self.unheard = value.text
             return
-        question, answer, link = self.wiring.mediator.coming_question(app.name), None, None
-        if question is not None and question.run is not None:
-            with self.wiring.apps.contained(app):
-                answer = app.answer(question.run.number, said)
-        if question is not None and answer is not None:
-            self._answer_early(question, value.filled(answer), "X10")
+        question, link = self.wiring.mediator.coming_question(app.name), None
+        if question is not None and (filled := self._filled(question, value)) is not None:
+            self._answer_early(question, filled, "X10")
             return
         data: dict[str, Json] = {"text": value.text}
         with self.wiring.apps.contained(app):
-            link = app.listens_to(said)
+            link = app.listens_to(value.hypotheses)
             if link is not None:
                 app.follow(
                     self.wiring.recorder.now, link, Event("speech", self.wiring.serial, data)
@@ -170,18 +173,16 @@ class Hearing:
                 self.unheard = value.text
         self.wiring.act(app)
 
-    def _offer(self, value: Heard, said: list[Hypothesis]) -> bool:
+    def _offer(self, value: Heard) -> bool:
         """X8: an answer that a question refuses may answer the first one of a waiting reaction."""
-        question, answer = self.wiring.mediator.offered(), None
-        if question is None or question.run is None:
+        question = self.wiring.mediator.offered()
+        if question is None:
             return False
-        app = self.wiring.apps.named[question.app.name]
-        with self.wiring.apps.contained(app):
-            answer = app.answer(question.run.number, said)
-        if answer is not None:
-            self._answer_early(question, value.filled(answer), "X8")
-        self.wiring.act(app)
-        return answer is not None
+        filled = self._filled(question, value)
+        if filled is not None:
+            self._answer_early(question, filled, "X8")
+        self.wiring.act(self.wiring.apps.named[question.app.name])
+        return filled is not None
 
     def _answer_early(self, question: Behavior, data: dict[str, Json], rule: str) -> None:
         """X8, X10: a question is answered before or while it is asked."""
@@ -217,15 +218,15 @@ class Hearing:
                 return True
         return False
 
-    def _follow_links(self, text: str, said: list[Hypothesis], question: Behavior | None) -> bool:
+    def _follow_links(self, value: Heard, question: Behavior | None) -> bool:
         """V1: try the links; not those of another application's EA if it was said to a question."""
         taken = False
-        event = Event("speech", self.wiring.serial, {"text": text})
+        event = Event("speech", self.wiring.serial, {"text": value.text})
         for app in self.wiring.in_order():
             if question is not None and app.kind != "fa" and app.name != question.app.name:
                 continue
             with self.wiring.apps.contained(app):
-                link = app.listens_to(said)
+                link = app.listens_to(value.hypotheses)
                 if link is not None:
                     taken = True
                     app.follow(self.wiring.recorder.now, link, event)
