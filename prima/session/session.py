@@ -104,10 +104,7 @@ class Session:
         if self._wiring.turns:
             self._wiring.tell_turns()
         for value in self._in_order(inbound) if len(inbound) > 1 else inbound:
-            if type(value) is Occurred:  # by far the most common
-                self._occurred(value)
-            else:
-                self._take(value)
+            self._take(value)
         mediator = self.mediator
         if self._wiring.due or mediator.memory.behaviors or mediator.holds:
             self._time_out(now)
@@ -172,6 +169,8 @@ class Session:
 
     def _take(self, value: Inbound) -> None:
         match value:
+            case Occurred():
+                self._occurred(value)
             case Ended():
                 self.hearing.lapse(value)
                 self.mediator.ended(value.behavior, value.goal, value.data)
@@ -197,7 +196,7 @@ class Session:
                 self._load(value)
             case ApplicationUnloaded():
                 self._unload(value)
-            case Delayed() | Presence() | Narrated():
+            case _:
                 self._note(value)
 
     def _note(self, value: Delayed | Presence | Narrated) -> None:
@@ -269,17 +268,11 @@ class Session:
             self.mediator.sees_user(name == "human.found")
         elif value.actor == "user":
             self.mediator.senses_user()
-        apps = self._apps.alive if app is None else self._apps.alone(app)
-        if apps is None or len(apps) > 1:
-            apps = self._wiring.in_order()
         event = Event(name, serial, data, True, shared=app is None)
-        for one in apps:
-            try:
+        for one in self._wiring.in_order() if app is None else self._apps.alone(app):
+            with self._apps.contained(one):
                 one.event(self.recorder.now, event)
-            except Exception as error:  # as _contained does, but faster
-                self._apps.fail(one, error)
-            if one.actions or self._wiring.due or one.deadline is not None:
-                self._wiring.act(one)
+            self._wiring.act(one)
 
     def listening(self) -> list[Answers]:
         """The utterances possible now: answers to a listening or interruptible question, links (V1)."""
