@@ -48,7 +48,7 @@ class SimulatedDevices:
         self.services = Services(scenario.services, web, scenario.seed)
         self.telephone = Telephone(scenario.transfers, scenario.seed)
         self._native = {doc.id for doc in cast.documents if isinstance(doc, Document)}
-        """Applications in PRIMA's own language."""
+        """Applications in PRIMA's own language; the others are given the user's call."""
         self._watched = watches(cast.documents)
         if self._watched:
             self.robot.body.sensors.told_of = sensors_watched(cast.documents)
@@ -116,20 +116,15 @@ class SimulatedDevices:
         self._stirred = True
         inbound: list[Inbound] = []
         while self._loads and self._loads[0][0] <= now:
-            inbound.append(self._loaded(self._loads.pop(0)[2]))
-        for one in crossed:
-            inbound.append(
-                self._loaded(one.app, one.place) if isinstance(one, ApplicationLoaded) else one
-            )
-        inbound += self.robot.collect(now)
+            inbound.append(ApplicationLoaded(self._loads.pop(0)[2]))
+        inbound += [*crossed, *self.robot.collect(now)]
         said = self.people.collect(now)
         self._said = bool(said)
-        for value in said:
-            inbound.append(
-                self._loaded(value.app) if isinstance(value, ApplicationLoaded) else value
-            )
-        inbound += self.services.collect(now)
-        return inbound + self.telephone.collect(now)
+        inbound += [*said, *self.services.collect(now), *self.telephone.collect(now)]
+        for value in inbound:
+            if isinstance(value, ApplicationLoaded) and value.app not in self._native:
+                value.connection = self.cast.scenario.connection
+        return inbound
 
     def order(self, now: int, order: Order) -> None:
         """Pass an order to its recipient."""
@@ -152,11 +147,6 @@ class SimulatedDevices:
         """Let the first person do something: see :meth:`People.play`."""
         self._stirred = True
         return self.people.play(time, doings)
-
-    def _loaded(self, name: str, place: str = "") -> ApplicationLoaded:
-        """An application starts; a VoiceXML application is given the user's call."""
-        native = name in self._native
-        return ApplicationLoaded(name, place, {} if native else self.cast.scenario.connection)
 
 
 def _world(cast: Cast) -> World:
