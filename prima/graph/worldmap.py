@@ -12,7 +12,8 @@ from prima.graph.svg import box, circle, fit, line, measure, picture, text
 from prima.transcript.colours import NOBODY, colours
 
 if TYPE_CHECKING:
-    from prima.sim.map import Map, Point
+    from prima.sim.map import Map
+    from prima.sim.plan import Point
 
 MARGIN, TOP = 24.0, 54.0
 WIDE, HIGH = 900.0, 640.0

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from math import inf
+from math import dist, inf
 
 from prima.messages import ApplicationLoaded, ApplicationUnloaded
-from prima.sim.map import EPSILON, Area, Point, distance
+from prima.sim.map import EPSILON, Area
+from prima.sim.plan import Point
 
 THRESHOLD = 0.5
 """The robot has left an area when it is this far (m) outside."""
@@ -39,7 +40,7 @@ class Entrances:
         """Load the applications of areas that the robot has entered; unload those it has left."""
         if self._compared is not None:
             at, far = self._compared
-            if distance(at, here) < far:
+            if dist(at, here) < far:
                 return []
         before, now, nearest = self._inside, set[str](), inf
         for area, _ in self.offers:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import copysign, radians
+from math import copysign, dist, radians
 
 from prima.devices.profile import Motion, Profile
 from prima.messages import Command, Json
 from prima.scheduler.robot_state import difference
-from prima.sim.map import Point, distance
-from prima.sim.plan import off_line
+from prima.sim.plan import Point, off_line
 from prima.sim.routes import Routes
 from prima.sim.world import STANDING, STEP_MS, World, bearing
 
@@ -79,7 +78,7 @@ class Locomotion:
         Otherwise it would cut a corner after a pause, and that corner's event would be lost.
         """
         at, left = self._stopped.get(to, (self.world.position, []))
-        if left and distance(at, self.world.position) <= ARRIVED:
+        if left and dist(at, self.world.position) <= ARRIVED:
             return list(left)
         return self.routes.route(self.world, to)
 
@@ -93,7 +92,7 @@ class Locomotion:
         before = plan.last or (position, heading)
         # A wall pushes the body back by up to a step of its drive, again and again.
         pushed = 2 * self.profile.speed * STEP_MS / 1000
-        moved = distance(position, before[0]) > max(0.02, pushed)
+        moved = dist(position, before[0]) > max(0.02, pushed)
         turned = abs(difference(heading, before[1])) > 2.0
         if plan.last is None or moved or turned:
             plan.last, plan.stuck = (position, heading), 0
@@ -191,12 +190,12 @@ class Locomotion:
     def _round(self, person: Point, heading: float, goal: Point) -> tuple[float, float] | None:
         """The direction and speed that pass a person, or None if they are not in the way."""
         world, profile = self.world, self.profile
-        gap = distance(world.position, person)
-        if gap > distance(world.position, goal):
+        gap = dist(world.position, person)
+        if gap > dist(world.position, goal):
             return None
         toward = bearing(world.position, person)
         aside = difference(heading, toward)
-        if abs(aside) > PASSING or distance(person, goal) < 0.05:
+        if abs(aside) > PASSING or dist(person, goal) < 0.05:
             return None
         if gap < profile.radius + TOO_NEAR and abs(difference(toward, world.heading)) < 60.0:
             return toward + (PASSING if aside >= 0 else -PASSING), 0.0
@@ -209,7 +208,7 @@ class Locomotion:
             return True
         while path:
             point, last = path[0], len(path) == 1
-            left = distance(world.position, point)
+            left = dist(world.position, point)
             if left > (ARRIVED if last else PASSED):
                 self._toward(point, left if last else 10.0)
                 return False
@@ -233,7 +232,7 @@ class Locomotion:
             self._rotate(90.0)
             return False
         seen = plan.sought == world.person
-        left = distance(world.position, plan.sought) - (keep if seen else 0.0)
+        left = dist(world.position, plan.sought) - (keep if seen else 0.0)
         if seen and left <= 0.05:
             off = difference(bearing(world.position, plan.sought), world.heading)
             if abs(off) > 5.0:
@@ -288,6 +287,6 @@ class Locomotion:
         if person is None:
             return {}
         return {
-            "distance": round(distance(position, person), 2),
+            "distance": round(dist(position, person), 2),
             "angle": round(difference(bearing(position, person), self.world.heading), 1),
         }

@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import dist
 
 from prima.devices.reading import RENAME, Reader
 from prima.errors import Problem
 from prima.markup.tree import Node
-from prima.sim.plan import FloorPlan
+from prima.sim.plan import FloorPlan, Point
 from prima.sim.vocabulary.world import WORLD
 
-Point = tuple[float, float]
 MAX_AREAS = 256
 """Maximum number of areas of a world."""
 EPSILON = 1e-6
 """A distance (m) too small to matter."""
-
-distance: Callable[[Point, Point], float] = dist
-"""Metres between two points."""
 
 
 @dataclass(slots=True)

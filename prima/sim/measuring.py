@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from math import dist
+
 from prima.messages import Json
-from prima.sim.map import distance
 from prima.sim.world import STANDING, World
 
 ITS_OWN = frozenset({"human", "position", "moving"})
@@ -38,7 +39,7 @@ class OwnSensors:
             person = world.person
             now["human.visible"] = world.sees_person()
             now["human.distance"] = (
-                None if person is None else round(distance(world.position, person), 1)
+                None if person is None else round(dist(world.position, person), 1)
             )
         if "position" in looked_at:
             pose = world.pose()

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
+from math import dist
 
 from prima.devices import voice
 from prima.messages import Heard, Inbound, Json, Narrated, Occurred, Record
 from prima.sim.happenings import Doing, When
 from prima.sim.incidents import happen
-from prima.sim.map import distance
 from prima.sim.robot import Robot
 from prima.sim.scenario import Scenario
 from prima.sim.triggers import PHASES, fires
@@ -277,7 +277,7 @@ class People:
         if at is None or goal is None:
             return []
         self.world.walk(who, goal, speed)
-        script.time = now + round(distance(at, goal) / speed * 1000) + 1
+        script.time = now + round(dist(at, goal) / speed * 1000) + 1
         whither = f"to the {values['to']}" if values["to"] else f"to {goal[0]:g}, {goal[1]:g}"
         return self._does(who, f"walks {whither}")
 
@@ -287,7 +287,7 @@ class People:
         if person is None:
             return
         here = world.position
-        gap = distance(here, person)
+        gap = dist(here, person)
         if gap > keep + 0.2:
             share = keep / gap
             goal = (

@@ -10,6 +10,7 @@ from prima.errors.diagnoses.structure import DUPLICATE_ELEMENT
 from prima.markup.tree import Node
 
 Point = tuple[float, float]
+"""Metres east and north."""
 Segment = tuple[Point, Point]
 MOST = 300_000
 """The maximum number of pairs of lines to compare; larger maps are not checked."""

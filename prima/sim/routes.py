@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from math import inf
+from math import dist, inf
 from typing import TYPE_CHECKING
 
-from prima.sim.map import Map, Point, distance
+from prima.sim.map import Map
+from prima.sim.plan import Point
 from prima.sim.world import World
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ class Routes:
         graph: Graph[str] = Graph()
         graph.add_nodes_from(self._map.places)
         for a, b in self._map.ways:
-            length = distance(self._map.places[a], self._map.places[b])
+            length = dist(self._map.places[a], self._map.places[b])
             graph.add_edge(a, b, weight=max(length, SHORTEST))
         return graph
 
@@ -72,7 +73,7 @@ class Routes:
         found, shortest = None, inf
         for name, (length, _) in sorted(self._leads[to].items()):
             place = self._map.places[name]
-            whole = distance(here, place) + length
+            whole = dist(here, place) + length
             if whole < shortest - 1e-9 and free(here, place):
                 found, shortest = name, whole
         return found

@@ -23,7 +23,7 @@ from prima.sim.happenings import (
     read_transfer,
     read_when,
 )
-from prima.sim.map import Point
+from prima.sim.plan import Point
 from prima.sim.user import User
 from prima.sim.vocabulary.scenario import SCENARIO
 

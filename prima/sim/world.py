@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan2, cos, degrees, inf, pi, radians, sin
+from math import atan2, cos, degrees, dist, inf, pi, radians, sin
 
 import pymunk
 
 from prima.devices.goals import At
 from prima.devices.profile import Profile
 from prima.scheduler.robot_state import difference
-from prima.sim.map import EPSILON, Corner, Map, Point, distance
-from prima.sim.plan import crosses, off_line
+from prima.sim.map import EPSILON, Corner, Map
+from prima.sim.plan import Point, crosses, off_line
 
 STEP_MS = 50
 """The longest step of physics."""
@@ -141,10 +141,10 @@ class World:
         near = [
             one.at
             for one in self.people.values()
-            if one.at is not None and distance(here, one.at) <= reach
+            if one.at is not None and dist(here, one.at) <= reach
         ]
         if len(near) > 1:
-            near.sort(key=lambda at: distance(here, at))
+            near.sort(key=lambda at: dist(here, at))
         return near
 
     # Seeing --------------------------------------------------------------------
@@ -152,7 +152,7 @@ class World:
     def clear(self, a: Point, b: Point) -> bool:
         """Whether no wall is between two points; a line that begins in a wall may leave it."""
         at, free = self._free
-        if distance(at, a) < free and distance(at, b) < free:
+        if dist(at, a) < free and dist(at, b) < free:
             return True
         found = self._space.segment_query_first(a, b, 0.0, WALLS)
         if found is not None and found.alpha == 0.0:
@@ -207,7 +207,7 @@ class World:
         if self._look(self.person):
             return True
         seen = [
-            (distance(self.position, one.at), name)
+            (dist(self.position, one.at), name)
             for name, one in self.people.items()
             if one.at is not None and self._look(one.at)
         ]
@@ -217,7 +217,7 @@ class World:
 
     def _look(self, person: Point | None) -> bool:
         position = self.position
-        if person is None or distance(position, person) > self.profile.camera_range:
+        if person is None or dist(position, person) > self.profile.camera_range:
             return False
         off = difference(bearing(position, person), self.heading + self.pan)
         return abs(off) <= self.profile.camera_angle / 2 and self.clear(position, person)
@@ -262,7 +262,7 @@ class World:
             x, y = self.position
             there = x + along * seconds, y + across * seconds
             self.turn_body(self._angle + turning * seconds)
-        self.travelled += distance(self.position, there)
+        self.travelled += dist(self.position, there)
         self.position = there
 
     def _wall_ahead(self, forward: float, seconds: float) -> bool:
@@ -286,7 +286,7 @@ class World:
 
     @staticmethod
     def _step_person(somebody: Somebody, at: Point, goal: Point, seconds: float) -> None:
-        left, step = distance(at, goal), somebody.speed * seconds
+        left, step = dist(at, goal), somebody.speed * seconds
         if left <= step:
             somebody.at, somebody.goal = goal, None
         else:
@@ -312,4 +312,4 @@ class World:
 
     def _beyond(self, corner: Corner) -> float:
         """How far (m) the robot is beyond the radius of a corner; less than 0 within."""
-        return distance(self.position, corner.at) - corner.radius
+        return dist(self.position, corner.at) - corner.radius

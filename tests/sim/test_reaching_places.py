@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import accumulate
+from math import dist
 from typing import cast
 
 from hypothesis import given, settings
@@ -12,7 +13,8 @@ from prima.devices.profile import Profile
 from prima.markup.tree import Node
 from prima.messages import ApplicationLoaded
 from prima.sim.entrances import THRESHOLD, Entrances
-from prima.sim.map import Area, Corner, Map, Point, distance
+from prima.sim.map import Area, Corner, Map
+from prima.sim.plan import Point
 from prima.sim.world import World
 
 metres = st.floats(-4, 4, allow_nan=False).map(lambda one: round(one, 2))
@@ -57,7 +59,7 @@ def test_corners_are_told_when_the_robot_comes_near(
     world = World(Map("m", corners=corners), Profile("r"), (0.0, 0.0), 0.0)
 
     def near() -> set[str]:
-        return {one.id for one in corners if distance(world.position, one.at) <= one.radius}
+        return {one.id for one in corners if dist(world.position, one.at) <= one.radius}
 
     before = near()
     for number, world.drive in enumerate(drives, 1):
