@@ -49,7 +49,7 @@ def go_on(broken: CutJournal, settings: LiveSettings) -> Visit:
     journal = Journal(broken.path, settings.sync, broken.kept)
     record_beside(loop, journal, settings)
     clock = Clock(settings.speed, broken.time)
-    return Visit(loop, clock, settings, head, loaded, journal, missed, True, before=broken.records)
+    return Visit(loop, clock, settings, head, loaded, journal, missed, before=broken.records)
 
 
 def _scenario(

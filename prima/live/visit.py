@@ -77,11 +77,10 @@ class Visit:
     journal: Journal | None = None
     missed: list[Record] = field(default_factory=list)
     """Records missing from the last instant of a broken journal; empty for a new run."""
-    resumed: bool = False
     stopped: bool = False
     """Whether it was ended from outside."""
     before: list[Record] = field(default_factory=list)
-    """The records that the journal of a resumed run already has, times in s."""
+    """The records that the journal of a resumed run already has, times in s; empty for a new run."""
     _stop: Callable[[], object] = lambda: None
 
     def stop(self) -> None:
@@ -157,10 +156,10 @@ class Visit:
                 return
             try:
                 # Not before: once there is a journal, a signal has to end the run as it should.
-                self.loop.journal(self.missed if self.resumed else [self.head])
+                self.loop.journal(self.missed if self.before else [self.head])
                 await shell.run()
             finally:
-                if not (shell.opened or self.resumed) and self.journal is not None:
+                if not (shell.opened or self.before) and self.journal is not None:
                     self.journal.discard()  # nothing has happened: the command can be repeated
 
 
