@@ -26,6 +26,7 @@ from prima.language.values import BadValue, milliseconds, read_value
 from prima.markup.spans import similar_attribute
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Step
+from prima.voicexml.elements import ITEMS
 from prima.voicexml.vocabulary import COMMANDS, HANDLERS, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
 UNIT = "iu-items"
@@ -68,6 +69,11 @@ def parts_of(dialog: Node) -> list[Node]:
         if is_unit(node):
             found += node.nodes
     return found
+
+
+def items_in(form: Node) -> list[Node]:
+    """The items of a form: each unit around items before those that it holds."""
+    return [one for one in parts_of(form) if one.tag in ITEMS or is_unit(one)]
 
 
 def holds(item: Node, name: str) -> bool:

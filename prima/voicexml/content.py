@@ -174,10 +174,6 @@ class Content(Speaker):
             self.engine.unset(context.dialog, item.get("name"))
         context.counters = context.counters.without(item.index)
 
-    def named(self, node: Node, context: Context, local: Scope) -> dict[str, Json]:
-        """The variables of a namelist as plain data."""
-        return self.values(node, node.get("namelist").split(), context, local)
-
     def values(
         self, node: Node, names: list[str], context: Context, local: Scope
     ) -> dict[str, Json]:
@@ -315,7 +311,7 @@ class Content(Speaker):
 
     def report(self, node: Node, context: Context, local: Scope) -> None:
         """Write what exit and disconnect return to the transcript."""
-        found: Json = self.named(node, context, local) or None
+        found: Json = self.values(node, node.get("namelist").split(), context, local) or None
         if "expr" in node.attributes:
             found = self.value(node, "expr", context, local)
         if found is not None:

@@ -88,18 +88,15 @@ class Items:
         """Give items their values (3.1.6): an item's own grammar one, a form's perhaps many."""
         owner, found = heard.owner, heard.interpretation
         if owner.tag not in ("form", "menu"):
-            self._give(context, owner, slot_of(found, _slot(owner), found), heard)
+            self.fill(context, owner, slot_of(found, _slot(owner), found), shadow(heard))
             return [owner]
         filled = []
         for item in form_items(context):
             value = slot_of(found, _slot(item), ABSENT) if item.tag in INPUTS else ABSENT
             if value is not ABSENT:
-                self._give(context, item, value, heard)
+                self.fill(context, item, value, shadow(heard))
                 filled.append(item)
         return filled
-
-    def _give(self, context: Context, item: Node, value: Json, heard: TakenUtterance) -> None:
-        self.fill(context, item, value, shadow(heard))
 
     def fill(
         self, context: Context, item: Node, value: Any, shadow: dict[str, Json] | None = None

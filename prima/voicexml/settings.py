@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from prima.interpreter.vocabulary.questions import USUAL_CONFIDENCE
 from prima.markup.tree import Node
-from prima.voicexml.arranging import is_unit, parts_of
+from prima.voicexml.arranging import items_in
 from prima.voicexml.checks.attributes import fits
-from prima.voicexml.elements import ITEMS
 from prima.voicexml.state import Context
 from prima.voicexml.vocabulary import PROPERTIES
 
@@ -30,7 +29,7 @@ def form_items(context: Context) -> list[Node]:
         return []
     if form.tag == "menu":
         return [form]
-    return [one for one in parts_of(form) if one.tag in ITEMS or is_unit(one)]
+    return items_in(form)
 
 
 def setting(context: Context, name: str) -> str:

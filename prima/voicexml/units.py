@@ -86,7 +86,9 @@ class Units:
         if not isinstance(error, HungUp) and self._takes(context, unit, error):
             return False
         if any(not self._selection.guarded(context, one) for one in unit.all(*ITEMS)):
-            self._unmark(context, unit)
+            context.visited.discard(unit.index)  # the form visits it again
+            if unit.get("name"):
+                self.shared.engine.unset(context.dialog, unit.get("name"))
         return True
 
     def _takes(self, context: Context, unit: Node, thrown: Thrown) -> bool:
@@ -97,12 +99,6 @@ class Units:
             return True
         inside = [unit, *([context.item] if context.item is not None else [])]
         return any(handler is one for node in inside for one in node.all(*HANDLERS))
-
-    def _unmark(self, context: Context, unit: Node) -> None:
-        """Let the form visit a unit again."""
-        context.visited.discard(unit.index)
-        if unit.get("name"):
-            self.shared.engine.unset(context.dialog, unit.get("name"))
 
     def _reach(self, context: Context, unit: Node) -> Reach:
         """The Commands that may be requested in a unit, by all handlers that it can reach."""

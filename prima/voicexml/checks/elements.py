@@ -12,9 +12,9 @@ from prima.errors.diagnoses.structure import AFTER_ELSE, DUPLICATE_NAME, UNKNOWN
 from prima.errors.diagnoses.values import EXCLUSIVE
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
-from prima.voicexml.arranging import is_unit, parts_of
+from prima.voicexml.arranging import items_in
 from prima.voicexml.checks.attributes import missing
-from prima.voicexml.elements import INPUTS, ITEMS
+from prima.voicexml.elements import INPUTS
 
 NUMBERED = EXCLUSIVE.says("This menu numbers its choices itself: a choice may add *, # or 0 alone.")
 OF_ITEM = UNKNOWN_ATTRIBUTE.says(
@@ -40,8 +40,7 @@ def _check_item(item: Node) -> Iterator[Problem]:
 
 
 def _check_form(form: Node) -> Iterator[Problem]:
-    items = [one for one in parts_of(form) if one.tag in ITEMS or is_unit(one)]
-    named = [node for node in items if node.get("name")]
+    named = [node for node in items_in(form) if node.get("name")]
     yield from _check_names(named)
     yield from _check_filled(form, {node.get("name") for node in named if node.tag in INPUTS})
 

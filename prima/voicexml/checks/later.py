@@ -18,7 +18,7 @@ from prima.markup.uris import parted
 from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.shared import IsolatedSyntax, syntax
-from prima.voicexml.arranging import UNIT, is_unit, parts_of
+from prima.voicexml.arranging import UNIT, items_in, parts_of
 from prima.voicexml.checks.attributes import bad_value, fits, instead_of
 from prima.voicexml.checks.failing import check_failing
 from prima.voicexml.checks.guests import command_problems
@@ -121,8 +121,7 @@ def _targets(node: Node, dialogs: set[str]) -> Iterator[Problem]:
 
 def _items(dialog: Node, dialogs: set[str]) -> Iterator[Problem]:
     """Form items to which a dialog's content goes, and that it lacks (5.3.7)."""
-    items = [one for one in parts_of(dialog) if one.tag in ITEMS or is_unit(one)]
-    names = {one.get("name") for one in items} - {""}
+    names = {one.get("name") for one in items_in(dialog)} - {""}
     for node in dialog.walk():
         name = node.get("nextitem")
         if node.key != "goto" or "nextitem" not in node.attributes or name in names:
