@@ -65,7 +65,7 @@ class NaoqiDriver(MappedDriver):
         url = _url(self.settings.address)
         try:
             async with asyncio.timeout(self.settings.open / 1000 * SHARE):
-                await self._answer(lambda: session.connect(url, _async=True))
+                await self._future(session.connect(url, _async=True))
                 for service, method in methods:
                     await self._find(service, method)
                 await self._subscribe()
@@ -96,12 +96,11 @@ class NaoqiDriver(MappedDriver):
 
     async def _find(self, name: str, method: str) -> None:
         if name not in self._services:
-            session = self._session
+            asked = self._session.service(name, _async=True)
             try:
-                found = await self._answer(lambda: session.service(name, _async=True))
+                self._services[name] = await self._future(asked)
             except Refused:
                 raise Unreachable(f"the robot has no service {name}.") from None
-            self._services[name] = found
         if method and not hasattr(self._services[name], method):
             raise Unreachable(f"the service {name} has no method {method}.")
 
@@ -112,7 +111,7 @@ class NaoqiDriver(MappedDriver):
         await self._find(MEMORY, "subscriber")
         memory = self._services[MEMORY]
         for senses in self.settings.senses:
-            subscriber = await self._answer(partial(memory.subscriber, senses.by, _async=True))
+            subscriber = await self._future(memory.subscriber(senses.by, _async=True))
             take = partial(self.sense_from_thread, senses)
             link = await asyncio.to_thread(subscriber.signal.connect, take)
             self._links.append((subscriber, link))
@@ -131,8 +130,7 @@ class NaoqiDriver(MappedDriver):
         """Ask the service directory for its services."""
         if self.gone:
             raise Unreachable("there is no connection")
-        session = self._session
-        await self._answer(lambda: session.services(_async=True))
+        await self._future(self._session.services(_async=True))
 
     async def leave(self) -> None:
         """End the connection, if there is one."""
@@ -227,9 +225,6 @@ class NaoqiDriver(MappedDriver):
         service, _, method = name.partition(".")
         asked = getattr(self._services[service], method)(*arguments, _async=True)
         return self._future(asked), asked.cancel
-
-    async def _answer(self, ask: Callable[[], Any]) -> Any:
-        return await self._future(ask())
 
     def _future(self, asked: Any) -> asyncio.Future[Any]:
         """The future of a call, for this loop."""
