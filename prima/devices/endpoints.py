@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
-from prima.devices.reading import RENAME, Reader
+from prima.devices.reading import RENAME, Reader, part_of
 from prima.devices.vocabulary.services import SERVICES
 from prima.errors import DocumentError, Place
 from prima.markup.tree import Node
@@ -118,7 +118,7 @@ class Endpoint:
     def _filled(self, answer: Json) -> dict[str, Json]:
         made = {}
         for slot in self.slots:
-            value = _part(answer, slot.field)
+            value = part_of(answer, slot.field)
             if value is not None:
                 made[slot.name] = slot.checked(value)
             elif slot.required:
@@ -151,18 +151,6 @@ class Endpoint:
             "required": [slot.name for slot in self.slots if slot.required],
             "additionalProperties": False,
         }
-
-
-def _part(answer: Json, path: str) -> Json:
-    """The part of an answer at a dotted path; None if there is none."""
-    for name in path.split("."):
-        if isinstance(answer, list) and name.isdecimal() and int(name) < len(answer):
-            answer = answer[int(name)]
-        elif isinstance(answer, dict):
-            answer = answer.get(name)
-        else:
-            return None
-    return answer
 
 
 def _written(template: str, params: Data) -> str:

@@ -12,6 +12,7 @@ from prima.markup.reader import read_tree
 from prima.markup.spans import nearest_allowed, value_span
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute, Vocabulary
+from prima.messages import Json
 
 if TYPE_CHECKING:
     from prima.language.distributions import Quantile
@@ -30,6 +31,19 @@ def unknown_name(node: Node, name: str, words: Collection[str], wrong: str) -> l
     hint = nearest(word, words, *value_span(node, name))
     message = f'{wrong} "{word}".'
     return [Problem(node.attribute_place(name), "error", "no-such-name", message, hint)]
+
+
+def part_of(value: Json, path: str) -> Json:
+    """The part of a message or an answer at a dotted path; None if there is none.
+
+    A number is an index into a list, from 0.
+    """
+    for name in path.split("."):
+        if isinstance(value, list) and name.isdecimal() and int(name) < len(value):
+            value = value[int(name)]
+        else:
+            value = value.get(name) if isinstance(value, dict) else None
+    return value
 
 
 class Reader:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from prima.devices.reading import Reader
+from prima.devices.reading import Reader, part_of
 from prima.errors import Place, UsageError, one_of
 from prima.language.values import BadValue, read_value
 from prima.markup.tree import Node
@@ -115,16 +115,8 @@ class Senses:
     place: Place
 
     def value(self, message: Json) -> Json:
-        """The relevant part of a message; None if the message lacks it.
-
-        A number in its field is an index into a list, from 0.
-        """
-        for name in self.field.split(".") if self.field else ():
-            if isinstance(message, list) and name.isdecimal():
-                message = dict(enumerate(message)).get(int(name))
-            else:
-                message = message.get(name) if isinstance(message, dict) else None
-        return message
+        """The relevant part of a message; None if the message lacks it."""
+        return part_of(message, self.field) if self.field else message
 
     def holds(self, value: Json) -> bool:
         """Whether an event is raised at a value."""
