@@ -107,6 +107,14 @@ class Reader:
         if node.get(name):
             self.problems += unknown_name(node, name, words, f"There is no {what}")
 
+    def once(self, node: Node, seen: set[str], what: str = "") -> str:
+        """An element's id, which is a problem if it is among those seen before."""
+        name = node.get("id")
+        if name in seen:
+            self.problem(node, "duplicate-id", f'{what}"{name}" is there twice.', "id", RENAME)
+        seen.update({name} - {""})
+        return name
+
     def only(self, tag: str) -> Node | None:
         """The root's child of a tag that may occur once; another one is a problem."""
         found = self.root.all(tag)

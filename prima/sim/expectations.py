@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from prima.devices.reading import RENAME, Reader
+from prima.devices.reading import Reader
 from prima.errors import Hint, suggestion
 from prima.grammar.text import fold
 from prima.language.values import BadValue, read_value
@@ -55,9 +55,7 @@ def read_expectations(reader: Reader, root: Node) -> list[Expectation]:
 
     def read(node: Node, previous: Expectation | None, ordered: bool) -> Expectation:
         made = _expectation(reader, node, previous, ordered, ids)
-        if made.id in ids:
-            reader.problem(node, "duplicate-id", f'"{made.id}" is there twice.', "id", RENAME)
-        ids.update({made.id} - {""})
+        reader.once(node, ids)
         found.append(made)
         return made
 

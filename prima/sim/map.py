@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from prima.devices.reading import RENAME, Reader
+from prima.devices.reading import Reader
 from prima.errors import Problem
 from prima.markup.tree import Node
 from prima.sim.plan import FloorPlan, Point
@@ -92,18 +92,10 @@ def read_world(file: str, data: bytes) -> Map:
     return world
 
 
-def _named_once(reader: Reader, node: Node, seen: set[str]) -> str:
-    name = node.get("id")
-    if name in seen:
-        reader.problem(node, "duplicate-id", f'"{name}" is there twice.', "id", RENAME)
-    seen.add(name)
-    return name
-
-
 def _read_points(reader: Reader, world: Map, seen: set[str]) -> None:
     """Places, things and corners."""
     for node in reader.root.all("place", "thing", "corner"):
-        name = _named_once(reader, node, seen)
+        name = reader.once(node, seen)
         at = (reader.get(node, "x") or 0.0, reader.get(node, "y") or 0.0)
         if node.tag == "place":
             world.places[name] = at
@@ -137,7 +129,7 @@ def _read_areas(reader: Reader, world: Map, seen: set[str]) -> None:
         message = f"There are more than {MAX_AREAS} areas."
         reader.problem(node, "too-large", message, "", "Divide the world.")
     for node in areas[:MAX_AREAS]:
-        name = _named_once(reader, node, seen)
+        name = reader.once(node, seen)
         x1, y1, x2, y2 = _ends(reader, node)
         low, high = (min(x1, x2), min(y1, y2)), (max(x1, x2), max(y1, y2))
         title, offered = node.get("title", name), node.get("application")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from prima.devices.reading import RENAME, Reader
+from prima.devices.reading import Reader
 from prima.errors import DocumentError, Problem, has_errors
 from prima.language.commands import PATIENCE_MS
 from prima.markup.tree import Node
@@ -127,7 +127,9 @@ def look_at_scenario(file: str, data: bytes) -> tuple[Scenario, list[Problem]]:
     robot, connection = reader.only("robot"), reader.only("connection")
     applications = _applications(draws)
     persons = _persons(draws)
-    _check_ids(reader)
+    seen: set[str] = set()
+    for node in root.all("when", "answer"):
+        reader.once(node, seen, "The id ")
     until, patience = reader.get(root, "until"), reader.get(root, "patience")
     seed = reader.get(root, "seed")
     scenario = Scenario(
@@ -167,31 +169,15 @@ def _applications(draws: Draws) -> list[tuple[str, Amount, Node]]:
     return [(node.get("src"), draws.amount(node, "start"), node) for node in named]
 
 
-def _check_ids(reader: Reader) -> None:
-    """Note duplicate names of happenings and answers."""
-    seen: set[str] = set()
-    for node in reader.root.all("when", "answer"):
-        name = node.get("id")
-        if name and name in seen:
-            message = f'The id "{name}" is there twice.'
-            reader.problem(node, "duplicate-id", message, "id", RENAME)
-        seen.add(name)
-
-
 def _persons(draws: Draws) -> list[Person]:
     """The people present; one without a place if the scenario names nobody."""
     reader = draws.reader
     nodes, seen = reader.root.all("person"), set[str]()
     for node in nodes:
         check_where(reader, node, "at", "a place to be at", needed=False)
-        name = node.get("id")
-        if len(nodes) > 1 and not name:
+        if not reader.once(node, seen, "The id ") and len(nodes) > 1:
             message = "Of several persons each needs an id."
             reader.problem(node, "missing-attribute", message, "", 'Write id="...".')
-        elif name in seen:
-            message = f'The id "{name}" is there twice.'
-            reader.problem(node, "duplicate-id", message, "id", RENAME)
-        seen.add(name)
     persons = [
         Person(
             node.get("id") or "user",
