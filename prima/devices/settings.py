@@ -43,7 +43,7 @@ class DriverLimits:
 
 FOREVER = DriverLimits()
 USUAL = DriverLimits(accept=5_000, cancel=5_000)
-"""The defaults. Whether a driver has to report while a goal goes on depends on the driver."""
+"""The defaults. A driver need not report while a goal goes on."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -64,8 +64,8 @@ def limits_of(drivers: Sequence[Driver], goal: Begin, rates: dict[str, float]) -
     if goal.kind == SAY and said.progress is None:
         command = goal.command
         lasts = voice.duration(command.text or "", command.lang, rates)
-        said = DriverLimits(said.accept, 2 * lasts + SPEECH_MS, said.cancel)
-    return said.over(driver.progress)
+        return DriverLimits(said.accept, 2 * lasts + SPEECH_MS, said.cancel)
+    return said
 
 
 def uncarried(

@@ -27,7 +27,7 @@ from prima.devices.goals import (
     Stopped,
 )
 from prima.devices.profile import Profile
-from prima.devices.settings import Does, DriverLimits, DriverSettings, Pose
+from prima.devices.settings import Does, DriverSettings, Pose
 from prima.errors import RunError, UsageError
 from prima.grammar.answers import Answers
 from prima.live.deadlines import Escaped, guarded
@@ -119,8 +119,6 @@ class Driver:
     """Whether Commands need a ``does`` to be carried out."""
     own: ClassVar[frozenset[str]] = frozenset()
     """The Commands (and ``say``, ``listen``) that it carries out without one."""
-    progress: ClassVar[DriverLimits] = DriverLimits()
-    """The driver's own time limits, used where the document gives none."""
 
     def __init__(self, settings: DriverSettings, profile: Profile, site: Map) -> None:
         self.settings = settings
