@@ -54,14 +54,22 @@ class Applications:
 
     def _made(self, document: AnyDocument) -> AnyApp:
         """The interpreter of a document; if its engine is unavailable, it ends at its start."""
-
-        def make() -> AnyApp:
-            return interpreter_of(document, self._arguments, self._began, self._engines)
-
         try:
-            return make()
+            return self._interpreter(document)
         except EngineLost as error:
-            return self._engines.without(error, make)
+            return self._engines.without(error, lambda: self._interpreter(document))
+
+    def _interpreter(self, document: AnyDocument) -> AnyApp:
+        """The interpreter of a document in either language."""
+        app: AnyApp
+        if isinstance(document, Document):
+            app = Interpreter(document, self._arguments, self._engines)
+        else:
+            from prima.voicexml.application import VoiceInterpreter
+
+            app = VoiceInterpreter(document, self._engines)
+        app.began = self._began
+        return app
 
     def close(self) -> None:
         """End the processes in which code was evaluated."""
@@ -120,18 +128,3 @@ class Applications:
         if not isinstance(error, EngineLost | GoOut):
             self.defects.append(error)
         app.fail(error)
-
-
-def interpreter_of(
-    document: AnyDocument, arguments: Mapping[str, frozenset[str]], began: int, engines: Engines
-) -> AnyApp:
-    """The interpreter of a document in either language, for a run that began at ``date``."""
-    app: AnyApp
-    if isinstance(document, Document):
-        app = Interpreter(document, arguments, engines)
-    else:
-        from prima.voicexml.application import VoiceInterpreter
-
-        app = VoiceInterpreter(document, engines)
-    app.began = began
-    return app
