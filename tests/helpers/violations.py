@@ -6,6 +6,25 @@ from collections.abc import Iterable
 
 from prima.invariants.checker import Checker
 from prima.invariants.model import GONE, Record
+from prima.invariants.table import contradictions, row
+
+ADDED = {
+    "dance": row("locomotion neck arm"),
+    "spin": row("locomotion"),
+    "waltz": row("locomotion localization"),
+    "point-by-laser": row("laser"),
+}
+"""Commands added by the robots of generated runs, and by shipped ones."""
+
+
+def wrong_additions(records: Iterable[Record]) -> list[str]:
+    """Requests of added Commands that differ from those that robots add (for invariant 15)."""
+    return [
+        f"invariant 15: {one['behavior']} is {one['command']}, but {text}"
+        for one in records
+        if one["phase"] == "request" and one["command"] in ADDED
+        for text in contradictions(one, ADDED)
+    ]
 
 
 def unfinished(records: Iterable[Record], policy: str = "prima") -> list[str]:

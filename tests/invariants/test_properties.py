@@ -23,7 +23,7 @@ from tests import ROOT
 from tests.helpers.generated.plays import Play, perform, plays, without_hints
 from tests.helpers.generated.scripts import Ask, Open, Script, drive, scripts
 from tests.helpers.generated.world import APPS, Run, World, baselines, extended
-from tests.helpers.violations import numbers, unfinished
+from tests.helpers.violations import numbers, unfinished, wrong_additions
 
 EXAMPLES = int(os.environ.get("PRIMA_EXAMPLES", "300"))
 SCENARIOS = sorted(ROOT.glob("documents/scenarios/**/*.xml"))
@@ -42,7 +42,7 @@ def examples(percent: int) -> settings:
 
 def violations(run: Run, policy: str = "prima") -> list[str]:
     """What a run violates."""
-    return check(run.records, policy, APPS) + run.problems
+    return check(run.records, policy, APPS) + wrong_additions(run.records) + run.problems
 
 
 @given(plays())
@@ -194,6 +194,7 @@ def test_the_scenarios_keep_the_invariants(path: Path, policy: str) -> None:
     loaded = load_scenario(path)
     records = rehearse(loaded, policy).records
     found = check(records, policy, calling=callers(loaded.cast.documents))
+    found += wrong_additions(records)
     expected = {1} if policy == "none" else set()
     assert numbers(found) <= expected, found
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from prima import api
 from prima.invariants import check
+from prima.invariants.table import contradictions
 from tests.helpers.rehearsing import rehearse
 from tests.helpers.voice import vxml
 
@@ -55,3 +56,10 @@ def test_an_end_of_which_records_do_not_show_whether_it_is_heard(tmp_path: Path)
     (words,) = [one for one in made.records if one.get("event") == "speech"]
     assert words["rule"] == "X10", made.table()
     assert check(made.records, "prima+x10") == []
+
+
+def test_commands_that_a_robot_adds_have_the_devices_that_it_says() -> None:
+    """A robot may add a Command named as that of another robot."""
+    request = {"command": "dance", "devices": ["arm"], "priority": "high"}
+    assert list(contradictions(request)) == []
+    assert list(contradictions({**request, "command": "speak"})) == ["it occupies arm"]
