@@ -16,6 +16,8 @@ class PromptQueue:
         self.pieces: list[Queued] = []
         self.answering: Mapping[str, str] | None = None
         """How the last prompt queued may be answered: its timeout and bargein count (4.1.7)."""
+        self._prompt: Command | None = None
+        """The last prompt queued."""
         self._ahead: tuple[Cue, ...] = ()
         """Pauses and marks not yet followed by speech."""
 
@@ -23,7 +25,8 @@ class PromptQueue:
         return bool(self.pieces)
 
     def put(self, piece: Queued) -> None:
-        """Add Commands of the robot."""
+        """Add Commands of the robot, which are always carried out: nobody may break in on them."""
+        piece.hook = False
         self.pieces.append(piece)
 
     def say(self, text: str, lang: str, place: str, cues: tuple[Cue, ...]) -> None:
@@ -33,7 +36,9 @@ class PromptQueue:
         will be said next.
         """
         if text:
-            self.put(self.cued(Command("speak", text=text, lang=lang, source=place), cues))
+            prompt = self.cued(Command("speak", text=text, lang=lang, source=place), cues)
+            self.pieces.append(prompt)
+            self._prompt = prompt
             return
         last = self._said_last()
         if last is None and len(self._ahead) < MAX_CUES:
@@ -48,13 +53,10 @@ class PromptQueue:
         return command
 
     def note_bargein(self, allowed: bool) -> None:
-        """Note whether the user may break in on what has just been queued (4.1.5, 6.3.2).
-
-        A Command is not a prompt: it is always carried out.
-        """
-        for command in self.pieces:
-            if command.hook is None:
-                command.hook = command.type == "speak" and allowed
+        """Note whether the user may break in on what has just been queued (4.1.5, 6.3.2)."""
+        for piece in self.pieces:
+            if piece.hook is None:
+                piece.hook = allowed
 
     def take(self) -> list[Queued]:
         """Take all of it, to be played."""
@@ -64,10 +66,11 @@ class PromptQueue:
     # For a question ----------------------------------------------------------------------
 
     def take_last_said(self) -> Command | None:
-        """Take the last speech, if nothing else follows it."""
+        """Take the last prompt, if nothing else follows it."""
         last = self._said_last()
-        if last is not None:
-            self.pieces.pop()
+        if last is None or last is not self._prompt:  # a Command of the robot may speak, too
+            return None
+        self.pieces.pop()
         return last
 
     def question_cues(self, asked: Command | None) -> tuple[Cue, ...]:

@@ -25,6 +25,22 @@ def test_bargein_of_a_prompt_comes_before_the_property(
     assert question(call)["bargein"] is expected
 
 
+@pytest.mark.parametrize("prompt", ["", "<prompt>Here it is.</prompt>"])
+@pytest.mark.parametrize("behind", ["", "<prompt><break time='1s'/></prompt>"])
+def test_what_a_command_says_before_a_question_is_no_question(prompt: str, behind: str) -> None:
+    call = Call(
+        vxml(
+            f"""<form xmlns:p="urn:prima:dialogue:1"><block>{prompt}<p:speak>A long story.</p:speak>{behind}</block>
+            <field name="f"><option>red</option><filled><log expr="f"/></filled></field></form>"""
+        )
+    )
+    call.hears("red")
+    assert call.logs() == []
+    call.play()
+    call.hears("red")
+    assert call.logs() == ["red"]
+
+
 PROPERTY = '<property name="bargein" value="{}"/>'
 
 
