@@ -127,11 +127,11 @@ class Evaluator:
         return self.named(defined, own, node)
 
     def declare(self, act: Declare, scope: Scope, fiber: Fiber) -> None:
-        """Declare a variable in a scope (VoiceXML 5.3.1)."""
-        if act.expr is None:
-            self.engine.unset(scope, act.name)
-        else:
+        """Declare a variable in a scope; declared again without a value, it keeps its own (5.3.1)."""
+        if act.expr is not None:
             self.by_engine(self.engine.assign, act.expr, fiber, scope, act.name)
+        elif not self.engine.defined(scope, act.name):
+            self.engine.unset(scope, act.name)
 
     def script(self, act: Script, scope: Scope, fiber: Fiber) -> None:
         """Run a script; what it declares belongs to the scope."""

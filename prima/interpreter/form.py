@@ -85,7 +85,7 @@ class Algorithm:
                 return
             self.owner.count_step(item.node, FORM_STEPS)
             frame.item = item
-            yield from self._catching(frame, fiber, item, self._visit(frame, fiber, item))
+            yield from self._catching(frame, fiber, item, item, self._visit(frame, fiber, item))
             frame.item = unit
 
     def _selected(self, frame: Frame, fiber: Fiber, items: Sequence[Item]) -> Item | Thrown | None:
@@ -123,8 +123,13 @@ class Algorithm:
             case Unit():
                 yield from self._span(frame, fiber, item)
 
-    def _catching(self, frame: Frame, fiber: Fiber, item: Item | None, content: Content) -> Content:
-        """Run content; an event thrown in it is handled in the same fiber."""
+    def _catching(
+        self, frame: Frame, fiber: Fiber, item: Item, scope: Item | None, content: Content
+    ) -> Content:
+        """Run content of a visit to an item; an event thrown in it is handled in the same fiber.
+
+        ``scope`` is the item whose handlers count, None for the form's alone.
+        """
         try:
             yield from content
             return
@@ -133,7 +138,7 @@ class Algorithm:
             if thrown.sought:  # in a subdialog: its caller's handlers are not in force there
                 raise
             frame.silent = item.name if isinstance(item, Field) else ""
-        yield from self.owner.handling.handle_thrown(frame, fiber, item, thrown, 0)
+        yield from self.owner.handling.handle_thrown(frame, fiber, scope, thrown, 0)
 
     def _collect(self, frame: Frame, fiber: Fiber, field: Field) -> Content:
         """Ask, and take the answer: the Command Q&A (C4)."""
@@ -191,6 +196,13 @@ class Algorithm:
             fiber.local = None
             self.owner.note(filled.node)
             yield from self.owner.execute.run(filled.content, fiber)
+        own_scope = self._process_form(frame, fiber, item, is_defined)
+        yield from self._catching(frame, fiber, item, None, own_scope)
+
+    def _process_form(
+        self, frame: Frame, fiber: Fiber, item: Item, is_defined: Callable[[str], bool]
+    ) -> Content:
+        """Run the form's own filled elements; what they throw is the form's (5.2.4)."""
         inputs = [
             one.name for one in all_items(frame.form.items) if isinstance(one, Field | Subdialog)
         ]

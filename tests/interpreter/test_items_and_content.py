@@ -153,6 +153,21 @@ def test_conditions_loops_and_scopes() -> None:
     assert bench.logs() == ["first 1", "second 4", "last 2", "11 13 object", "undefined"]
 
 
+@pytest.mark.parametrize("script", ["", "<script>function f() { return 1; }</script>"])
+def test_a_variable_declared_again_keeps_its_value(script: str) -> None:
+    """VoiceXML 2.0, 5.3.1: without a value, that of the variable is left."""
+    bench = Bench(
+        f"""{script}<form id="a"><block>
+          <var name="x" expr="3"/><var name="x"/><log expr="x"/>
+          <foreach item="i" array="[1, 2]"><var name="q"/><log expr="String(q)"/>
+            <assign name="q" expr="i"/></foreach>
+          <var name="valueOf"/><log expr="String(valueOf)"/>
+        </block>
+        <block><var name="x"/><log expr="String(x)"/></block></form>"""
+    )
+    assert bench.logs() == ["3", "undefined", "1", "undefined", "undefined"]
+
+
 def test_what_content_declares_is_unknown_to_the_items_after_it() -> None:
     bench = Bench(
         """<form id="a">

@@ -248,6 +248,25 @@ def test_form_level_filled_waits_for_all_or_any() -> None:
     assert bench.logs() == ["any", "any", "all 3"]
 
 
+def test_what_a_form_level_filled_throws_is_handled_and_counted_by_the_form() -> None:
+    """As in VoiceXML 2.0, 5.2.2 and 5.2.4: the field has been left."""
+    bench = Bench(
+        """<form id="a">
+          <field name="x"><prompt>Tea?</prompt><option>yes</option><option>no</option>
+            <on event="odd"><log>field</log></on>
+            <filled><if cond="x == 'no'"><throw event="odd"/></if></filled></field>
+          <filled><throw event="odd"/></filled>
+          <filled><log>not reached</log></filled>
+          <on event="odd" count="2"><log>form 2</log></on>
+          <on event="odd"><log>form 1</log><clear namelist="x"/><reprompt/></on>
+          <block><log expr="'then ' + x"/><clear/></block>
+        </form>"""
+    )
+    for answer in ("yes", "yes", "no"):
+        bench.hears(answer)
+    assert bench.logs() == ["form 1", "form 2", "then yes", "field", "then no"]
+
+
 @pytest.mark.parametrize(
     "grammar",
     [
