@@ -41,6 +41,11 @@ TWO_RULES = DUPLICATE_ID.says('There are two rules "{name}".', "Rename one.")
 NO_RULE = NO_SUCH_RULE.says('There is no rule "{name}".')
 TEXT_BESIDE_RULES = STRAY_TEXT.says("This grammar has rules; its own text has no effect.")
 EMPTY_GRAMMAR = EMPTY_ANSWER.says("This grammar has no words.", "Write what it takes.")
+NO_ITEMS = EMPTY_ANSWER.says(
+    "This <one-of> has no items: nothing matches it.",
+    "Write an <item> for each answer.",
+    "warning",
+)
 BARRED = BAD_TOKEN.says(
     'There is no "|" here: the words before and behind it are one answer.',
     "Write <one-of> with an <item> for each answer.",
@@ -136,6 +141,8 @@ class DialogueGrammarReader:
         match node.tag:
             case "one-of":
                 items = [self._expansion(child) for child in node.all("item")]
+                if not items:
+                    self.note(NO_ITEMS, node)
                 return choice(items, [None] * len(items))
             case "item":
                 return self._expansion(node)

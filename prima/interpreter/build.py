@@ -18,6 +18,7 @@ from prima.interpreter.diagnoses import (
     NO_FORM_AT_ALL,
     NO_GRAMMAR,
     NO_ITEM,
+    OF_FORMS,
     SECOND_GRAMMAR,
     TAKES_NO_ANSWER,
     TWO_FORMS,
@@ -239,7 +240,7 @@ class Builder(ContentBuilder):
             *self.item(node, parts),
             prompts=prompts,
             answers=answers,
-            filled=self.filleds(parts),
+            filled=self.filleds(parts, node),
             lang=self.lang,
             connect=node.get("channel") == "connect",
         )
@@ -285,7 +286,7 @@ class Builder(ContentBuilder):
             *self.item(node, parts),
             form=self.target(node, "src"),
             params=self.params(node),
-            filled=self.filleds(parts),
+            filled=self.filleds(parts, node),
         )
 
     def unit(self, node: Node) -> Unit:
@@ -310,8 +311,11 @@ class Builder(ContentBuilder):
                     reported.add(id(one.command))
                     self.problems.append(problem)
 
-    def filleds(self, parts: Parts) -> tuple[Filled, ...]:
-        """Filled elements."""
+    def filleds(self, parts: Parts, item: Node | None = None) -> tuple[Filled, ...]:
+        """Filled elements of a form, or of an item, whose answer alone they wait for (2.4)."""
+        for child in parts.get("filled", ()) if item is not None else ():
+            for name in sorted(child.attributes.keys() & {"mode", "namelist"}):
+                self.problem(OF_FORMS, child, name, name=name)
         return tuple(
             Filled(child.get("mode", "all"), self.names(child), self.content(child), child)
             for child in parts.get("filled", ())

@@ -13,6 +13,7 @@ from prima.errors.diagnoses.structure import (
     MISSING_ATTRIBUTE,
     MISSING_ELEMENT,
     NO_FORM,
+    UNKNOWN_ATTRIBUTE,
 )
 from prima.errors.diagnoses.values import (
     BAD_VALUE,
@@ -41,6 +42,11 @@ RESERVED_NAME = BAD_VALUE.says(
     '{attribute_name} "{name}" is a word of ECMAScript\'s own.', "Choose another name."
 )
 BAD_PROPERTY = BAD_VALUE.says('{name} "{value}" {wrong}')
+OF_FORMS = UNKNOWN_ATTRIBUTE.says(
+    "A <filled> in an item has no {name}: it waits for that item alone.",
+    "Remove it, or move the <filled> to the end of the form.",
+    "warning",
+)
 NO_FORM_AT_ALL = NO_FORM.says("The application has no form.", "Write at least one <form>.")
 NO_GRAMMAR = MISSING_ELEMENT.says(
     "<link> needs one <grammar>.", "Write what the user says into one."

@@ -182,7 +182,7 @@ def _one_of(draws: Draws, node: Node) -> Doing:
 
 def _said(reader: Reader, node: Node) -> Doing:
     """The user's words; without words they stay silent."""
-    known = reader.vocabulary.attributes[node.key]
+    known = reader.vocabulary.attributes.get(node.key, {})  # none of another namespace
     if not node.text and node.attributes.keys() <= known.keys():
         message = f"<{node.tag}> holds no words: the user stays silent."
         remedy = f"Write the words into it, or remove <{node.tag}>."

@@ -53,6 +53,7 @@ SCENARIOS = [
     ("infinite", scenario(PLAY + '<person x="1e999" y="0"/>'), "s.xml:2:40", "is not a number"),
     ("service", scenario(PLAY + '<service name="a"><replay/></service>'), "s.xml:2:47", "reply"),
     ("foreign", scenario(f"{PLAY}<x:person{FOREIGN} x='1'/>"), "s.xml:2:29", "another namespace"),
+    ("foreign-answer", scenario(f"{PLAY}<x:answer{FOREIGN} to='x'>Yes.</x:answer>"), "s.xml:2:29", "another namespace"),
     ("no-such-favourite", scenario(PLAY, 'policy="fixed:zz"'), "s.xml:1:", "Write a."),
     ("policy-with-favourite", scenario(PLAY, 'policy="fixd"'), "s.xml:1:", "fixed:APP"),
 ]  # fmt: skip

@@ -37,7 +37,7 @@ from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.known import Known
 from prima.script.parse import inner, parse_expression
 
-STRINGS = re.compile(r""""(?:[^"\\\\]|\\\\.)*"|'(?:[^'\\\\]|\\\\.)*'""")
+STRINGS = re.compile(r""""(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'""")
 MISTAKES = (
     (r"\$\{", "Write the expression alone, without ${ and }."),
     (r"=\s+=", "Write == without a space."),
