@@ -21,7 +21,15 @@ from prima.sim.vocabulary.scenario import SCENARIO
 from prima.sim.vocabulary.user import USER
 from prima.sim.vocabulary.world import WORLD
 from prima.voicexml.arranging import UNIT, UNIT_HOLDS
-from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, HOLDING, SRGS, VALUES, VOICEXML
+from prima.voicexml.vocabulary import (
+    COMMANDS,
+    EXPRESSIONS,
+    HOLDING,
+    PROPERTIES,
+    SRGS,
+    VALUES,
+    VOICEXML,
+)
 
 _PARTS = ("one-of", "item", "ruleref", "tag", "token")
 _REPEAT = (
@@ -92,17 +100,12 @@ GRAMMAR = Vocabulary(
 )
 """SRGS in XML, as used in VoiceXML documents."""
 
-PROPERTIES = (
-    *("bargein", "bargeintype", "completetimeout", "confidencelevel", "fetchaudio"),
-    *("fetchtimeout", "incompletetimeout", "inputmodes", "interdigittimeout", "maxnbest"),
-    *("sensitivity", "speedvsaccuracy", "termchar", "termtimeout", "timeout", "universals"),
-)
 LISTED: dict[tuple[str, str, str], tuple[str, ...]] = {
     ("dialogue", "property", "value"): ("true", "false"),
     ("scenario", "scenario", "policy"): ("prima", "prima+all", *BASELINES),
     ("voicexml", "vxml", "version"): ("2.1", "2.0"),
     ("voicexml", "field", "type"): TYPES,
-    ("voicexml", "property", "name"): PROPERTIES,
+    ("voicexml", "property", "name"): (*PROPERTIES, "fetchaudio", "universals"),
 }
 """Values to propose that no vocabulary lists, by vocabulary, key of the element and attribute."""
 

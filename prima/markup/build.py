@@ -94,7 +94,7 @@ def build(source: Source, doctype: bool = False) -> Node:
     """The root element of a document's text; ``doctype`` says whether it may have a DOCTYPE.
 
     Raises:
-        TooMuch: it exceeds a limit.
+        LimitReached: it exceeds a limit.
         Unclear: it is not well-formed, or has a DOCTYPE that is not allowed.
     """
     if "\0" in source.text:  # from which expat would guess another encoding

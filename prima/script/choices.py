@@ -22,7 +22,7 @@ def choices(code: str) -> list[PossibleText]:
     """The texts that an expression may give: literals, and conditionals of literals.
 
     >>> choices("old ? '#ask' : '#step' + number")
-    [Choice(text='#ask', whole=True), Choice(text='#step', whole=False)]
+    [PossibleText(text='#ask', whole=True), PossibleText(text='#step', whole=False)]
     """
     parsed = parse_expression(code)
     node = inner(parsed) if parsed is not None else None

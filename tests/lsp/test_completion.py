@@ -67,6 +67,7 @@ PROPOSED = {
     "voice goto": ("ea/x.vxml", VOICE + '<form id="a"><block><goto next="|"/>', {"#a", "pizza.vxml"}, set()),
     "voice grammar": ("ea/x.vxml", VOICE + '<form id="a"><field name="f"><grammar><|', {"rule", "one-of"}, {"prompt"}),
     "voice events": ("ea/x.vxml", VOICE + '<form id="a"><catch event="|"', {"nomatch", "error.badfetch"}, set()),
+    "voice properties": ("ea/x.vxml", VOICE + '<property name="|"', {"maxspeechtimeout", "recordutterance", "universals", "grammarmaxage"}, set()),
     "voice values": ("ea/x.vxml", VOICE + '<form id="a" scope="|"', {"dialog", "document"}, set()),
     "namespaces": ("fa/x.xml", '<prima xmlns="|"', {"urn:prima:dialogue:1"}, set()),
     "root without name": ("fa/x.xml", BEGIN.replace("prima", "|", 1) + '<form id="a"/></prima>', {"prima"}, {"form"}),
