@@ -282,11 +282,8 @@ def starving(own: Outline, theirs: Outline) -> list[Starving]:
     leaving = [one for one in own.parts if one.leaves]
     held = {False: devices_of(own.parts), True: devices_of(leaving)}
     """The devices of Commands that are equal to one that leaves the user or does not (K2)."""
-    reached = _floors(theirs)
-    floors = set(theirs.states) if drives else reached
-    floor = {part for name in reached for part in theirs.states[name].parts}
-    floor |= {part for one in theirs.reactions for part in one.does.parts}
-    """The parts that may hold the floor: of states that may, and of reactions."""
+    floors = _floors(theirs) if not drives else set(theirs.states)
+    floor = _parts_with_floor(theirs)
     found = [_by_loops(part, held, part in floor, drives) for part in theirs.parts]
     found += [_by_cycle(loop, held, floors, drives) for loop in loops(theirs)]
     found += [Starving(gap.place, gap.reason, "", everything, drives, True) for gap in theirs.gaps]
@@ -302,6 +299,12 @@ def _again(theirs: Outline, causes: list[Starving], drives: bool) -> list[Starvi
         for gap in reacting_again(theirs)
         if (gap.place, gap.reason) not in kept
     ]
+
+
+def _parts_with_floor(theirs: Outline) -> set[Price]:
+    """The parts that may hold the floor: of states that may, and of reactions."""
+    floor = {part for name in _floors(theirs) for part in theirs.states[name].parts}
+    return floor | {part for one in theirs.reactions for part in one.does.parts}
 
 
 def _floors(theirs: Outline) -> set[str]:

@@ -21,8 +21,8 @@ PROGRESS_SECONDS = 0.5
 
 
 def show_count(done: int, total: int, what: str) -> None:
-    """Show on a terminal how many of a number of things are done."""
-    if sys.stderr.isatty():
+    """Show on a terminal how many of several things are done."""
+    if total > 1 and sys.stderr.isatty():
         click.echo(f"\r{done} of {total} {what}", err=True, nl=done == total)
 
 

@@ -108,8 +108,7 @@ def test(
         results.append(result)
         merge(coverage, result.coverage)
         result.coverage = {}
-        if len(chosen) > 1:
-            show_count(len(results), len(chosen), "scenarios")
+        show_count(len(results), len(chosen), "scenarios")
     under = _is_under(coverage, fail_under)
     if form == "text":
         _report(results)

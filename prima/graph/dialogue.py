@@ -237,9 +237,12 @@ def _hints(document: Document, form: Form | None) -> dict[str, list[str]]:
         sources.append((watch.name, clean(watch.when.code)))
     for act in chain.from_iterable(map(all_acts, contents)):
         if isinstance(act, SendOut):
-            when = f"after {act.delay / 1000:g} s" if isinstance(act.delay, int) else "later"
-            sources.append((act.event, when))
+            sources.append((act.event, _when(act)))
     return known(source for source in sources if source[0])
+
+
+def _when(act: SendOut) -> str:
+    return f"after {act.delay / 1000:g} s" if isinstance(act.delay, int) else "later"
 
 
 def _blocks(form: Form) -> list[Sequence[Act]]:

@@ -75,8 +75,11 @@ class LeavingRules(Endings):
             if not (known or self.released):
                 self.report(10, "X3", f"{tree.name} is held no longer, but its state goes on")
         for tree in self.trees.values():
-            if tree.until is not None and (tree.app, tree.hold_state) in self.left_now:
-                self.report(10, "X3", f"{tree.name} is held on, but its state was left")
+            self._held_rightly(tree)
+
+    def _held_rightly(self, tree: Tree) -> None:
+        if tree.until is not None and (tree.app, tree.hold_state) in self.left_now:
+            self.report(10, "X3", f"{tree.name} is held on, but its state was left")
 
 
 def going_on(left: Iterable[AB]) -> Tree:

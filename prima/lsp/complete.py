@@ -12,12 +12,12 @@ from prima.language.commands import DEVICES, TABLE_4_2
 from prima.lsp.descriptions import EVENTS, SESSION, VOICEXML_EVENTS
 from prima.lsp.hover import attribute_text, element_text
 from prima.lsp.meanings import DEFINES, EVENTS_OF, FILES, REFERS, ReferenceUse
-from prima.lsp.names import dialect
+from prima.lsp.names import FoundName, dialect
 from prima.lsp.paths import name_for
 from prima.lsp.scan import Attr, ScannedTag, ScannedText
 from prima.lsp.snippets import opening, snippet
 from prima.lsp.tables import BY_NAMESPACE, children, is_code, roots, values
-from prima.lsp.workspace import FoundName, Text, Workspace
+from prima.lsp.workspace import Text, Workspace
 from prima.markup.vocabulary import attributes_by_name
 
 MOST = 500
@@ -110,8 +110,7 @@ class _Completion:
         self, parent: ScannedTag | None, start: int, end: int, tag: ScannedTag | None
     ) -> Iterator[Proposal]:
         """Elements allowed in another; ``tag`` is the unfinished element there, if any."""
-        rooted = self.page.tags and tag not in (self.page.tags[0], self.page.root)
-        if parent is None and rooted:
+        if parent is None and not self._may_be_root(tag):
             return
         begin = "" if tag is not None else "<"
         alone = tag is None or not (tag.attributes or tag.finished)
@@ -129,6 +128,10 @@ class _Completion:
             )
         if parent and tag and alone:
             yield Proposal(f"/{parent.name}", "element", start, end, f"/{parent.name}>")
+
+    def _may_be_root(self, tag: ScannedTag | None) -> bool:
+        """Whether an unfinished element, or one yet to be written, can be the root."""
+        return not self.page.tags or tag in (self.page.tags[0], self.page.root)
 
     def _attributes(
         self, tag: ScannedTag, start: int, end: int, now: Attr | None

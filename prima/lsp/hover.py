@@ -16,9 +16,9 @@ from prima.lsp.descriptions import (
     VOICEXML_ATTRIBUTES,
     VOICEXML_EVENTS,
 )
-from prima.lsp.names import Mark, mark_at
+from prima.lsp.names import FoundName, Mark, mark_at
 from prima.lsp.scan import ScannedTag
-from prima.lsp.workspace import FoundName, Workspace
+from prima.lsp.workspace import Workspace
 from prima.markup.vocabulary import Attribute, Element, attributes_by_name
 
 NAMED = re.compile(r"\b([A-Z][0-9])\b")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import NamedTuple
 
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.lsp.meanings import DEFINES, REFERS, SHARED, ReferenceUse
@@ -82,6 +84,27 @@ class Mark:
     def shared(self) -> bool:
         """Whether other documents may use the name too."""
         return not SHARED.isdisjoint(self.kind)
+
+
+class NameSpot(NamedTuple):
+    """A piece of a document."""
+
+    path: Path
+    start: int
+    end: int
+
+
+@dataclass(slots=True)
+class FoundName:
+    """A name in a document."""
+
+    path: Path
+    mark: Mark
+
+    @property
+    def spot(self) -> NameSpot:
+        """Where it is."""
+        return NameSpot(self.path, self.mark.start, self.mark.end)
 
 
 def plain(code: str) -> str:

@@ -10,9 +10,9 @@ from pathlib import Path
 from prima.errors import with_article
 from prima.language.values import read_value
 from prima.lsp.meanings import EVENTS_OF
-from prima.lsp.names import Mark, mark_at
+from prima.lsp.names import FoundName, Mark, NameSpot, mark_at
 from prima.lsp.paths import name_for
-from prima.lsp.workspace import FoundName, NameSpot, Workspace
+from prima.lsp.workspace import Workspace
 from prima.script.globals import RESERVED
 
 RENAMED = {

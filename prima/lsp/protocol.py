@@ -25,9 +25,10 @@ from pygls.protocol import LanguageServerProtocol, default_converter
 from prima.errors import Problem, in_order
 from prima.errors.visible import visible
 from prima.lsp import naming
+from prima.lsp.names import NameSpot
 from prima.lsp.problems import check, files_read, is_ours, spot
 from prima.lsp.text import Lines
-from prima.lsp.workspace import NameSpot, Text, Workspace
+from prima.lsp.workspace import Text, Workspace
 from prima.version import __version__
 
 SEVERITIES = {

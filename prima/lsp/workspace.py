@@ -7,11 +7,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
 
 from prima.errors import DocumentError
 from prima.lsp.meanings import FILES, SHARED
-from prima.lsp.names import Mark, dialect, marks
+from prima.lsp.names import FoundName, Mark, NameSpot, dialect, marks
 from prima.lsp.paths import MOST_FILES, file_named, path_of, uri_of, walk
 from prima.lsp.scan import ScannedText
 from prima.lsp.tables import resolve
@@ -67,27 +66,6 @@ class Text:
             return self.text.encode(match[1].decode() if match else "utf-8")
         except (LookupError, UnicodeEncodeError):
             return self.text.encode("utf-8", "replace")
-
-
-class NameSpot(NamedTuple):
-    """A piece of a document."""
-
-    path: Path
-    start: int
-    end: int
-
-
-@dataclass(slots=True)
-class FoundName:
-    """A name in a document."""
-
-    path: Path
-    mark: Mark
-
-    @property
-    def spot(self) -> NameSpot:
-        """Where it is."""
-        return NameSpot(self.path, self.mark.start, self.mark.end)
 
 
 class Workspace:

@@ -66,11 +66,7 @@ def make_lanes(run: Run, rows: Sequence[Row]) -> Lanes:
         run.apps[:MOST_APPS],
         devices[:MOST_DEVICES],
         behaviors,
-        [
-            _waits(one, one.tree, one.by)
-            for one in run.states
-            if one.state == "suspended" and one.lasts
-        ],
+        _away(run),
         [_waits(one, one.name, one.name) for one in run.holds if one.lasts],
         [_floor(one) for one in run.floors if one.stack and one.lasts],
         [
@@ -78,11 +74,20 @@ def make_lanes(run: Run, rows: Sequence[Row]) -> Lanes:
             for one in run.streams.values()
         ],
     )
-    marks = _Marks(run, rows)
-    unknown = [bar for bar in behaviors if bar.row < 0]
+    _find_rows(lanes, _Marks(run, rows))
+    return lanes
+
+
+def _away(run: Run) -> list[Bar]:
+    states = [one for one in run.states if one.state == "suspended" and one.lasts]
+    return [_waits(one, one.tree, one.by) for one in states]
+
+
+def _find_rows(lanes: Lanes, marks: _Marks) -> None:
+    """Give each bar its row."""
+    unknown = [bar for bar in lanes.behaviors if bar.row < 0]
     for bar in (*unknown, *lanes.away, *lanes.held, *lanes.floor, *lanes.streams):
         bar.row = marks.row(bar.by or bar.name, bar.begin)
-    return lanes
 
 
 class _Marks:

@@ -10,7 +10,8 @@ from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcException
 
 from prima.lsp import naming
-from prima.lsp.workspace import NameSpot, Workspace
+from prima.lsp.names import NameSpot
+from prima.lsp.workspace import Workspace
 from tests.helpers.editor import BEGIN, SCENE, VOICE, Editor, cut, edited, plain
 
 FORMS = (
