@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from prima.interpreter.application import Interpreter
@@ -21,6 +21,23 @@ if TYPE_CHECKING:
 
 AnyDocument: TypeAlias = "Document | VoiceDocument"
 AnyApp: TypeAlias = App[Any]
+
+
+@dataclass(slots=True)
+class Contained:
+    """A context in which an error in an application's interpreter ends that application alone."""
+
+    apps: Applications
+    app: AnyApp
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, _: object, error: BaseException | None, trace: object) -> bool:
+        if isinstance(error, Exception):
+            self.apps.fail(self.app, error)
+            return True
+        return False
 
 
 class Applications:
@@ -115,13 +132,9 @@ class Applications:
         app = self.there(name)
         return [app] if app is not None and not app.over else []
 
-    @contextmanager
-    def contained(self, app: AnyApp) -> Iterator[None]:
-        """E2: an error in an application's interpreter ends that application alone."""
-        try:
-            yield
-        except Exception as error:
-            self.fail(app, error)
+    def contained(self, app: AnyApp) -> Contained:
+        """Contain the errors of an application (E2)."""
+        return Contained(self, app)
 
     def fail(self, app: AnyApp, error: Exception) -> None:
         """End an application with an error."""
