@@ -196,8 +196,8 @@ class Algorithm:
             fiber.local = None
             self.owner.note(filled.node)
             yield from self.owner.execute.run(filled.content, fiber)
-        own_scope = self._process_form(frame, fiber, item, is_defined)
-        yield from self._catching(frame, fiber, item, None, own_scope)
+        of_form = self._process_form(frame, fiber, item, is_defined)
+        yield from self._catching(frame, fiber, item, None, of_form)
 
     def _process_form(
         self, frame: Frame, fiber: Fiber, item: Item, is_defined: Callable[[str], bool]
