@@ -39,8 +39,7 @@ from prima.devices.goals import (
 from prima.devices.loop import Loop
 from prima.devices.profile import Profile
 from prima.devices.settings import DriverLimits
-from prima.interpreter.reader import read_document
-from prima.invariants import check
+from prima.invariants import callers, check
 from prima.language.commands import TABLE_4_2
 from prima.messages import (
     ApplicationLoaded,
@@ -60,7 +59,7 @@ from prima.messages import (
 )
 from prima.scheduler.policy import policy_named
 from prima.session import Session
-from tests.helpers.generated.plays import Play, plays
+from tests.helpers.generated.plays import Play, documents_of, plays
 from tests.helpers.generated.world import APPS
 from tests.invariants.test_properties import examples
 
@@ -183,11 +182,7 @@ class Adversary:
 
 def conduct(play: Play, seed: int, policy: str) -> tuple[Adversary, list[Record], str]:
     """Run documents on such devices."""
-    documents = [
-        read_document(f"{APPS[number]}.xml", text.encode())[0]
-        for number, text in enumerate(play.documents)
-    ]
-    session = Session(documents, policy_named(policy), play.world.table)
+    session = Session(documents_of(play), policy_named(policy), play.world.table)
     devices = Adversary(play, seed)
     loop = Loop(session, devices, LONGEST)
     records: list[Record] = []
@@ -209,7 +204,7 @@ def test_no_device_is_given_two_tasks_whatever_the_driver_does(
 ) -> None:
     devices, records, _ = conduct(play, seed, policy)
     assert devices.faults == []
-    assert check(records, policy, APPS) == []
+    assert check(records, policy, APPS, calling=callers(documents_of(play))) == []
 
 
 class Desk:

@@ -42,7 +42,8 @@ def examples(percent: int) -> settings:
 
 def violations(run: Run, policy: str = "prima") -> list[str]:
     """What a run violates."""
-    return check(run.records, policy, APPS) + wrong_additions(run.records) + run.problems
+    found = check(run.records, policy, APPS, calling=run.calling)
+    return found + wrong_additions(run.records) + run.problems
 
 
 @given(plays())
@@ -83,7 +84,7 @@ def test_whoever_is_kept_from_the_speaker_has_a_turn(
     play: Play, script: Script, patience: int, policy: str
 ) -> None:
     for run in (perform(play, policy, patience=patience), drive(script, policy, patience)):
-        assert check(run.records, policy, APPS, patience) + run.problems == []
+        assert check(run.records, policy, APPS, patience, run.calling) + run.problems == []
 
 
 @given(plays(), extended)

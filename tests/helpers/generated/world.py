@@ -192,6 +192,8 @@ class Run:
     """Whether the run came to rest before it was cut off."""
     problems: list[str] = field(default_factory=list)
     """What the driver itself saw that may not be."""
+    calling: frozenset[str] = frozenset()
+    """The applications whose states may go on while another makes requests."""
 
     def lines(self) -> str:
         """The transcript, as it would be written."""
