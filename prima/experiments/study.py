@@ -13,7 +13,7 @@ from prima.errors import UsageError
 from prima.errors.visible import visible
 from prima.messages import Json
 from prima.scheduler import policy as known
-from prima.transcript.criteria import CRITERIA, Criteria, shown_time
+from prima.transcript.criteria import CRITERIA, HEADINGS, Criteria, shown_time
 from prima.transcript.diff import compare
 from prima.transcript.observer import observe
 from prima.transcript.row import Row
@@ -102,25 +102,6 @@ def _distance(expected: list[Row] | None, transcript: Transcript) -> tuple[int |
     return counts["moved"], counts["lost"] + counts["joined"] + counts["changed"]
 
 
-COLUMNS = (
-    ("units cut", "units_cut"),
-    ("restarts", "restarts"),
-    ("broken", "broken"),
-    ("waiting", "broken_waiting"),
-    ("unfaced", "unfaced"),
-    ("left", "left"),
-    ("stolen", "third_turns"),
-    ("astray", "misanswered"),
-    ("wordless", "wordless"),
-    ("reactions", "reactions"),
-    ("mean s", "reaction_mean"),
-    ("max s", "reaction_max"),
-    ("late", "late_reactions"),
-    ("responses", "responses"),
-    ("mean s", "response_mean"),
-    ("max s", "response_max"),
-)
-"""Headings and their criteria; times belong to the count before them."""
 COUNTED = {"reaction_mean": "reactions", "response_mean": "responses"}
 """The count over which each mean is taken."""
 
@@ -145,7 +126,7 @@ def format_csv(results: Iterable[StudyResult]) -> str:
 
 def format_table(results: list[StudyResult]) -> str:
     """The table: situations by policies, then the sums of each policy."""
-    heads = ["situation", "policy", *(head for head, _ in COLUMNS), "moved", "missing"]
+    heads = ["situation", "policy", *HEADINGS.values(), "moved", "missing"]
     lines = [_cells(result) for result in results]
     policies = list(dict.fromkeys(result.policy for result in results))
     if len({result.situation for result in results}) > 1:
@@ -169,7 +150,7 @@ def _aligned(lines: list[list[str]]) -> str:
 
 
 def _cells(result: StudyResult) -> list[str]:
-    values = [_shown(getattr(result.criteria, name)) for _, name in COLUMNS]
+    values = [_shown(getattr(result.criteria, name)) for name in CRITERIA]
     return [
         result.situation,
         result.policy + (" !" if result.failures else ""),
@@ -181,7 +162,7 @@ def _cells(result: StudyResult) -> list[str]:
 
 def _sums(policy: str, results: list[StudyResult]) -> list[str]:
     """A policy in all situations: counts are added, means are taken over all runs."""
-    values = [_shown(_sum(name, [result.criteria for result in results])) for _, name in COLUMNS]
+    values = [_shown(_sum(name, [result.criteria for result in results])) for name in CRITERIA]
     known = [r for r in results if r.distance is not None]
     distance = sum(r.distance or 0 for r in known) if known else None
     missing = sum(r.missing or 0 for r in known) if known else None

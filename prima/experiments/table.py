@@ -15,7 +15,7 @@ from prima.errors import UsageError
 from prima.errors.visible import harmless, unharmed
 from prima.experiments.levels import Factor
 from prima.messages import Json
-from prima.transcript.criteria import CRITERIA
+from prima.transcript.criteria import CRITERIA, MEANINGS
 from prima.version import __version__
 
 if TYPE_CHECKING:
@@ -62,25 +62,6 @@ MEASURES = (
     Column("collisions", "integer", "measure", "devices lost, by loop and device (policy none)"),
     Column("starved", "integer", "measure", "behaviors that waited too long (E4, E6)"),
 )
-MEANINGS = {
-    "units_cut": "behaviors that lost a device while they ran",
-    "restarts": "behaviors that gave way and started again (X2)",
-    "broken": "streams broken by no reaction",
-    "broken_waiting": "waits for a server that another application broke into",
-    "unfaced": "conversations begun without the channel",
-    "left": "conversations that the robot left",
-    "third_turns": "answers before whose acknowledgement another application spoke",
-    "misanswered": "questions that took a late answer to another application's",
-    "wordless": "topics taken up after another application has spoken, without words for it",
-    "reactions": "events that an application answered with a Command",
-    "reaction_mean": "mean time from an event to the first Command",
-    "reaction_max": "longest time from an event to the first Command",
-    "late_reactions": "reactions that began more than 3 s after their event",
-    "responses": "reactions with a word or a movement towards the user",
-    "response_mean": "mean time from an event to that word or movement",
-    "response_max": "longest time from an event to that word or movement",
-}
-"""The criteria of docs/measures.md."""
 
 
 def _criterion(name: str) -> Column:

@@ -12,7 +12,7 @@ from prima.errors.visible import visible
 from prima.messages import Json
 from prima.report.lanes import LONGEST_NAME, Lanes, make_lanes
 from prima.report.walk import RobotWalk, walk_of
-from prima.transcript.criteria import shown_times
+from prima.transcript.criteria import CRITERIA, HEADINGS, MEANINGS, shown_times
 from prima.transcript.row import Row, describe
 from prima.transcript.run import Run
 from prima.transcript.spans import base
@@ -127,35 +127,27 @@ def _facts(run: Run) -> list[tuple[str, str]]:
     return [(name, value) for name, value in facts if value]
 
 
+RARE = frozenset({"third_turns", "misanswered", "wordless", "late_reactions"})
+"""Criteria that are shown only if there is something to count."""
+FROM = "mean and longest, from the event to the first"
+
+
 def _measures(run: Run) -> list[tuple[str, str, str]]:
     """The measures of docs/measures.md."""
     found, starved = run.measure.criteria(), len(run.of("starve"))
-    waiting = "behaviours that another application has kept waiting for too long (E4, E6)"
-    stolen = "answers after which another application spoke before the asker"
-    astray = "late answers that another application took"
-    wordless = "topics taken up after another application has spoken, without words for it"
-    late = "reactions more than 3 s after their event"
+    waiting = "behaviors that another application has kept waiting for too long (E4, E6)"
     reaction = shown_times(found.reaction_mean, found.reaction_max)
     response = shown_times(found.response_mean, found.response_max)
+    counts = [
+        (HEADINGS[name].capitalize(), str(number), MEANINGS[name])
+        for name in CRITERIA
+        if isinstance(number := getattr(found, name), int) and (number or name not in RARE)
+    ]
     return [
-        ("Units cut", str(found.units_cut), "behaviours that lost a device while they ran"),
-        ("Restarts", str(found.restarts), "behaviours that gave way to a reaction (X2)"),
-        ("Broken", str(found.broken), "streams broken by no reaction"),
-        ("Waiting", str(found.broken_waiting), "waits for a server that were broken"),
-        ("Unfaced", str(found.unfaced), "conversations begun without the channel"),
-        ("Left", str(found.left), "conversations that the robot left"),
-        *([("Stolen", str(found.third_turns), stolen)] if found.third_turns else []),
-        *([("Astray", str(found.misanswered), astray)] if found.misanswered else []),
-        *([("Wordless", str(found.wordless), wordless)] if found.wordless else []),
+        *counts,
         *([("Starved", str(starved), waiting)] if starved else []),
-        ("Reactions", str(found.reactions), "events that were answered with a Command"),
-        *([("Late", str(found.late_reactions), late)] if found.late_reactions else []),
-        ("Reaction time", reaction, "mean and longest, from the event to the first Command"),
-        (
-            "Response time",
-            response,
-            "mean and longest, from the event to the first word or movement towards the user",
-        ),
+        ("Reaction time", reaction, f"{FROM} Command"),
+        ("Response time", response, f"{FROM} word or movement towards the user"),
     ]
 
 
