@@ -55,6 +55,11 @@ class Arranged:
     cues: tuple[Cue, ...] = ()
     hook: object = False
 
+    @property
+    def now(self) -> bool:
+        """Whether it is wanted now, as its first Command is (O2)."""
+        return self.steps[0].what.now
+
 
 def is_unit(node: Node) -> bool:
     """Whether an element is a ``p:iu``: among form items it is a unit around them (U5)."""
@@ -111,8 +116,18 @@ def longest_of(unit: Node) -> int:
     return milliseconds(unit.get("longest"), LONGEST_UNIT_MS)
 
 
+def requests_of(queue: Sequence[Queued]) -> list[list[Queued]]:
+    """The queue as requests: what is wanted now begins one, as it is never linked (O2)."""
+    made: list[list[Queued]] = []
+    for piece in queue:
+        if piece.now or not made:
+            made.append([])
+        made[-1].append(piece)
+    return made
+
+
 def steps_of(queue: Sequence[Queued]) -> list[Step]:
-    """The queue as one tree: each piece waits for all of the one before it (U3)."""
+    """The steps of a request, one tree: each piece waits for all of the one before it (U3)."""
     made: list[Step] = []
     after: tuple[int, ...] = ()
     for piece in queue:

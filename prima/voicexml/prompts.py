@@ -268,7 +268,7 @@ class Speaker(VoiceEvaluator):
         self.read_all(node, context, local, speech)
         said, cues = speech.take()
         self.shared.app.count_output(len(said), node)
-        made = Command(name, args, said or None, lang=speech.lang)
+        made = Command(name, args, said or None, row is not None and row.now, lang=speech.lang)
         made.source = source(node)
         return self.shared.queue.cued(made, cues) if said else made
 

@@ -20,7 +20,7 @@ from prima.messages import (
     Transferred,
 )
 from prima.script.isolated import AnyEngine
-from prima.voicexml.arranging import Queued, steps_of
+from prima.voicexml.arranging import Queued, requests_of, steps_of
 from prima.voicexml.state import Resume, UnitOver
 
 
@@ -92,12 +92,25 @@ class Waits:
     ) -> Generator[None, Resume, Resume]:
         """Request Commands, one after another, and wait for the end of the last.
 
-        During those that are open to answers, the question behind them may be answered.
+        During those that are open to answers, the question behind them may be answered. What is
+        wanted now is requested after the end of what comes before it (O2, O4).
         """
-        self.run = next(self._app.runs)
         self._state = next(self._app.states)
-        cause, self.cause = self.cause, None
         self._begun()
+        resume, before = Resume(), self._answer
+        for asked in requests_of(commands):
+            resume = yield from self._carry_out(asked, open_to_answers)
+            answered = self._answer is not before and not self.patient
+            if answered or resume.event is not None:
+                break
+        return resume
+
+    def _carry_out(
+        self, commands: Sequence[Queued], open_to_answers: Sequence[Command]
+    ) -> Generator[None, Resume, Resume]:
+        """Make one request, and wait."""
+        self.run = next(self._app.runs)
+        cause, self.cause = self.cause, None
         steps = steps_of(commands)
         self._app.actions.append(Request(self.run, steps, self._state, cause, self.unit))
         self._open, self._queue = open_to_answers, commands

@@ -65,6 +65,34 @@ def test_a_commands_arguments_may_be_expressions_and_its_text_holds_values() -> 
     assert call.orders[0].command is not None and call.orders[0].command.args == {"angle": 45}
 
 
+@pytest.mark.parametrize("stop", ["<p:stop-moving/>", "<p:iu><p:stop-moving/></p:iu>"])
+def test_what_is_wanted_now_is_requested_after_what_comes_before_it(stop: str) -> None:
+    """O2, O4: it is never linked, and content is carried out in its order."""
+    call = Call(
+        f"<form {P}><block>Hello.{stop}Well.</block><field name='f'><prompt>Yes?</prompt>"
+        "<option>yes</option></field></form>"
+    )
+    assert all(one.get("order") != "now" for one in call.phases("request"))
+    assert started(call)[-1] == "Yes?"
+    asked = [r for r in call.phases("request") if r.get("order") == "now"]
+    assert [one.get("parent") for one in asked] == [None]
+    (ended,) = [r["time"] for r in call.phases("end") if r.get("text") == "Hello."]
+    assert asked[0]["time"] == ended
+    assert len({one.get("state") for one in call.phases("request")}) == 1, "one state"
+    call.answer("yes")
+    assert call.ended == "exit"
+
+
+def test_a_handler_during_what_comes_before_it_takes_its_place() -> None:
+    call = Call(
+        f"<catch event='touch'><exit/></catch><form {P}><block>Hello.<p:stop-moving/>Well.</block>"
+        "<field name='f'><prompt>Yes?</prompt><option>yes</option></field></form>"
+    )
+    call.event("touch.head")
+    call.play()
+    assert (call.said(), call.ended) == (["Hello."], "exit")
+
+
 def test_a_command_in_a_foreach_is_asked_for_each_time() -> None:
     call = Call(
         f"<form {P}><block><prompt><foreach item='i' array='[1, 2]'>"
