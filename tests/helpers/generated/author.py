@@ -51,6 +51,14 @@ OWN = ("end", "cancel", "expired", "error")
 EVENTS = ("touch", "touch.head", "message", "corner", "human.found", "human.lost")
 
 
+CALLED = (
+    '<form id="called"><field name="r" type="boolean"><prompt>Sure?</prompt>'
+    '<filled><return namelist="r"/></filled><noinput count="2"><return event="own"/></noinput>'
+    "</field></form>"
+)
+"""A form for subdialogs."""
+
+
 class Author:
     """Writes one document. Every choice is drawn, so that it shrinks."""
 
@@ -85,7 +93,7 @@ class Author:
         parts += [self.form(index) for index in range(len(self.forms))]
         kind = "fa" if self.name == "fa" else "ea"
         head = f'<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="{kind}" id="{self.name}">'
-        return head + "".join(parts) + "</prima>"
+        return head + "".join(parts) + CALLED + "</prima>"
 
     def form(self, index: int) -> str:
         items = "".join(self.item(index) for _ in range(self.some(0, 2)))
@@ -126,7 +134,10 @@ class Author:
         return re.sub(r"^<[\w-]+", r'\g<0> restartable="true"', text)
 
     def item(self, index: int) -> str:
-        kind = self.some(0, 7)
+        kind = self.some(0, 8)
+        if kind == 8:
+            filled = f"<filled>{self.content(index)}</filled>"
+            return f'<subdialog name="s{next(self.fields)}" src="#called">{filled}</subdialog>'
         if kind == 6:
             # A unit behind speech: it is linked until that has ended.
             return f"<block><speak>First.</speak></block>{self.unit(index)}"

@@ -4,18 +4,12 @@ from __future__ import annotations
 
 import re
 
-from tests.helpers.generated.author import EVENTS, LOOPS, OWN, PLAIN, TURNS, Author
+from tests.helpers.generated.author import CALLED, EVENTS, LOOPS, OWN, PLAIN, TURNS, Author
 
 HEAD = (
     '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xmlns:p="urn:prima:dialogue:1"'
     ' xml:lang="en">'
 )
-CALLED = (
-    '<form id="called"><field name="r" type="boolean"><prompt>Sure?</prompt>'
-    '<filled><return namelist="r"/></filled><noinput count="2"><return event="own"/></noinput>'
-    "</field></form>"
-)
-"""A form for subdialogs."""
 
 
 def guest(command: str) -> str:
