@@ -119,7 +119,7 @@ def run(
     raise_limits(limits)
     applications = bool(fas or eas)
     _check_source(bool(scenarios or lists), applications, bool(says), bool(maps))
-    options = Options(bound, hosts, resume, isolate=isolate, patience=patience, seed=seed)
+    options = Options(bound, patience, isolate, hosts, seed, resume=resume)
     if lists or workers or resume or _are_several(scenarios, policies, output):
         _check_batch(applications, why, resume, output)
         from prima.cli.batch import listed, run_all
@@ -197,8 +197,7 @@ def _run_one(
     from prima import api
 
     def rehearse(sink: api.Sink | None, keep: bool = False) -> Transcript:
-        given = options.bound, sink, keep, options.hosts, options.isolate, options.patience
-        return api.rehearse(loaded, policy, *given, seed=options.seed)
+        return api.rehearse(loaded, policy, sink=sink, keep=keep, **options.arguments())
 
     if output is not None:
         transcript = run_into(output, rehearse)

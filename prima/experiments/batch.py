@@ -10,7 +10,7 @@ import errno
 import json
 import os
 import signal
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator
 from contextlib import ExitStack, closing, contextmanager, suppress
 from dataclasses import asdict, replace
 from functools import partial
@@ -47,11 +47,9 @@ def run_batch(
         UsageError: the folder for the transcripts cannot be written to, or is full.
         RunError: no process can be started.
     """
-    from prima.markup.limits import LIMITS
-
     workers = max(min(workers or cores(), len(plan)), 1)
     with _parts(plan.output) as parts:
-        options = replace(options, limits=asdict(LIMITS), parts=parts)
+        options = replace(options, parts=parts)
         made = spread(
             partial(run_job, options),
             plan,
@@ -114,10 +112,7 @@ def _dead(job: Job, died: Died) -> BatchRow:
 
 def _begin(options: Options) -> None:
     """Apply the parent's limits, and silence stderr: only the parent prints."""
-    from prima.markup.limits import LIMITS
-
-    for name, number in options.limits.items():
-        setattr(LIMITS, name, number)
+    options.apply_limits()
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
 
 
@@ -178,7 +173,7 @@ def _run(options: Options, job: Job) -> BatchRow:
     with in_place_of_files(inputs):
         loaded = api.load_scenario(job.scenario)
         if not job.stem:
-            made = _rehearse(options, loaded, job.policy, None)
+            made = api.rehearse(loaded, job.policy, keep=False, **options.arguments())
             return _row(job, loaded, made)
         digest = sha256()
         part = os.path.join(options.parts, f"{os.getpid()}{TRANSCRIPT}")
@@ -189,7 +184,8 @@ def _run(options: Options, job: Job) -> BatchRow:
                 digest.update(data)
                 stream.write(data)
 
-            made = _rehearse(options, loaded, job.policy, sink)
+            given = options.arguments()
+            made = api.rehearse(loaded, job.policy, sink=sink, keep=False, **given)
     row = _row(job, loaded, made)
     os.replace(part, f"{job.stem}{TRANSCRIPT}")
     ledger = {
@@ -246,13 +242,3 @@ def _make_room(job: Job) -> None:
             if data not in (b"", beginning):
                 raise UsageError(f"{path}: not written by a batch; move it away.")
             path.unlink()
-
-
-def _rehearse(
-    options: Options, loaded: Loaded, policy: str | None, sink: Callable[[str], object] | None
-) -> Transcript:
-    """Run a scenario with the common options, without keeping its records."""
-    from prima import api
-
-    more = options.hosts, options.isolate, options.patience
-    return api.rehearse(loaded, policy, options.bound, sink, False, *more, seed=options.seed)

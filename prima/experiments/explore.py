@@ -20,7 +20,8 @@ from prima.experiments.lines import (
 )
 from prima.experiments.pools import Pool, Runs
 from prima.experiments.scenariotext import Variant
-from prima.experiments.variants import ExperimentSettings, Made
+from prima.experiments.settings import ExperimentSettings
+from prima.experiments.variants import Made
 from prima.language.distributions import written
 from prima.language.values import LONGEST_MS, read_value
 from prima.pool import Died

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 
 from prima.errors import UsageError
+from prima.experiments.settings import ExperimentSettings
 
 TRANSCRIPT, LEDGER = ".jsonl", ".run.json"
 """Suffixes of a run's files."""
@@ -54,21 +55,12 @@ class Job:
 
 
 @dataclass(frozen=True, slots=True)
-class Options:
+class Options(ExperimentSettings):
     """Options shared by all runs of a batch."""
 
-    bound: int | None = None
-    hosts: tuple[str, ...] = ()
     resume: bool = False
-    limits: Mapping[str, int] = field(default_factory=dict)
-    isolate: str = "ea"
-    """Which scripts run in a process of their own (see ``prima.api.rehearse``)."""
     parts: str = ""
     """The folder for unfinished transcripts."""
-    patience: int | None = None
-    """Rule E6's bound (ms), if not the scenario's."""
-    seed: int | None = None
-    """By which runs are drawn, if not by the scenario's own."""
 
 
 class BatchPlan(Iterable[Job]):

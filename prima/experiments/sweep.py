@@ -19,8 +19,9 @@ from prima.experiments.design import Design
 from prima.experiments.levels import Factor, cell, read_factor
 from prima.experiments.pools import Pool
 from prima.experiments.scenariotext import Variant
+from prima.experiments.settings import ExperimentSettings
 from prima.experiments.table import Column, columns, dictionary, line, read_rows, write_parquet
-from prima.experiments.variants import ExperimentSettings, Made, Stage, discard
+from prima.experiments.variants import Made, Stage, discard
 from prima.loading.writing import make_folder, write_whole
 from prima.messages import Json
 from prima.pool import Died

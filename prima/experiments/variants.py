@@ -8,8 +8,8 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -19,13 +19,13 @@ from prima.errors import TOO_MUCH, DocumentError, PrimaError, Problem, UsageErro
 from prima.errors.visible import visible
 from prima.experiments.kept import Kept
 from prima.experiments.scenariotext import ScenarioText, Variant
+from prima.experiments.settings import ExperimentSettings
 from prima.interpreter.elements import Document
 from prima.loading import Loaded, load_text, with_robot, with_scenario
 from prima.loading.applications import digest
 from prima.loading.files import Files, in_place_of_files, read_file
 from prima.loading.writing import write_whole
 from prima.markup.collecting import seldom_collected
-from prima.markup.limits import LIMITS
 from prima.messages import Json
 from prima.sim.paths import ScenarioValue
 from prima.testing.checking import Failure, check
@@ -54,16 +54,6 @@ class Made:
     order: str = ""
     """The signature of its rows without their times; empty if there is no run."""
     measures: dict[str, Json] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True)
-class ExperimentSettings:
-    """Options of all runs of an experiment."""
-
-    bound: int | None = None
-    patience: int | None = None
-    isolate: str = "ea"
-    limits: Mapping[str, int] = field(default_factory=lambda: asdict(LIMITS))
 
 
 class Stage:
@@ -164,8 +154,7 @@ class Stage:
 
     def run(self, variant: Variant) -> Made:
         """Make a run; errors are in its result."""
-        for name, number in self.settings.limits.items():
-            setattr(LIMITS, name, number)
+        self.settings.apply_limits()
         try:
             with in_place_of_files(self.files), seldom_collected():
                 return self._run(variant)
@@ -188,14 +177,12 @@ class Stage:
         return api.rehearse(
             loaded,
             variant.policy or None,
-            self.settings.bound,
-            sink,
+            sink=sink,
             keep=keep,
-            isolate=self.settings.isolate,
-            patience=self.settings.patience,
             visits=expects,
             rows=True,
             entries=expects,
+            **self.settings.arguments(),
         )
 
     def _run(self, variant: Variant) -> Made:

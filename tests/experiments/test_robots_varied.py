@@ -11,8 +11,9 @@ import pytest
 from prima.api import rehearse
 from prima.errors import UsageError
 from prima.experiments.pools import local
+from prima.experiments.settings import ExperimentSettings
 from prima.experiments.sweep import Output, Sweep, SweepQuestion
-from prima.experiments.variants import ExperimentSettings, Stage
+from prima.experiments.variants import Stage
 from tests import ROOT
 from tests.helpers.here import prima
 from tests.helpers.sweeps import PET, VISIT, write_visit

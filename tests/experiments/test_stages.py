@@ -10,7 +10,8 @@ import pytest
 from prima.errors import UsageError
 from prima.experiments import kept
 from prima.experiments.scenariotext import Variant
-from prima.experiments.variants import ExperimentSettings, Stage
+from prima.experiments.settings import ExperimentSettings
+from prima.experiments.variants import Stage
 from tests.helpers.spoken import recording
 from tests.helpers.sweeps import VISIT, write_visit
 from tests.helpers.voice import vxml

@@ -87,7 +87,7 @@ INSIDE = {
         {"heads"},
     ],
     "experiments": [
-        {"kept", "scenariotext"},
+        {"kept", "scenariotext", "settings"},
         {"levels", "plan", "study", "variants"},
         {"design", "examine", "ledger", "pools", "rows", "table"},
         {"batch", "cluster", "lines", "sweep"},
