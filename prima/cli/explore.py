@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     multiple=True,
     help="A time of the scenario; may be repeated. By default that of each <when>.",
 )
-@duration_option("--within", "How far each is moved, to both sides; default 5s.")
+@duration_option("--within", "How far each is moved, to both sides; default 5s.", "5s")
 @click.option("--depth", type=Whole(1, 4), default=2, help="How many are moved at once; default 2.")
 @duration_option("--step", "Try besides all times in steps of this.")
 @click.option(
@@ -56,7 +56,7 @@ if TYPE_CHECKING:
 def explore(
     scenario: str,
     moves: tuple[str, ...],
-    within: int | None,
+    within: int,
     depth: int,
     step: int | None,
     runs: int,
@@ -89,16 +89,7 @@ def explore(
         raise UsageError("--resume needs the folder: -o FOLDER.")
     if step == 0:
         raise UsageError("--step: write a time above 0.")
-    plan = ExplorationPlan(
-        scenario,
-        moves,
-        5_000 if within is None else within,
-        depth,
-        step or 0,
-        runs,
-        policy,
-        isolate,
-    )
+    plan = ExplorationPlan(scenario, moves, within, depth, step or 0, runs, policy, isolate)
     exploration = Exploration(plan)
     progress = ProgressBar(runs)
     numbers = carried_out(exploration, pool_of(address, workers), output, resume)

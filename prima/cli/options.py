@@ -145,7 +145,7 @@ def check_source(scenarios: bool, applications: bool) -> None:
         raise UsageError("Name a scenario, or applications with --fa and --ea.")
 
 
-def duration_option(name: str, meaning: str) -> Callable[[Any], Any]:
+def duration_option(name: str, meaning: str, default: str | None = None) -> Callable[[Any], Any]:
     """An option whose value is a time as written in documents, converted to ms."""
 
     def read(_context: click.Context, _option: click.Parameter, text: str | None) -> int | None:
@@ -156,7 +156,7 @@ def duration_option(name: str, meaning: str) -> Callable[[Any], Any]:
         except ValueError as error:
             raise UsageError(f'{name} "{text}" {error}') from None
 
-    return click.option(name, metavar="TIME", callback=read, help=meaning)
+    return click.option(name, metavar="TIME", default=default, callback=read, help=meaning)
 
 
 patience_option = duration_option(
