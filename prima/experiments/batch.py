@@ -11,7 +11,7 @@ import json
 import os
 import signal
 from collections.abc import Generator, Iterable, Iterator
-from contextlib import ExitStack, closing, contextmanager, suppress
+from contextlib import closing, nullcontext, suppress
 from dataclasses import asdict, replace
 from functools import partial
 from hashlib import sha256
@@ -47,8 +47,10 @@ def run_batch(
         UsageError: the folder for the transcripts cannot be written to, or is full.
         RunError: no process can be started.
     """
+    from prima.loading.writing import parts_folder
+
     workers = max(min(workers or cores(), len(plan)), 1)
-    with _parts(plan.output) as parts:
+    with parts_folder(plan.output) if plan.output else nullcontext("") as parts:
         options = replace(options, parts=parts)
         made = spread(
             partial(run_job, options),
@@ -72,29 +74,6 @@ def _rows(made: Iterable[tuple[Job, BatchRow | Died]]) -> Iterator[BatchRow]:
         yield row
         if row.full:
             raise UsageError("Nothing more can be written; make room, then --resume.")
-
-
-@contextmanager
-def _parts(output: str) -> Iterator[str]:
-    """A temporary folder for unfinished files.
-
-    Raises:
-        UsageError: it cannot be made.
-    """
-    if not output:
-        yield ""
-        return
-    from prima.loading.writing import parts_folder
-
-    with ExitStack() as held:
-        try:
-            parts = held.enter_context(parts_folder(output))
-        except FileExistsError:
-            message = "this is a file; several transcripts need a folder."
-            raise UsageError(f"{output}: {message}") from None
-        except OSError as error:
-            raise UsageError(f"{output}: cannot be written: {error.strerror}.") from None
-        yield parts
 
 
 def _dead(job: Job, died: Died) -> BatchRow:

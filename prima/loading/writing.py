@@ -129,14 +129,19 @@ def _beside(real: str) -> tuple[str, IO[bytes]]:
 
 @contextmanager
 def parts_folder(folder: str) -> Iterator[str]:
-    """A temporary folder inside another for files being written there.
+    """A temporary folder inside another for transcripts being written there.
 
     Raises:
-        OSError: it cannot be created.
+        UsageError: it cannot be made.
     """
-    os.makedirs(folder, exist_ok=True)
-    clean_up(folder)
-    parts, lock = _new_folder(folder)
+    try:
+        os.makedirs(folder, exist_ok=True)
+        clean_up(folder)
+        parts, lock = _new_folder(folder)
+    except FileExistsError:
+        raise UsageError(f"{folder}: this is a file; several transcripts need a folder.") from None
+    except OSError as error:
+        raise UsageError(f"{folder}: cannot be written: {error.strerror}.") from None
     try:
         yield parts
     finally:
