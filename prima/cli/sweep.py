@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 from click.exceptions import Exit
 
 from prima.cli.options import (
@@ -110,7 +111,7 @@ def sweep(
         runs=runs,
         bound=bound,
         patience=patience,
-        isolate=None if isolate == "ea" else isolate,
+        isolate=isolate if _is_given("isolate") else None,
     )
     _check_table(output, resume, bundle)
     made = Sweep(question)
@@ -131,6 +132,12 @@ def sweep(
             tell(f"{bundle}: {counted(write_bundle(bundle, out), 'file')}")
     if worst:
         raise Exit(worst)
+
+
+def _is_given(option: str) -> bool:
+    """Whether an option is on the command line; otherwise a study's own value counts."""
+    source = click.get_current_context().get_parameter_source(option)
+    return source is not ParameterSource.DEFAULT
 
 
 def _check_table(output: str | None, resume: bool, bundle: str | None) -> None:

@@ -163,7 +163,9 @@ class Stage:
             return Made(1, failures=_short("; ".join(wrong)))
         except PrimaError as error:
             return Made(2 if isinstance(error, UsageError) else 3, failures=_short(str(error)))
-        except (Exception, MemoryError) as error:
+        except MemoryError:
+            return Made(3, failures="out of memory")
+        except Exception as error:
             if "PRIMA_DEBUG" in os.environ:
                 raise
             reason = f"this is a defect of prima: {type(error).__name__}: {error}"

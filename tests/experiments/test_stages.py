@@ -11,7 +11,7 @@ from prima.errors import UsageError
 from prima.experiments import kept
 from prima.experiments.scenariotext import Variant
 from prima.experiments.settings import ExperimentSettings
-from prima.experiments.variants import Stage
+from prima.experiments.variants import Made, Stage
 from tests.helpers.spoken import recording
 from tests.helpers.sweeps import VISIT, write_visit
 from tests.helpers.voice import vxml
@@ -54,6 +54,16 @@ def test_a_packed_stage_needs_no_file(folder: Path, monkeypatch: pytest.MonkeyPa
     there: Stage = pickle.loads(sent)
     assert there.run(HERE) == here
     assert pickle.loads(unpacked).run(HERE) != here
+
+
+def test_a_run_without_memory_is_no_defect(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    stage = Stage.of(["visit.xml"], ["touch"], ExperimentSettings())
+
+    def full(*_: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(Stage, "rehearsed", full)
+    assert stage.run(HERE) == Made(3, failures="out of memory")
 
 
 def test_too_much_to_pack(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

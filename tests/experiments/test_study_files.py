@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from pathlib import Path
 
@@ -148,3 +149,13 @@ def test_large_studies_are_refused_soon_and_with_their_line() -> None:
         done = command.prima("sweep", "study.toml", "--plan", timeout=60)
         assert done.returncode == 2 and why in done.stderr and "study.toml:8" in done.stderr
         assert len(done.stderr) < 5_000
+
+
+@pytest.mark.parametrize("given, then", [((), "none"), (("--isolate", "ea"), "ea")])
+def test_an_option_takes_the_place_of_what_the_study_says(
+    folder: Path, given: tuple[str, ...], then: str
+) -> None:
+    Path("study.toml").write_text(f'isolate = "none"{STUDY}', encoding="utf-8")
+    assert prima("sweep", "study.toml", *given, "-o", "t.csv").returncode == 0
+    question = json.loads(Path("t/plan.json").read_text())["question"]
+    assert question["isolate"] == then
