@@ -41,12 +41,17 @@ class LeavingRules(Endings):
     def left_at_end(self, app: str, outcome: str) -> None:
         """O3: an application that ends leaves its state, and all states that have called it.
 
-        One that is ended by an error or a limit may not reach them (E2).
+        One that is ended by an error or a limit may not reach them (E2). The last state may be one
+        whose requests were all refused (E3), which only shows in that it is left.
         """
         if "error." in outcome or "defect" in outcome:
             return
         states = sorted(self.asked.get(app, ()))
-        for state in states[-1:] if app in self.calling else states:
+        if app in self.calling:
+            last = states[-1:]
+            refused = any(one == app and [state] > last for one, state in self.left)
+            states = [] if refused else last
+        for state in states:
             self._is_left(app, state, "it has ended")
 
     def _is_left(self, app: str, state: int, because: str) -> None:
