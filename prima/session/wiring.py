@@ -142,16 +142,21 @@ class Wiring:
             self.due.pop(app.name, None)
 
     def _carry_out(self, app: AnyApp) -> None:
-        """Carry out an application's actions in order, first those caused by its own events."""
+        """Carry out an application's actions in order, and then its own events with all they cause.
+
+        What it had requested before comes first: the handler of an event may leave the state (O3).
+        """
         left: deque[Action] = deque()
-        while app.actions or left:
-            left.extendleft(reversed(app.actions))
+        own: deque[Action] = deque()
+        while app.actions or left or own:
+            for action in reversed(app.actions):
+                (own if isinstance(action, Raise | GoOn) else left).appendleft(action)
             app.actions.clear()
             try:
                 app.count_action()
             except GoOut as error:
                 app.fail(error)
-            self._do(app, left.popleft())
+            self._do(app, (left or own).popleft())
 
     def _do(self, app: AnyApp, action: Action) -> None:
         """Carry out one action of an application."""

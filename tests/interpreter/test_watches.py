@@ -46,6 +46,23 @@ def test_what_turns_true_during_a_subdialog_is_raised_after_it(
     assert bench.logs() == raised
 
 
+def test_what_turned_true_during_a_subdialog_may_leave_what_goes_on_after_it() -> None:
+    """O3: what the state requests at the subdialog's end is deleted with the state."""
+    bench = Bench(
+        """<form id="a"><watch name="near" when="sensor.human.distance &lt; 1"/>
+          <subdialog name="x" src="#b"><filled><speak>Back.</speak></filled></subdialog>
+          <on event="near"><goto next="#c"/></on></form>
+        <form id="b"><block><speak>Inside.</speak></block><block><return/></block></form>
+        <form id="c"><block><speak>Gone.</speak></block></form>"""
+    )
+    bench.step(Sensed({"human.distance": 0.8}))
+    bench.finish("Inside.")
+    assert bench.saying() == ["Gone."]
+    assert [one["text"] for one in bench.phases("cancel")] == ["Back."]
+    states = [one["state"] for one in bench.phases("request")]
+    assert [one["state"] for one in bench.phases("leave")] == [states[0], states[1]]
+
+
 @pytest.mark.parametrize("handler", ["", '<on event="near"><log>near</log></on>'])
 @pytest.mark.parametrize("way", ["goto", "subdialog"])
 def test_events_of_watches_on_entry_do_not_lose_the_reactive_flag(handler: str, way: str) -> None:
