@@ -139,7 +139,7 @@ class Machine:
         try:
             yield from self._initialise(context, form)
         except (Thrown, ScriptError) as error:
-            wanted = yield from self._handled(context, error)
+            wanted = yield from self._handled_before_items(context, error)
             context.quiet = False  # a handler silences the item after an iteration of the loop (C)
         if heard is not None:
             self.app.count_step(form)
@@ -166,7 +166,12 @@ class Machine:
             self.app.count_step(unit or context.form or self.shared.document.node, ITEM_STEPS)
             context.item = None
             try:
-                more = yield from self._visit_next(context, wanted)
+                item = self.selection.select(context, wanted)
+            except (Thrown, ScriptError) as error:
+                wanted = yield from self._handled_before_items(context, error)
+                continue
+            try:
+                more = yield from self._visit_next(context, item, wanted)
                 wanted = ""
             except GoItem as go:
                 wanted = go.item
@@ -177,9 +182,10 @@ class Machine:
             if wanted and unit is not None and not holds_inside(unit, wanted):
                 raise GoItem(wanted)
 
-    def _visit_next(self, context: Context, wanted: str) -> Generator[None, Resume, bool]:
-        """Visit the next item; gives whether anything was left to do."""
-        item = self.selection.select(context, wanted)
+    def _visit_next(
+        self, context: Context, item: Node | None, wanted: str
+    ) -> Generator[None, Resume, bool]:
+        """Visit the next item, if one was selected; gives whether anything was left to do."""
         if item is not None:
             context.item = item
             yield from self.visit(context, item, wanted)
@@ -198,6 +204,19 @@ class Machine:
         except GoItem as go:
             return go.item
         return ""
+
+    def _handled_before_items(
+        self, context: Context, error: Thrown | ScriptError
+    ) -> Generator[None, Resume, str]:
+        """Handle an event at initialisation or selection; gives the item that its handler goes to.
+
+        Raises:
+            GoOut: it leads nowhere, so the dialog is over (appendix C).
+        """
+        wanted = yield from self._handled(context, error)
+        if not wanted:
+            raise GoOut
+        return wanted
 
     def _initialise(self, context: Context, form: Node) -> Flow:
         """Make a form's variables and those of its items, in document order (2.1.6.1)."""

@@ -188,12 +188,39 @@ case(
     logs=["b"],
 )
 case(
-    "after a handler at initialisation the first item is asked: no iteration was before it",
+    "an event at initialisation ends the dialog if its handler leads nowhere",
     "C",
     f"""<form><catch event="error"><log>odd</log></catch><var name="x" expr="zz"/>
     <field name="f"><prompt>Well?</prompt>{CITIES}</field></form>""",
-    "kyoto",
     logs=["odd"],
+    said=[],
+    ended="exit",
+)
+case(
+    "the item to which a handler at initialisation goes is asked: no iteration was before it",
+    "C",
+    f"""<form><catch event="error"><goto nextitem="f"/></catch><var name="x" expr="zz"/>
+    <field name="f"><prompt>Well?</prompt>{CITIES}</field></form>""",
+    "kyoto",
+    said=["Well?"],
+)
+case(
+    "an event at the selection of an item ends the dialog if its handler leads nowhere",
+    "C",
+    f"""<form><catch event="error"><log>odd</log><assign name="d" expr="1"/></catch>
+    <var name="d" expr="0"/><block>First.</block>
+    <field name="f" cond="d == 1 || zz"><prompt>Well?</prompt>{CITIES}</field></form>""",
+    logs=["odd"],
+    said=["First."],
+    ended="exit",
+)
+case(
+    "a handler of an event at the selection of an item may go to one",
+    "C",
+    f"""<form><catch event="error"><reprompt/><goto nextitem="f"/></catch>
+    <block cond="zz">Never.</block><field name="f"><prompt>Well?</prompt>{CITIES}
+    <filled><exit/></filled></field></form>""",
+    "kyoto",
     said=["Well?"],
 )
 case(
@@ -289,7 +316,8 @@ def test_what_fills_no_item_is_no_nomatch() -> None:  # 2.1.6, C
     "text",
     [
         "<form id='a'><block><goto next='#a'/></block></form>",
-        "<form><catch event='error'/><block cond='zz'/></form>",
+        "<form><catch event='error'><clear/><goto nextitem='b'/></catch><block name='b'/>"
+        "<block cond='zz'/></form>",
         "<form><catch event='error'/><subdialog name='s' src='none.vxml'/></form>",
         "<form><catch event='a'><clear/></catch><block><throw event='a'/></block></form>",
         "<catch event='error'><goto next='#a'/></catch><form id='a'><var name='x' expr='zz'/></form>",

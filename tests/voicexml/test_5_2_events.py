@@ -252,8 +252,8 @@ case(
 case(
     "an error in a document's variables does not count with those of the dialog before",
     "5.2.2",
-    """<form><var name="x" expr="zz"/><catch event="error.semantic"><log>form</log></catch>
-    <block><goto next="other.vxml"/></block></form>""",
+    """<form><var name="x" expr="zz"/><catch event="error.semantic"><log>form</log>
+    <goto nextitem="b"/></catch><block name="b"><goto next="other.vxml"/></block></form>""",
     logs=["form", "first"],
     files={
         "other": page("""<var name="x" expr="zz"/>
