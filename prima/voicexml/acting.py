@@ -23,7 +23,7 @@ from prima.interpreter.units import ARRANGING
 from prima.markup.tree import Node
 from prima.voicexml.arranging import type_of
 from prima.voicexml.cues import break_ms
-from prima.voicexml.elements import SILENT
+from prima.voicexml.elements import SILENT, says_instead
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
 
 
@@ -39,12 +39,18 @@ def _words(pieces: Iterable[Node | str]) -> Iterator[str | Expression | Pause]:
             yield piece
         elif piece.tag == "break":
             yield Pause(break_ms(piece.get("time"), piece.get("strength"), piece.get("size")))
-        elif piece.tag in ("value", "enumerate") or (piece.tag == "audio" and not piece.content):
+        elif _is_unknown(piece):
             yield Expression(piece.get("expr"), piece)
         elif piece.tag == "sub":
             yield piece.get("alias")
         elif piece.namespace != PRIMA_NAMESPACE and piece.tag not in SILENT:
             yield from _words(piece.content)
+
+
+def _is_unknown(piece: Node) -> bool:
+    """Whether only a run determines what an element says, or how long its recording plays."""
+    alone = piece.tag == "audio" and not says_instead(piece)
+    return alone or piece.tag in ("value", "enumerate")
 
 
 def commands_in(piece: Node) -> list[CommandTemplate]:

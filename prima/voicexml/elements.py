@@ -64,6 +64,11 @@ def _complete(node: Node, throws: bool) -> bool:
     return found[-1][0].tag == "else" and all(leaves(part, throws) for _, part in found)
 
 
+def says_instead(audio: Node) -> bool:
+    """Whether an audio has content, which is said if it cannot be played (4.1.3)."""
+    return bool(audio.text) or any(one.tag not in SILENT for one in audio.nodes)
+
+
 def numbered(node: Node) -> dict[int, str]:
     """The keys of a field's options or a menu's choices, by their index (2.2).
 

@@ -16,7 +16,7 @@ from prima.script.evaluation import Scope
 from prima.voicexml.arranging import Arranged, longest_of, type_of
 from prima.voicexml.cues import MAX_NAME
 from prima.voicexml.document import FetchError, Page, of_web
-from prima.voicexml.elements import SILENT, numbered, words_of
+from prima.voicexml.elements import numbered, says_instead, words_of
 from prima.voicexml.evaluating import WORD, VoiceEvaluator
 from prima.voicexml.platform import NO_CHOICES
 from prima.voicexml.settings import answering, setting
@@ -194,7 +194,7 @@ class Speaker(VoiceEvaluator):
                 return
         ms = self.recording(context.page, speech.base, name, node)
         speech.parts.append(" ")
-        if node.text or any(one.tag not in SILENT for one in node.nodes):
+        if says_instead(node):
             silent, speech.silent = speech.silent, speech.silent or ms is not None
             opened = speech.open(ms)
             self.read_all(node, context, local, speech)

@@ -10,7 +10,7 @@ from prima.checks.prices.tags import says
 from prima.devices.voice import timeline
 from prima.markup.tree import Node
 from prima.messages import Cue
-from prima.voicexml.elements import SILENT, words_of
+from prima.voicexml.elements import says_instead, words_of
 from prima.voicexml.prompts import UNKNOWN_MS
 from prima.voicexml.speech import Speech, language_of, read_markup
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
@@ -104,7 +104,7 @@ class SpeechReader:
             self._inner(node, said, menu)
             return
         ms, speech = self._recording(node.get("src")), said.speech
-        spoken = node.text or any(one.tag not in SILENT for one in node.nodes)
+        spoken = says_instead(node)
         opened = speech.open(UNKNOWN_MS if ms is None and not spoken else ms)
         if spoken:
             self._inner(node, said, menu)
