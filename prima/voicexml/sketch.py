@@ -9,10 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import cached_property
-from itertools import chain
 from urllib.parse import urlsplit
 
-from prima.interpreter.acts import Act, CommandRun, Expression, Foreach, Goto, Handler, If
+from prima.interpreter.acts import Act, CommandRun, Expression, Foreach, Goto, Handler, If, all_acts
 from prima.interpreter.elements import (
     Block,
     Document,
@@ -23,6 +22,7 @@ from prima.interpreter.elements import (
     Prompt,
     Subdialog,
     Unit,
+    all_items,
 )
 from prima.interpreter.entering import FormTarget
 from prima.interpreter.units import Finder, Reach, thrown_by
@@ -107,8 +107,8 @@ class Sketch:
         if node.tag not in ASKING:
             return Subdialog(*own, filled=filled)
         # Commands in its prompts: they are carried out before the question.
-        asked = tuple(one for one in self._acts(node, node.content) if isinstance(one, CommandRun))
-        filled = (*filled, Filled("any", (), asked, node))
+        asked = [one for one in all_acts(self._acts(node, node.content)) if type(one) is CommandRun]
+        filled = (*filled, Filled("any", (), tuple(asked), node))
         return Field(*own, prompts=tuple(self._prompts(node)), filled=filled)
 
     def _filled(self, node: Node) -> Filled:
@@ -241,9 +241,10 @@ def _platforms_own(page: Page) -> Iterator[Handler]:
 
 
 def _filled_in(items: Iterable[Item]) -> Iterator[Filled]:
-    """The ``filled`` of all fields, of those in units too."""
-    inner = chain.from_iterable(one.items if isinstance(one, Unit) else [one] for one in items)
-    return chain.from_iterable(item.filled for item in inner if isinstance(item, Field))
+    """The ``filled`` of all fields, of those in units too, without what is done in their prompts."""
+    for item in all_items(tuple(items)):
+        if isinstance(item, Field):
+            yield from (one for one in item.filled if one.node is not item.node)
 
 
 def _is_item(node: Node) -> bool:

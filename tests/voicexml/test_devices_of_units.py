@@ -52,6 +52,7 @@ def devices_of(text: str) -> set[str]:
         {"form": '<filled><p:turn angle="90"/></filled>'},
         {"form": '<filled namelist="x">Fine. <prompt>So <p:turn angle="9"/></prompt></filled>'},
         {"field": '<prompt count="2"><p:turn angle="9"/></prompt>'},
+        {"field": '<prompt cond="x"><p:turn angle="9"/></prompt>'},
         {"content": '<p:par><p:turn angle="9"/><p:speak>a</p:speak></p:par>'},
         {
             "field": '<link event="x"><grammar src="a.grxml"/></link>',
@@ -151,6 +152,8 @@ def test_a_unit_owns_what_an_answer_for_another_item_leads_to() -> None:
     other = '<field name="z"><filled><p:turn angle="9"/></filled></field>'
     assert devices_of(reaching(form=other)) == SPEECH
     assert devices_of(reaching(form=grammar + other)) == {*SPEECH, "locomotion"}
+    asked = '<field name="z"><prompt><p:turn angle="9"/></prompt></field>'
+    assert devices_of(reaching(form=grammar + asked)) == SPEECH
 
 
 # What is refused -----------------------------------------------------------------------------
