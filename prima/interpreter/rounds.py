@@ -71,18 +71,18 @@ class EventLeads:
                 self.left -= 1
                 if self.left < 0:
                     return
-                if one.node.index not in found:
-                    found.add(one.node.index)
+                if id(one) not in found:
+                    found.add(id(one))
                     left.append(one)
                     yield one
 
     def _raised_by(self, handler: Handler) -> list[str]:
-        if handler.node.index not in self._events:
+        if id(handler) not in self._events:
             raised = self._raised(handler.content)
             under = {one for name in raised for one in prefixes(name)}
-            self._events[handler.node.index] = sorted(under)
-        self.left -= len(self._events[handler.node.index])
-        return self._events[handler.node.index]
+            self._events[id(handler)] = sorted(under)
+        self.left -= len(self._events[id(handler)])
+        return self._events[id(handler)]
 
     def round(self, handler: Handler) -> bool:
         """Whether a handler leads to itself again, as far as that is followed."""
