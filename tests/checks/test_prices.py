@@ -4,9 +4,23 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from prima.checks.prices import outline
+from prima.checks.prices import Outline, outline
 from prima.loading import read_application
-from tests.helpers.certifying import FA, HEAD, PROFILE, block, lasting, priced
+from prima.loading.files import read_file
+from tests.helpers.certifying import (
+    FA,
+    HEAD,
+    PROFILE,
+    block,
+    lasting,
+    priced,
+)
+
+
+def outlined(folder: Path) -> Outline:
+    """The outline of the application whose parts have been priced."""
+    path = folder / "app.xml"
+    return outline(read_application(str(path), read_file(path))[0], PROFILE)
 
 
 def test_speech_costs_what_it_lasts(tmp_path: Path) -> None:
@@ -61,6 +75,15 @@ def test_a_question_in_a_unit_costs_the_units_longest(tmp_path: Path) -> None:
     )
     (price,) = priced(tmp_path, body)
     assert (price.what, price.lasts) == ("unit", 20_000 + lasting("Well?") + 5000)
+
+
+def test_an_answer_in_a_unit_is_a_part_of_the_unit_alone(tmp_path: Path) -> None:
+    field = '<field name="a" type="boolean"><filled><speak>Fine.</speak></filled></field>'
+    noinput = '<on event="noinput"><speak>Well?</speak></on>'
+    (price,) = priced(tmp_path, f'<form id="f"><iu>{field}{noinput}</iu></form>')
+    assert price.what == "unit" and [one.what for one in price.inner].count("speak") == 2
+    (state,) = outlined(tmp_path).states.values()
+    assert state.parts == [price]
 
 
 def test_a_loop_costs_one_loop(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from prima.checks.prices.contents import handlers_of, hooks_of, inside, own_contents, sent_by
+from prima.checks.prices.contents import handlers_of, hooks_of, own_contents, sent_by
 from prima.checks.prices.firsts import Firsts, asks_at_most, responds
 from prima.checks.prices.model import SPEECH, Gap, Outline, Price, PricedReaction, PricedState
 from prima.checks.prices.own import OwnEvents
@@ -40,14 +40,14 @@ class DialoguePrices(Times):
     def __init__(self, document: Document, profile: Profile) -> None:
         super().__init__(document, profile)
         self.inside: set[int] = set()
-        """The elements in units."""
+        """The elements in units, by their identities."""
         self.sent = sent_by(document)
         for form in document.forms.values():
             for item in all_items(form.items):
                 self._item(item, form)
-        found = [price for index, price in self.of_items.items() if index not in self.inside]
+        found = [one for one in self.of_items.values() if id(one.node) not in self.inside]
         for _, content, node in document.contents():
-            if node.index not in self.inside:
+            if id(node) not in self.inside:
                 found += self.steps(content)
         self.parts = sorted(found, key=lambda price: price.node.index)
         """All indivisible parts, in document order."""
@@ -55,9 +55,9 @@ class DialoguePrices(Times):
         self.responses = Firsts(document, self.of_items, self.step, response=True)
         self.own = OwnEvents(document, self.parts, self.steps)
         self._leads = EventLeads(raised_in)
-        self._inner = {one.node.index for _, one in handlers_of(document) if self.takes_inner(one)}
-        """The handlers of events that the application causes itself."""
-        self._everywhere = [one for one in document.handlers if one.node.index in self._inner]
+        self._inner = {id(one) for _, one in handlers_of(document) if self.takes_inner(one)}
+        """The handlers of events that the application causes itself, by their identities."""
+        self._everywhere = [one for one in document.handlers if id(one) in self._inner]
 
     def _item(self, item: Item, form: Form) -> None:
         if isinstance(item, Field):
@@ -65,7 +65,7 @@ class DialoguePrices(Times):
         elif isinstance(item, Unit):
             for inner in item.items:
                 self._item(inner, form)
-            self.inside |= {one.node.index for one in inside(item)}
+            self.inside |= {id(one) for node in item.node.nodes for one in node.walk()}
             self.of_items[item.node.index] = self.unit(item, form)
 
     # States -----------------------------------------------------------------------------
@@ -147,17 +147,18 @@ class DialoguePrices(Times):
         for item in all_items(form.items):
             handlers += item.handlers
             self._add_item(state, item, form)
-            if item.node.index not in self.inside:
+            if id(item.node) not in self.inside:
                 (answers if isinstance(item, Field) else contents).extend(own_contents(item))
-        inner = [one for one in handlers if one.node.index in self._inner]
+        inner = [one for one in handlers if id(one) in self._inner]
         self._leads.among(inner)
         state.repeats += [
             Gap(one.node.place, f"what is done about {one.events[0]} leads to it again")
             for one in inner
             if self._leads.round(one)
         ]
-        contents += [one.content for one in inner]
         self._content(state, contents, form)
+        for one in inner:
+            self._content(state, [one.content], form, inside=id(one.node) in self.inside)
         state.onward, brought = set(state.goes), set(state.brings)
         self._content(state, answers, form)
         state.brings = brought
@@ -166,7 +167,7 @@ class DialoguePrices(Times):
     def _add_item(self, state: PricedState, item: Item, form: Form) -> None:
         """Add the activity of an item: it asks, calls another form, or is a unit."""
         price = self.of_items.get(item.node.index)
-        if price is not None and item.node.index not in self.inside:
+        if price is not None and id(item.node) not in self.inside:
             state.parts.append(price)
         if isinstance(item, Subdialog):
             state.calls[item.form] = item.node
