@@ -7,13 +7,18 @@ from pathlib import Path
 from prima.checks.prices import Outline, outline
 from prima.loading import read_application
 from prima.loading.files import read_file
+from tests.helpers.certified import faults
 from tests.helpers.certifying import (
     FA,
     HEAD,
     PROFILE,
+    TOUCH,
     block,
+    certified,
     lasting,
     priced,
+    run,
+    waited,
 )
 
 
@@ -84,6 +89,30 @@ def test_an_answer_in_a_unit_is_a_part_of_the_unit_alone(tmp_path: Path) -> None
     assert price.what == "unit" and [one.what for one in price.inner].count("speak") == 2
     (state,) = outlined(tmp_path).states.values()
     assert state.parts == [price]
+
+
+def test_a_unit_whose_content_runs_once_costs_the_sum(tmp_path: Path) -> None:
+    inner = (
+        '<block><if cond="true"><speak>One.</speak></if></block><block><speak>Two.</speak></block>'
+    )
+    (unit,) = priced(tmp_path, f'<form id="f"><iu>{inner}</iu></form>')
+    assert unit.lasts == lasting("One.") + lasting("Two.")
+    error = '<on event="error"><speak>Oh.</speak></on>'
+    (unit, _) = priced(tmp_path, f'<form id="f"><iu>{inner}</iu></form>{error}')
+    assert unit.lasts == 60_000 + lasting("Two."), "each block may fail"
+
+
+def test_every_block_of_a_unit_may_fail(tmp_path: Path) -> None:
+    failing = '<block><gesture name-expr="v.a"/></block>' * 4
+    body = (
+        f'<var name="v"/><form id="f"><iu><block><speak>One.</speak></block>{failing}</iu>'
+        '<block><exit/></block></form><on event="error"><speak>This is rather long.</speak></on>'
+    )
+    found = certified(tmp_path, body)
+    at = TOUCH.replace("1s", "10ms")
+    records = run(tmp_path, str(tmp_path / "mine.xml"), str(tmp_path / "theirs.xml"), at)
+    assert waited(records) * 1000 > 4 * lasting("This is rather long.")
+    assert faults(found, records, PROFILE.voices) == []
 
 
 def test_a_loop_costs_one_loop(tmp_path: Path) -> None:

@@ -7,7 +7,11 @@ from collections.abc import Iterator, Sequence
 from prima.interpreter.acts import (
     Act,
     CommandRun,
+    Exit,
+    Goto,
     Handler,
+    If,
+    Log,
     Return,
     SendOut,
     Throw,
@@ -24,6 +28,10 @@ from prima.interpreter.elements import (
     Unit,
     all_items,
 )
+from prima.interpreter.entering import goes_to_item
+
+ONCE = (CommandRun, Exit, Goto, If, Log, Return)
+"""Acts that run once, or end a unit; a goto does if it leaves the form."""
 
 
 def handlers_of(document: Document) -> Iterator[tuple[Form | None, Handler]]:
@@ -64,10 +72,10 @@ def inside(unit: Unit) -> list[Item | Handler]:
     return found
 
 
-def again(item: Item) -> bool:
-    """Whether content may run more than once."""
-    acts = [act for content in own_contents(item) for act in all_acts(content)]
-    return any(not isinstance(act, CommandRun) for act in acts)
+def runs_once(content: Sequence[Act]) -> bool:
+    """Whether nothing in content makes it, or other content, run again before its end."""
+    acts = all_acts(content)
+    return all(isinstance(act, ONCE) and not goes_to_item(act) for act in acts)
 
 
 def sent_by(document: Document) -> set[str]:

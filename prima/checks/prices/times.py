@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from prima.checks.prices.commands import command_price, group_price, unit_price
-from prima.checks.prices.contents import again, contents_of, inside, thrown_by
+from prima.checks.prices.contents import contents_of, inside, runs_once, thrown_by
 from prima.checks.prices.model import UNKNOWN_LETTERS, Price, devices_of
 from prima.checks.prices.texts import Constants
 from prima.devices.profile import Profile
@@ -123,7 +123,7 @@ class Times:
         reached = Finder(self.document).reach(form, unit).commands
         inner += [self.command(one.command) for one in reached if not one.inside]
         lasts = unit.longest + max((one.lasts for one in inner), default=0)
-        if _runs_once(unit):
+        if _runs_once(unit) and all(one.inside for one in reached):
             lasts = min(lasts, sum(one.lasts for one in inner))
         return unit_price(unit.node, unit.devices | devices_of(inner), lasts, inner)
 
@@ -146,5 +146,6 @@ def is_inner(name: str) -> bool:
 
 def _runs_once(unit: Unit) -> bool:
     """Whether everything in a unit runs at most once."""
-    blocks = all(isinstance(item, Block) and not item.handlers for item in unit.items)
-    return blocks and not unit.handlers and not any(again(item) for item in unit.items)
+    handled = unit.handlers or any(item.handlers for item in unit.items)
+    blocks = all(isinstance(item, Block) and runs_once(item.content) for item in unit.items)
+    return blocks and not handled
