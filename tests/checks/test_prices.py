@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from prima.checks.prices import Outline, outline
 from prima.loading import read_application
 from prima.loading.files import read_file
@@ -113,6 +115,19 @@ def test_every_block_of_a_unit_may_fail(tmp_path: Path) -> None:
     records = run(tmp_path, str(tmp_path / "mine.xml"), str(tmp_path / "theirs.xml"), at)
     assert waited(records) * 1000 > 4 * lasting("This is rather long.")
     assert faults(found, records, PROFILE.voices) == []
+
+
+@pytest.mark.parametrize(
+    ("value", "again"),
+    [("'no'", False), ("true", False), ("a ? 'x' : 'y'", False), ("undefined", True), ("a", True)],
+)
+def test_an_item_that_is_given_a_value_is_not_visited_again(
+    tmp_path: Path, value: str, again: bool
+) -> None:
+    assign = f'<block><assign name="b" expr="{value}"/></block>'
+    priced(tmp_path, f'<var name="a"/><form id="f"><block name="b"/>{assign}</form>')
+    (state,) = outlined(tmp_path).states.values()
+    assert bool(state.repeats) == again
 
 
 def test_a_loop_costs_one_loop(tmp_path: Path) -> None:

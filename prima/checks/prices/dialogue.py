@@ -28,6 +28,8 @@ from prima.interpreter.elements import Document, Field, Form, Item, Link, Subdia
 from prima.interpreter.entering import goes_to_item, is_left
 from prima.interpreter.rounds import EventLeads, raised_in
 from prima.interpreter.selection import takes
+from prima.script.choices import choices
+from prima.script.literals import WORDS
 
 MOST_INNER, MOST_SCOPES = 40_000, 16_000_000
 """Maximum number of pairs of a form and a handler for all forms that are followed: for events of
@@ -209,7 +211,7 @@ class DialoguePrices(Times):
                 state.repeats.append(Gap(place, "an item of the form is visited again"))
             case Clear():
                 state.repeats.append(Gap(place, "items of the form are visited again"))
-            case Assign() if form and act.name in {one.name for one in all_items(form.items)}:
+            case Assign() if form and _may_unset(act, form):
                 state.repeats.append(Gap(place, "an item of the form may be visited again"))
             case Foreach() if self.steps(act.content):
                 state.unknown.append(Gap(place, OFTEN))
@@ -259,6 +261,13 @@ class DialoguePrices(Times):
 
 def _goes_on(act: SendOut) -> Gap:
     return Gap(act.node.place, f"its own event {act.event} makes it go on later")
+
+
+def _may_unset(act: Assign, form: Form) -> bool:
+    """Whether an assign may make the variable of an item undefined, as no text or word does."""
+    code = act.expr.code
+    known = code in WORDS or all(one.whole or one.text for one in choices(code))
+    return not known and act.name in {one.name for one in all_items(form.items)}
 
 
 def _stays(act: Act) -> bool:
