@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 from prima.interpreter.acts import (
     Act,
@@ -12,19 +13,35 @@ from prima.interpreter.acts import (
     CommandTemplate,
     Exit,
     Expression,
+    Flattened,
     Goto,
+    GroupTemplate,
     Pause,
     Return,
+    Script,
     StepTemplate,
     Text,
     Throw,
+    arrange,
 )
 from prima.interpreter.units import ARRANGING
+from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
-from prima.voicexml.arranging import type_of
+from prima.messages import Json
+from prima.voicexml.arranging import arguments_of, longest_of, type_of
 from prima.voicexml.cues import break_ms
 from prima.voicexml.elements import SILENT, says_instead
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
+
+
+@dataclass(slots=True, eq=False)
+class VoiceCommand(CommandTemplate):
+    """A Command, or spoken text, with the markup that ``text`` leaves out."""
+
+    pieces: Sequence[Node | str] = ()
+    """What is spoken, with its markup."""
+    holder: Node | None = None
+    """The element in which a prompt is."""
 
 
 def text_of(pieces: Iterable[Node | str]) -> Text:
@@ -62,32 +79,50 @@ def commands_in(piece: Node) -> list[CommandTemplate]:
     ]
 
 
-def command_of(node: Node) -> CommandTemplate:
-    """A Command's element as PRIMA's language has it, without its arguments."""
-    words = text_of(node.content) or None
-    return CommandTemplate(type_of(node), {}, words, False, (), (), node)
+def command_of(node: Node) -> VoiceCommand:
+    """A Command's element as PRIMA's language has it."""
+    name = type_of(node)
+    args: dict[str, Json | Expression] = {**arguments_of(node, TABLE_4_2.get(name))}
+    pieces = [one for one in node.content if isinstance(one, str) or one.tag != "param"]
+    return VoiceCommand(name, args, text_of(pieces) or None, False, (), (), node, pieces=pieces)
 
 
-def speak(words: Text, node: Node) -> CommandTemplate:
+def speak(
+    words: Text, node: Node, pieces: Sequence[Node | str] = (), holder: Node | None = None
+) -> CommandRun:
     """Spoken text as a Command."""
-    return CommandTemplate("speak", {}, words, False, (), (), node)
+    command = VoiceCommand("speak", {}, words, False, (), (), node, pieces=pieces, holder=holder)
+    return CommandRun((StepTemplate(command, ()),), node)
 
 
-def run_of(commands: list[CommandTemplate]) -> CommandRun:
-    """Commands one after another, as an act."""
-    steps = [StepTemplate(one, (index - 1,) if index else ()) for index, one in enumerate(commands)]
-    return CommandRun(tuple(steps), commands[0].node)
+def runs_in(piece: Node) -> Iterator[CommandRun]:
+    """The Commands of the robot in an element, itself included, as they are arranged."""
+    if piece.namespace != PRIMA_NAMESPACE:
+        for inner in piece.nodes:
+            yield from runs_in(inner)
+    elif steps := _steps([piece]):
+        yield CommandRun(steps, piece)  # an element without Commands is in a document with errors
 
 
-def saying(pieces: list[Node | str], node: Node) -> Iterator[Act]:
-    """Spoken text, and the Commands of the robot among it."""
+def _steps(nodes: Iterable[Node]) -> tuple[StepTemplate, ...]:
+    arranged: Flattened[CommandTemplate | GroupTemplate] = arrange(nodes, _step)
+    return tuple(StepTemplate(what, after) for what, after in arranged)
+
+
+def _step(node: Node) -> CommandTemplate | GroupTemplate | None:
+    """A Command, or a unit of them (U4)."""
+    if node.tag == "iu":
+        return GroupTemplate(_steps(node.nodes), longest_of(node), node)
+    return command_of(node) if node.tag != "param" else None
+
+
+def saying(pieces: list[Node | str], node: Node, holder: Node) -> Iterator[Act]:
+    """Spoken text of an element, and the Commands of the robot among it."""
     words = text_of(pieces)
     if words:
-        yield run_of([speak(words, node)])
+        yield speak(words, node, pieces, holder)
     for piece in pieces:
-        commands = commands_in(piece) if isinstance(piece, Node) else []
-        if commands:
-            yield run_of(commands)
+        yield from runs_in(piece) if isinstance(piece, Node) else ()
 
 
 def code_of(node: Node, attribute: str) -> Expression | None:
@@ -119,6 +154,10 @@ def _assign(node: Node) -> Act:
     return Assign(node.get("name"), Expression(node.get("expr"), node), node)
 
 
+def _script(node: Node) -> Act:
+    return Script(Expression(node.own_text, node, ""), node)
+
+
 def _throw(node: Node) -> Act:
     event = node.get("event") or Expression(node.get("eventexpr"), node, "eventexpr")
     return Throw(event, "", node)
@@ -141,6 +180,7 @@ def _return(node: Node) -> Act:
 
 ACTS: Mapping[str, Callable[[Node], Act]] = {
     "assign": _assign,
+    "script": _script,
     "throw": _throw,
     "goto": _goto,
     "submit": _goto,

@@ -1,14 +1,16 @@
 """A VoiceXML document as the values that checks of PRIMA's own language work on.
 
 What is found out without running anything is found out of both languages in the same way: what
-units reach (U5), how long they speak, what is said twice (O3). A sketch has what such checks need
-and nothing else: of a prompt its words, of a question that it asks.
+units reach (U5), how long they speak, what is said twice (O3), how long others wait (certificates).
+A sketch has what such checks need and nothing else: of a question that it asks, of a grammar that
+an answer may fill other items.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import cached_property
+from itertools import chain
 from urllib.parse import urlsplit
 
 from prima.interpreter.acts import Act, CommandRun, Expression, Foreach, Goto, Handler, If, all_acts
@@ -33,8 +35,7 @@ from prima.script.choices import PossibleText, choices
 from prima.voicexml.acting import (
     ACTS,
     code_of,
-    commands_in,
-    run_of,
+    runs_in,
     saying,
     speak,
     spoken_pieces,
@@ -49,6 +50,7 @@ from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 ASKING = ("field", "initial", "record", "menu")
 FETCHING = ("goto", "submit", "data")
 """Elements of content whose fetch may play something."""
+CALLING = ("subdialog", "transfer")
 LEADING = ("goto", "submit", "subdialog")
 FAILURES = ("error.badfetch", "error.unsupported.format", "error.unsupported.builtin")
 """Events thrown by a question's grammars and by fetches, besides those of PRIMA's language."""
@@ -60,15 +62,18 @@ class Sketch:
 
     def __init__(self, page: Page, root: Page | None) -> None:
         self.page = page
-        self._wider = [page.root, *([root.root] if root is not None else [])]
+        self.wider = [page.root, *([root.root] if root is not None else [])]
         self._units: dict[int, tuple[Form, Unit]] = {}
-        handlers = [one for node in self._wider for one in self._handlers(node)]
+        handlers = [one for node in self.wider for one in self._handlers(node)]
         handlers += _platforms_own(page)
         forms = {name: self._form(name, node) for name, node in page.dialogs.items()}
+        properties = {
+            name: one for node in self.wider[::-1] for name, one in _properties(node).items()
+        }
         self.document = Document(
-            "", "", page.lang, page.uri, forms, tuple(handlers), (), (), (), {}, page.root
+            "", "", page.lang, page.uri, forms, tuple(handlers), (), (), (), properties, page.root
         )
-        self._finder = Finder(self.document, self._thrown)
+        self.finder = Finder(self.document, self._thrown)
 
     @property
     def units(self) -> list[tuple[Form, Unit]]:
@@ -78,7 +83,7 @@ class Sketch:
     def reach(self, unit: Node | Unit) -> Reach:
         """All that may run in a unit."""
         node = unit.node if isinstance(unit, Unit) else unit
-        return self._finder.reach(*self._units[node.index])
+        return self.finder.reach(*self._units[node.index])
 
     # Dialogs ------------------------------------------------------------------------------
 
@@ -89,26 +94,27 @@ class Sketch:
         if node.all("grammar"):  # an answer may fill any item of the form
             filled += _filled_in(made)
         handlers = () if node.tag == "menu" else self._handlers(node)
-        form = Form(name, tuple(made), handlers, (), (), (), tuple(filled), {}, node)
+        form = Form(name, tuple(made), handlers, (), (), (), tuple(filled), _properties(node), node)
         self._units |= {one.node.index: (form, one) for one in made if isinstance(one, Unit)}
         return form
 
     def _item(self, node: Node) -> Item:
         name = node.get("name") or f"#{node.index}"
         expr, cond = code_of(node, "expr"), code_of(node, "cond")
-        properties: dict[str, Json] = {}
-        own = (name, expr, cond, self._handlers(node), properties, node, None)
+        own = (name, expr, cond, self._handlers(node), _properties(node), node, None)
         if is_unit(node):
             inner = tuple(self._item(one) for one in node.nodes if _is_item(one))
             return Unit(*own, items=inner, longest=longest_of(node))
         if node.tag == "block":
             return Block(*own, content=self._acts(node, node.content))
         filled = tuple(self._filled(one) for one in node.all("filled"))
+        # Its prompts and the Commands in them: they are carried out before it asks or calls.
+        asked = [one for one in all_acts(self._acts(node, node.content)) if type(one) is CommandRun]
+        fetched = [node] if node.tag in CALLING else node.all("choice")
+        asked += chain.from_iterable(map(self.fetching, fetched))
+        filled = (*filled, Filled("any", (), tuple(asked), node))
         if node.tag not in ASKING:
             return Subdialog(*own, filled=filled)
-        # Commands in its prompts: they are carried out before the question.
-        asked = [one for one in all_acts(self._acts(node, node.content)) if type(one) is CommandRun]
-        filled = (*filled, Filled("any", (), tuple(asked), node))
         return Field(*own, prompts=tuple(self._prompts(node)), filled=filled)
 
     def _filled(self, node: Node) -> Filled:
@@ -140,25 +146,24 @@ class Sketch:
     # Content ------------------------------------------------------------------------------
 
     def _acts(self, holder: Node, content: Iterable[Node | str]) -> tuple[Act, ...]:
-        """The content of an element as acts; bare text belongs to the element."""
+        """The content of an element as acts; text outside prompts is at its first element."""
         made: list[Act] = []
         for pieces, node in spoken_pieces(content):
-            cond = code_of(node, "cond") if pieces and node is not None else None
-            if pieces and cond is not None:
-                made.append(If(((cond, tuple(saying(pieces, node or holder))),), holder))
-            elif pieces:
-                made += saying(pieces, node or holder)
-            elif node is not None:
-                made += self._act(node)
+            if not pieces:
+                made += self._act(node) if node is not None else ()
+                continue
+            at = node or (pieces[0] if isinstance(pieces[0], Node) else holder)
+            said = saying(pieces, at, holder)
+            cond = code_of(node, "cond") if node is not None else None
+            made += [If(((cond, tuple(said)),), holder)] if cond is not None else said
         return tuple(made)
 
     def _act(self, node: Node) -> Iterator[Act]:
         if node.namespace == PRIMA_NAMESPACE:
-            commands = commands_in(node)
-            yield from [run_of(commands)] if commands else ()  # none in a document with errors
+            yield from runs_in(node)
             return
-        if node.tag in FETCHING and (node.get("fetchaudio") or self._plays_somewhere):
-            yield run_of([speak((Expression("", node, "fetchaudio"),), node)])
+        if node.tag in FETCHING:
+            yield from self.fetching(node)
         if node.tag == "if":
             parts = branches(node)
             found = [(code_of(head, "cond"), self._acts(node, part)) for head, part in parts]
@@ -169,11 +174,21 @@ class Sketch:
         elif node.tag in ACTS:
             yield ACTS[node.tag](node)
 
+    def fetching(self, node: Node) -> Iterator[CommandRun]:
+        """What may be played while an element's resource is fetched, or a call is made."""
+        fetched = node.get("fetchaudio") or self._played
+        audio = fetched if node.tag != "transfer" else node.get("transferaudio")
+        here = node.tag != "submit" and (node.get("next") or node.get("src")).startswith("#")
+        if audio and not here:
+            said = f"[{audio.rpartition('/')[2]}]"
+            yield speak((Expression("", node, "fetchaudio"),), node, (said,))
+
     @cached_property
-    def _plays_somewhere(self) -> bool:
-        """Whether a property says what is played while an element's resource is fetched."""
-        properties = (one for wider in self._wider for one in wider.walk() if one.key == "property")
-        return any(one.get("name") == "fetchaudio" for one in properties)
+    def _played(self) -> str:
+        """The longest name that a property gives of what is played during fetches."""
+        properties = (one for wider in self.wider for one in wider.walk() if one.key == "property")
+        found = (one.get("value") for one in properties if one.get("name") == "fetchaudio")
+        return max(found, key=len, default="")
 
     def leads(self, act: Goto | Subdialog) -> list[FormTarget]:
         """The dialogs that an element leads to, of this document or of others."""
@@ -216,7 +231,7 @@ class Sketch:
     @cached_property
     def _called_outside(self) -> list[str | None]:
         """Events that the user may cause anywhere in the document."""
-        return list(dict.fromkeys(one for node in self._wider for one in self._called_in(node)))
+        return list(dict.fromkeys(one for node in self.wider for one in self._called_in(node)))
 
     @cached_property
     def _holders(self) -> dict[int, Form]:
@@ -236,7 +251,7 @@ class Sketch:
 def _platforms_own(page: Page) -> Iterator[Handler]:
     """The platform's own handlers that speak, which take what no other handler does (5.2.5)."""
     for event, words in own_words(page.lang).items():
-        said = run_of([speak((words,), page.root)])
+        said = speak((words,), page.root, (words,))
         yield Handler((event,), None, 1, None, (said,), page.root)
 
 
@@ -245,6 +260,11 @@ def _filled_in(items: Iterable[Item]) -> Iterator[Filled]:
     for item in all_items(tuple(items)):
         if isinstance(item, Field):
             yield from (one for one in item.filled if one.node is not item.node)
+
+
+def _properties(node: Node) -> dict[str, Json]:
+    """The properties that an element sets."""
+    return {one.get("name"): one.get("value") for one in node.all("property")}
 
 
 def _is_item(node: Node) -> bool:

@@ -97,6 +97,7 @@ def test_a_unit_that_says_nothing_does_not_own_the_speaker() -> None:
     sets = '<property name="fetchaudio" value="a.wav"/>'
     assert devices_of(vxml(sets + unit(music.replace(" fetchaudio='a.wav'", "")))) == {"speaker"}
     assert devices_of(vxml(sets + unit("<block><script src='a.js'/></block>"))) == set()
+    assert devices_of(vxml(sets + unit("<block><goto next='#x'/></block>"))) == set()
     described = "<audio src='a.wav'><desc>A tune.</desc></audio>"
     assert devices_of(vxml(unit(f"<block>{described}</block>"))) == {"speaker"}
 
