@@ -10,7 +10,9 @@ from prima.checks.prices import Price, outline
 from prima.loading import read_application
 from prima.loading.files import read_file
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
+from tests.helpers.certified import faults
 from tests.helpers.certifying import (
+    FA,
     PROFILE,
     TOUCH,
     block,
@@ -125,7 +127,7 @@ def test_a_unit_around_blocks_of_voicexml_costs_their_sum(tmp_path: Path) -> Non
     (unit,) = voice_parts(tmp_path, in_unit(inner))
     assert unit.lasts == lasting("One.") + 1500 + lasting("Two.")
     outer = '<catch event="x">Three.</catch>'
-    (three, more) = voice_parts(
+    (more, three) = voice_parts(
         tmp_path, in_unit(f'{inner}<block><throw event="x"/></block>') + outer
     )
     assert (more.what, more.lasts) == ("unit", 20_000 + 1500), "nobody knows how often it is thrown"
@@ -135,7 +137,7 @@ def test_a_unit_around_blocks_of_voicexml_costs_their_sum(tmp_path: Path) -> Non
 def test_a_unit_of_voicexml_may_end_long_after_its_time(tmp_path: Path) -> None:
     words = SPOKEN * 10
     inner = ASKED.format("") + "<block>One.</block>"
-    (said, unit) = voice_parts(tmp_path, in_unit(inner) + f"<noinput>{words}<exit/></noinput>")
+    (unit, said) = voice_parts(tmp_path, in_unit(inner) + f"<noinput>{words}<exit/></noinput>")
     assert said.lasts == lasting(words)
     assert unit.lasts == 20_000 + lasting(words) + 5001, "that is said before it is asked again"
 
@@ -165,3 +167,53 @@ def test_a_reaction_of_voicexml_begins_with_all_branches_of_a_par(tmp_path: Path
     document, _ = read_application(ea, read_file(Path(ea)))
     (reaction,) = outline(document, PROFILE).reactions
     assert [one.what for one in reaction.firsts] == ["speak", "turn"]
+
+
+DRIVES = FA.replace("<speak>Yes?</speak>", '<topological-move to="door"/>')
+
+
+def test_a_question_of_voicexml_is_asked_as_often_as_its_handlers_let_it(tmp_path: Path) -> None:
+    handlers = '<noinput count="4"><exit/></noinput><nomatch count="2"><exit/></nomatch><noinput><reprompt/></noinput>'
+    body = f"<form>{ASKED.format(handlers)}</form>"
+    found, fa, ea = voiced(tmp_path, body, DRIVES)
+    records = run(tmp_path, fa, ea, TOUCH.replace("1s", "10ms"))
+    asked = [one for one in records if one["phase"] == "start" and one.get("text") == "Well?"]
+    assert len(asked) == 4 and faults(found, records, PROFILE.voices) == []
+
+
+def test_each_text_of_a_block_of_voicexml_is_a_part(tmp_path: Path) -> None:
+    log = "<log>So.</log>"
+    body = f"<form><block>{SPOKEN}{log}So.<exit/></block></form>"
+    assert [one.lasts for one in voice_parts(tmp_path, body)] == [lasting(SPOKEN), lasting("So.")]
+    found, fa, ea = voiced(tmp_path, body)
+    records = run(tmp_path, fa, ea, TOUCH.replace("1s", "10ms"))
+    assert faults(found, records, PROFILE.voices) == []
+
+
+def test_a_reaction_of_voicexml_that_may_bring_its_own_event_is_told(tmp_path: Path) -> None:
+    body = '<form><block/></form><catch event="human.lost"><p:turn angle="180"/></catch>'
+    (starved,) = voiced(tmp_path, body)[0].starves
+    assert starved.what == "what is done about human.lost may bring it again"
+
+
+@pytest.mark.parametrize(("value", "again"), [("true", False), ("undefined", True)])
+def test_an_item_of_voicexml_that_is_unset_is_visited_again(
+    tmp_path: Path, value: str, again: bool
+) -> None:
+    assign = f'<block>Hm.<assign name="b" expr="{value}"/></block>'
+    found, _, _ = voiced(tmp_path, f'<form><block name="b">So.</block>{assign}</form>')
+    reasons = [one.what for one in found.starves]
+    assert ("an item of the dialog may be visited again" in reasons) == again
+
+
+def test_what_is_played_during_fetches_of_voicexml_is_priced_with_each(tmp_path: Path) -> None:
+    plays = '<property name="fetchaudio" value="tune.wav"/>'
+    menu = '<menu id="m"><choice next="more.vxml">x</choice></menu>'
+    subdialog = '<subdialog name="s" src="more.vxml"/><subdialog name="t" src="#m"/>'
+    goto = '<block><goto next="more.vxml" fetchaudio="a.wav"/></block>'
+    _, _, ea = voiced(tmp_path, f"{plays}<form>{subdialog}{goto}</form>{menu}", more="<form/>")
+    document, _ = read_application(ea, read_file(Path(ea)))
+    found = [(one.node.tag, one.lasts) for one in outline(document, PROFILE).parts]
+    tune = lasting("[tune.wav]")
+    fetched = [("subdialog", tune), ("goto", lasting("[a.wav]")), ("menu", 6515), ("choice", tune)]
+    assert found == fetched

@@ -28,6 +28,7 @@ from prima.interpreter.elements import Document, Field, Form, Item, Link, Subdia
 from prima.interpreter.entering import goes_to_item, is_left
 from prima.interpreter.rounds import EventLeads, raised_in
 from prima.interpreter.selection import takes
+from prima.interpreter.units import Finder
 from prima.script.choices import choices
 from prima.script.literals import WORDS
 
@@ -39,8 +40,11 @@ the application's own, and for any."""
 class DialoguePrices(Times):
     """The indivisible parts of an application in PRIMA's language, and its outline."""
 
-    def __init__(self, document: Document, profile: Profile) -> None:
-        super().__init__(document, profile)
+    form_word = "form"
+    """What its language calls a form in messages."""
+
+    def __init__(self, document: Document, profile: Profile, finder: Finder | None = None) -> None:
+        super().__init__(document, profile, finder or Finder(document))
         self.inside: set[int] = set()
         """The elements in units, by their identities."""
         self.sent = sent_by(document)
@@ -51,12 +55,13 @@ class DialoguePrices(Times):
         for _, content, node in document.contents():
             if id(node) not in self.inside:
                 found += self.steps(content)
-        self.parts = sorted(found, key=lambda price: price.node.index)
+        once = {id(price): price for price in found}.values()
+        self.parts = sorted(once, key=lambda price: price.node.index)
         """All indivisible parts, in document order."""
         self.firsts = Firsts(document, self.of_items, self.step)
         self.responses = Firsts(document, self.of_items, self.step, response=True)
-        self.own = OwnEvents(document, self.parts, self.steps)
-        self._leads = EventLeads(raised_in)
+        self.own = OwnEvents(document, self.parts, self.steps, self.raised)
+        self._leads = EventLeads(self.raised)
         self._inner = {id(one) for _, one in handlers_of(document) if self.takes_inner(one)}
         """The handlers of events that the application causes itself, by their identities."""
         self._everywhere = [one for one in document.handlers if id(one) in self._inner]
@@ -80,7 +85,7 @@ class DialoguePrices(Times):
         """
         forms = self.document.forms.values()
         self._check_size(len(forms), sum(1 for _ in handlers_of(self.document)))
-        states = {form.id: self._state(form) for form in forms}
+        states = {self.name_of(form): self._state(form) for form in forms}
         reactions: list[PricedReaction] = []
         for form, handler in handlers_of(self.document):
             reactions += self._reactions(handler, form, self.own.leads_round(handler, form))
@@ -142,9 +147,11 @@ class DialoguePrices(Times):
 
     def _state(self, form: Form) -> PricedState:
         """The activity of a form, and the states that its answers and its own events lead to."""
-        state = PricedState(form.id, form.node)
+        state = PricedState(self.name_of(form), form.node)
         contents: list[Sequence[Act]] = []
-        answers: list[Sequence[Act]] = [filled.content for filled in form.filled]
+        answers: list[Sequence[Act]] = [
+            filled.content for filled in form.filled if id(filled.node) not in self.inside
+        ]
         handlers = [*form.handlers, *self._everywhere]
         for item in all_items(form.items):
             handlers += item.handlers
@@ -162,7 +169,7 @@ class DialoguePrices(Times):
         for one in inner:
             self._content(state, [one.content], form, inside=id(one.node) in self.inside)
         state.onward, brought = set(state.goes), set(state.brings)
-        self._content(state, answers, form)
+        self._content(state, {id(one): one for one in answers}.values(), form)
         state.brings = brought
         return state
 
@@ -172,7 +179,7 @@ class DialoguePrices(Times):
         if price is not None and id(item.node) not in self.inside:
             state.parts.append(price)
         if isinstance(item, Subdialog):
-            state.calls[item.form] = item.node
+            state.calls |= dict.fromkeys(self.leads(item), item.node)
         elif isinstance(item, Field):
             state.raises |= {"noinput", "nomatch"}
             most = asks_at_most(item, form, self.document)
@@ -203,22 +210,35 @@ class DialoguePrices(Times):
     def _lead(self, state: PricedState, act: Act, form: Form | None) -> None:
         place = act.node.place
         match act:
-            case Goto(form=str(name)) if name:
-                state.goes[name] = act.node
-            case Goto(form=Expression()):
-                state.goes |= dict.fromkeys(self.document.forms, act.node)
+            case Goto() if goes_to_item(act):
+                state.repeats.append(
+                    Gap(place, f"an item of the {self.form_word} is visited again")
+                )
             case Goto():
-                state.repeats.append(Gap(place, "an item of the form is visited again"))
+                state.goes |= dict.fromkeys(self.leads(act), act.node)
             case Clear():
-                state.repeats.append(Gap(place, "items of the form are visited again"))
+                state.repeats.append(Gap(place, f"items of the {self.form_word} are visited again"))
             case Assign() if form and _may_unset(act, form):
-                state.repeats.append(Gap(place, "an item of the form may be visited again"))
+                again = f"an item of the {self.form_word} may be visited again"
+                state.repeats.append(Gap(place, again))
             case Foreach() if self.steps(act.content):
                 state.unknown.append(Gap(place, OFTEN))
             case SendOut() if act.event:
                 state.unknown.append(_goes_on(act))
 
+    def leads(self, act: Goto | Subdialog) -> Iterable[str]:
+        """The states to which an act or a call leads."""
+        return self.document.forms if isinstance(act.form, Expression) else [act.form or ""]
+
+    def name_of(self, form: Form) -> str:
+        """The name of a form's state."""
+        return form.id
+
     # Events -----------------------------------------------------------------------------
+
+    def raised(self, content: Sequence[Act]) -> set[str]:
+        """The application's own events after which content goes on by itself."""
+        return raised_in(content)
 
     def _reactions(
         self, handler: Handler, form: Form | None, rounds: bool

@@ -9,7 +9,7 @@ from prima.checks.prices.contents import handlers_of
 from prima.checks.prices.model import Price
 from prima.interpreter.acts import Act, Assign, CommandRun, Handler, Script, SendOut, all_acts
 from prima.interpreter.elements import Document, Form
-from prima.interpreter.rounds import EventLeads, raised_in
+from prima.interpreter.rounds import EventLeads, Raised
 from prima.interpreter.selection import prefixes, takes
 from prima.interpreter.sensors import sensors_of
 
@@ -37,9 +37,11 @@ class OwnEvents:
         document: Document,
         parts: Iterable[Price],
         steps: Callable[[Sequence[Act]], list[Price]],
+        at_once: Raised,
     ) -> None:
         self._document = document
         self._steps = steps
+        self._at_once = at_once
         self._takes = sum(part.lasts for part in parts)
         """The duration (ms) of all of it: others may act before an event that comes later."""
         self._watches = [
@@ -68,7 +70,7 @@ class OwnEvents:
 
         One sent when a Command has ended comes later: a waiting reaction goes first.
         """
-        found = raised_in(content)
+        found = set(self._at_once(content))
         for act in all_acts(tuple(takewhile(lambda one: not isinstance(one, CommandRun), content))):
             if isinstance(act, SendOut) and isinstance(act.delay, int) and act.delay < self._takes:
                 found.add(act.event)

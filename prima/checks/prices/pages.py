@@ -50,6 +50,8 @@ class PricedPages:
                     gap = self.target(page, node).gap
                     self.gaps += [gap] if gap else []
         self.gaps = list(dict.fromkeys(self.gaps))
+        self.thrown = {name for page in self for name in _thrown_by(page.root)}
+        """The events that it throws itself; the empty name means those of expressions."""
 
     def __iter__(self) -> Iterator[Page]:
         """The documents, further ones as they are found."""
@@ -115,3 +117,13 @@ class PricedPages:
             return self.document.recording_ms(uri)
         except (FetchError, ValueError):
             return None
+
+
+def _thrown_by(root: Node) -> Iterator[str]:
+    """The events that a document throws itself; the empty name means those of expressions."""
+    for node in root.walk():
+        if node.tag in ("throw", "link", "choice", "return"):
+            if node.get("event"):
+                yield node.get("event")
+            elif node.get("eventexpr"):
+                yield ""

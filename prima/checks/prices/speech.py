@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from prima.checks.prices.model import UNKNOWN_LETTERS
-from prima.checks.prices.tags import says
 from prima.devices.voice import timeline
 from prima.markup.tree import Node
 from prima.messages import Cue
 from prima.voicexml.elements import says_instead, words_of
 from prima.voicexml.prompts import UNKNOWN_MS
 from prima.voicexml.speech import Speech, language_of, read_markup
-from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 SAYS = "an expression gives a part of what it says"
 REPEATED = "an expression says how often a part of it is said"
@@ -114,19 +113,6 @@ class SpeechReader:
         speech.parts.append(" ")
 
 
-def utterances(node: Node) -> Iterator[tuple[Node, list[Node | str]]]:
-    """The speech of an element's own content: each prompt, and text between other elements.
-
-    Each comes with the element at which it is reported.
-    """
-    loose: list[Node | str] = []
-    for piece in [*node.content, None]:
-        if isinstance(piece, str) or (piece is not None and piece.tag in SPOKEN - {"prompt"}):
-            loose.append(piece)
-            continue
-        if says(loose):
-            first = loose[0]
-            yield first if isinstance(first, Node) else node, loose
-        loose = []
-        if piece is not None and piece.tag == "prompt":
-            yield piece, list(piece.content)
+def says(pieces: Iterable[Node | str]) -> bool:
+    """Whether some pieces contain anything to say."""
+    return any(isinstance(one, Node) or one.strip() for one in pieces)

@@ -15,6 +15,7 @@ from prima.interpreter.acts import (
     CommandRun,
     CommandTemplate,
     Expression,
+    GroupTemplate,
     Handler,
     Pause,
     StepTemplate,
@@ -42,13 +43,16 @@ SERVICES = "error.service"
 class Times:
     """How long Commands, questions and units may last."""
 
-    def __init__(self, document: Document, profile: Profile) -> None:
+    def __init__(self, document: Document, profile: Profile, finder: Finder) -> None:
         self.document = document
         self.profile = profile
         self.constants = Constants(document)
         self.thrown = thrown_by(document)
         self.of_items: dict[int, Price] = {}
         """Durations of fields and units, by the index of their element."""
+        self._of_steps: dict[int, Price] = {}
+        """Durations of steps, by their identities."""
+        self.finder = finder
 
     def steps(self, content: Sequence[Act]) -> list[Price]:
         """The parts of executable content."""
@@ -57,7 +61,11 @@ class Times:
 
     def step(self, step: StepTemplate) -> Price:
         """A Command, or a unit of them (U4)."""
-        what = step.what
+        if id(step) not in self._of_steps:
+            self._of_steps[id(step)] = self._step(step.what)
+        return self._of_steps[id(step)]
+
+    def _step(self, what: CommandTemplate | GroupTemplate) -> Price:
         if isinstance(what, CommandTemplate):
             return self.command(what)
         inner = [self.step(one) for one in what.steps]
@@ -69,9 +77,12 @@ class Times:
             name: None if isinstance(value, Expression) else value
             for name, value in command.args.items()
         }
+        return command_price(command.node, command.type, args, self.said(command), self.profile)
+
+    def said(self, command: CommandTemplate) -> tuple[int, str] | None:
+        """How long a Command speaks at most (ms), and why it may be longer; None if it is silent."""
         lang = command.lang or self.document.lang
-        speech = self.speech(command.text, lang) if command.text else None
-        return command_price(command.node, command.type, args, speech, self.profile)
+        return self.speech(command.text, lang) if command.text else None
 
     def speech(self, text: Text, lang: str) -> tuple[int, str]:
         """The longest duration of a text (ms), and why it may be longer."""
@@ -120,12 +131,12 @@ class Times:
     def unit(self, unit: Unit, form: Form) -> Price:
         """A unit around form items: its longest duration, and what then runs to its end (U5)."""
         inner = [price for one in inside(unit) for price in self._within(one, unit)]
-        reached = Finder(self.document).reach(form, unit).commands
-        inner += [self.command(one.command) for one in reached if not one.inside]
+        reach = self.finder.reach(form, unit)
+        inner += [self.command(one.command) for one in reach.commands if not one.inside]
         lasts = unit.longest + max((one.lasts for one in inner), default=0)
-        if _runs_once(unit) and all(one.inside for one in reached):
+        if _runs_once(unit) and all(one.inside for one in reach.commands):
             lasts = min(lasts, sum(one.lasts for one in inner))
-        return unit_price(unit.node, unit.devices | devices_of(inner), lasts, inner)
+        return unit_price(unit.node, reach.devices | devices_of(inner), lasts, inner)
 
     def _within(self, part: Item | Handler, unit: Unit) -> list[Price]:
         own = self.of_items.get(part.node.index) if part is not unit else None

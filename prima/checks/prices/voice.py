@@ -1,183 +1,288 @@
-"""Prices of a VoiceXML application, and the order of its dialogs."""
+"""Prices of a VoiceXML application, by the sketches of its documents."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import cached_property
 from itertools import chain
 
+from prima.checks.prices.dialogue import DialoguePrices
 from prima.checks.prices.firsts import responds
-from prima.checks.prices.model import Gap, Outline, Price, PricedReaction, PricedState
-from prima.checks.prices.pages import TARGETS
-from prima.checks.prices.tags import holders, is_foreign, returns, thrown_by
-from prima.checks.prices.times import ASKED_AGAIN, OFTEN, QUESTION
-from prima.checks.prices.voicetimes import VoiceTimes
+from prima.checks.prices.model import Outline, Price, PricedReaction, PricedState
+from prima.checks.prices.pages import TARGETS, PageTarget, PricedPages
+from prima.checks.prices.speech import SpeechReader, says
+from prima.checks.prices.times import ASKED_AGAIN, QUESTION, SERVICES
 from prima.devices.profile import Profile
+from prima.devices.voice import duration
+from prima.interpreter.acts import (
+    Act,
+    Assign,
+    Clear,
+    CommandRun,
+    CommandTemplate,
+    Goto,
+    Handler,
+    Script,
+    all_acts,
+)
+from prima.interpreter.elements import Field, Form, Item, Subdialog, Unit, all_items
+from prima.interpreter.entering import goes_to_item, is_left
 from prima.interpreter.selection import takes
+from prima.language.values import milliseconds
 from prima.markup.tree import Node
-from prima.voicexml.arranging import UNIT
+from prima.voicexml.acting import VoiceCommand
+from prima.voicexml.calls import CONNECT_MS, kind_of
 from prima.voicexml.document import Page, VoiceDocument
-from prima.voicexml.elements import HANDLERS, handler_names, leaves, to_item
-from prima.voicexml.sketch import ASKING, Sketch
-from prima.voicexml.vocabulary import SPOKEN
+from prima.voicexml.platform import own_words
+from prima.voicexml.recorder import BEEP_MS
+from prima.voicexml.sketch import FETCHING, Sketch
+from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
-SILENT_ACTS = ("assign", "var", "log", "script", "clear", "desc")
+SPEAKER = frozenset({"speaker"})
+TIMEOUT_MS = 5000
+LISTENING_MS = 600_000
+"""How long a question during a call listens at most, before it is repeated."""
+OWN = ("noinput", "nomatch", "help", "cancel", "exit", "error", "maxspeechtimeout")
+"""VoiceXML's own events: handling them is not a reaction."""
 
 
-class VoicePrices(VoiceTimes):
+class VoicePrices:
     """The outline of a VoiceXML application and its further documents."""
 
     def __init__(self, document: VoiceDocument, profile: Profile) -> None:
-        super().__init__(document, profile)
-        self.thrown = {name for page in self.pages for name in thrown_by(page.root)}
-        self.parts: list[Price] = []
-        self.states: dict[str, PricedState] = {}
-        self.caught: list[tuple[Node, PricedState]] = []
-        self.inside: set[int] = set()
-        """The elements in units around form items, by their identities."""
-        for page in self.pages:
-            self._say(page)
-        for page in self.pages:
-            self._read(page)
-
-    def _say(self, page: Page) -> None:
-        """The speech of the elements of a document."""
-        self.page = page
-        for node in [*page.root.all(*HANDLERS), *page.dialogs.values()]:
-            for holder in holders(node):
-                self.said[id(holder)] = list(self._own(holder))
-
-    def _read(self, page: Page) -> None:
-        """Add the activity of a document."""
-        self.page, self.sketch = page, Sketch(page, self.pages.root(page))
-        units = [one for dialog in page.dialogs.values() for one in dialog.nodes if one.key == UNIT]
-        self.inside |= {id(node) for unit in units for node in unit.walk()}
-        for name, dialog in page.dialogs.items():
-            self.states[self._key(page, name)] = self._dialog(name, dialog)
-        for node in page.root.all(*HANDLERS):
-            self._catch(node, PricedState("", node))
-        for node in page.root.all("property"):
-            self.parts += self._waiting(node, node.get("value"), node.get("name"))
-
-    @staticmethod
-    def _key(page: Page, name: str) -> str:
-        return f"{page.uri}#{name}"
+        self.pages = PricedPages(document)
+        self.documents = [PagePrices(page, self.pages, profile) for page in self.pages]
 
     def outline(self) -> Outline:
-        """All that is known of the application."""
-        parts = list({(one.node.place, one.what): one for one in self.parts}.values())
-        reactions = [
-            PricedReaction(
-                tuple(name or "message" for name in names),
-                node,
-                *self._begins(node, parts),
-                state,
-                None if leaves(node.content) and not returns(node) else "",
-            )
-            for node, state in self.caught
-            if (names := [name for name in handler_names(node) if is_foreign(name)])
-        ]
-        return Outline(parts, self.states, reactions, [], [], self.pages.gaps)
+        """All that is known of the application.
 
-    def _begins(self, handler: Node, parts: list[Price]) -> tuple[list[Price], list[Price]]:
+        Raises:
+            UsageError: a document has too many dialogs and handlers.
+        """
+        parts = [part for one in self.documents for part in one.parts]
+        states: dict[str, PricedState] = {}
+        reactions: list[PricedReaction] = []
+        for one in self.documents:
+            one.everything = parts
+            found = one.outline()
+            states |= found.states
+            reactions += found.reactions
+        return Outline(parts, states, reactions, [], [], self.pages.gaps)
+
+
+class PagePrices(DialoguePrices):
+    """The indivisible parts of a VoiceXML document, and its outline, by its sketch.
+
+    What VoiceXML has of its own: prompts with markup, which are queued until the next question;
+    recordings and calls; targets in other documents; links and choices; the platform's own
+    handlers; reactions after which the dialog goes on.
+    """
+
+    form_word = "dialog"
+
+    def __init__(self, page: Page, pages: PricedPages, profile: Profile) -> None:
+        self.page, self.pages = page, pages
+        self.everything: list[Price] = []
+        """The parts of all documents of the application."""
+        self.sketch = Sketch(page, pages.root(page))
+        self._reader = SpeechReader(lambda name: pages.recording(page, name))
+        self._units: dict[int, Unit] = {}
+        """The units around items, by those items' identities."""
+        self._heard: dict[int, list[Price]] = {}
+        """The speech of dialogs and handlers, by their identities."""
+        document = self.sketch.document
+        # What the platform's own handlers say is a part of each question.
+        handlers = tuple(one for one in document.handlers if one.node is not page.root)
+        super().__init__(replace(document, handlers=handlers), profile, self.sketch.finder)
+        # Handlers of the application root document are priced with that document.
+        self.parts = [one for one in self.parts if one.node.source is page.root.source]
+        links = (one for one in page.root.walk() if one.tag == "link")
+        self.parts += [price for link in links for price in self._fetched(link)]
+
+    # Prices of parts ----------------------------------------------------------------------
+
+    def _item(self, item: Item, form: Form) -> None:
+        """Price an item; a call to somebody else has a price as well."""
+        if isinstance(item, Unit):
+            self._units |= {id(one): item for one in item.items}
+        super()._item(item, form)
+        call = self._call(item) if item.node.tag == "transfer" else None
+        if call is not None:
+            self.of_items[item.node.index] = call
+
+    def said(self, command: CommandTemplate) -> tuple[int, str] | None:
+        """How long a prompt or a Command speaks at most (ms), and why it may be longer."""
+        if not isinstance(command, VoiceCommand) or not says(command.pieces):
+            return None
+        holder = command.holder
+        choices = holder if holder is not None and holder.tag in ("menu", "field") else None
+        lang = command.node.get("xml:lang") or self.page.lang
+        said = self._reader.read(command.pieces, lang, choices)
+        return max(said.lasts(self.profile.voices), 1), said.unknown
+
+    def question(self, field: Field, form: Form) -> Price:
+        """A question: the longest speech that may precede it, and the time for an answer."""
+        item, own = field.node, self._speech(field, [field.filled[-1].content])
+        unit = self._units.get(id(field))
+        handlers = chain(field.handlers, unit.handlers if unit else (), form.handlers)
+        heard = [*own, *chain.from_iterable(map(self._said_by, handlers)), *self._said_anywhere]
+        usual = self._timeout(field, form)
+        if not any(_is_certain(one.node) for one in own):
+            heard += self._said_in(form)
+            places: list[Form | Item] = [form, *all_items(form.items)]
+            usual = max(self._timeout(one, form) for one in places)
+        stated = [milliseconds(one.node.get("timeout"), usual) for one in heard]
+        words = max(own_words(self.page.lang).values(), key=len, default="")
+        platform = duration(words, self.page.lang, self.profile.voices)
+        lasts = max([platform, *(one.lasts for one in heard)]) + max([usual, *stated, 1]) + 1
+        if item.tag == "record":
+            lasts += milliseconds(item.get("finalsilence"), 0)
+            lasts += BEEP_MS if item.get("beep") == "true" else 0
+        unknown = next((one.unknown for one in heard if one.unknown), "")
+        what = "recording" if item.tag == "record" else "question"
+        return Price(item, what, QUESTION.devices, lasts, unknown, engages=True, listens=True)
+
+    def _timeout(self, item: Item | Form, form: Form) -> int:
+        """How long (ms) a question waits for an answer after a prompt that does not say."""
+        settings = (item.properties, form.properties, self.document.properties)
+        usual = next((one["timeout"] for one in settings if "timeout" in one), "")
+        return milliseconds(str(usual), TIMEOUT_MS)
+
+    def _said_by(self, handler: Handler) -> list[Price]:
+        """The speech of a handler."""
+        return self._speech(handler, [handler.content])
+
+    @cached_property
+    def _said_anywhere(self) -> list[Price]:
+        """The speech of the handlers of the document and of its application root."""
+        return [*chain.from_iterable(map(self._said_by, self.document.handlers))]
+
+    def _said_in(self, form: Form) -> list[Price]:
+        """The speech of a dialog and its handlers."""
+        return self._speech(form, self._contents.get(form.id, []))
+
+    @cached_property
+    def _contents(self) -> dict[str, list[Sequence[Act]]]:
+        """The content of each dialog."""
+        found: dict[str, list[Sequence[Act]]] = {}
+        for form, content, _ in self.document.contents():
+            if form is not None:
+                found.setdefault(form.id, []).append(content)
+        return found
+
+    def _speech(self, holder: object, contents: list[Sequence[Act]]) -> list[Price]:
+        """The speech in what an element holds, read once."""
+        if id(holder) not in self._heard:
+            steps = chain.from_iterable(map(self.steps, contents))
+            self._heard[id(holder)] = [one for one in steps if one.what == "speak"]
+        return self._heard[id(holder)]
+
+    def _call(self, item: Item) -> Price | None:
+        """A call to somebody else: throughout it the robot listens for the user to end it."""
+        node, kind = item.node, kind_of(item.node)
+        if not isinstance(item, Subdialog) or kind == "blind" or not node.all("grammar"):
+            return None
+        said = max((one.lasts for one in self._speech(item, [item.filled[-1].content])), default=0)
+        connect = milliseconds(node.get("connecttimeout"), CONNECT_MS)
+        longest = milliseconds(node.get("maxtime"), 0) if kind == "bridge" else 1
+        lasts = max(min(connect, LISTENING_MS) + said, min(longest or LISTENING_MS, LISTENING_MS))
+        return Price(node, "call", QUESTION.devices, lasts, engages=True, listens=True)
+
+    # Dialogs ------------------------------------------------------------------------------
+
+    def name_of(self, form: Form) -> str:
+        """The name of a dialog's state."""
+        return f"{self.page.uri}#{form.id}"
+
+    def leads(self, act: Goto | Subdialog) -> list[str]:
+        """The states to which an act or a call leads."""
+        return self.leads_from(act.node)
+
+    def leads_from(self, node: Node) -> list[str]:
+        """The states to which an element leads, in any document of the application."""
+        target = self.pages.target(self.page, node) if node.tag in TARGETS else PageTarget()
+        page = target.page
+        return [f"{page.uri}#{name}" for name in target.dialogs] if page is not None else []
+
+    def _state(self, form: Form) -> PricedState:
+        """The activity of a dialog, and where answers, links and its own events lead."""
+        state = super()._state(form)
+        links = [node for holder in (form.node, *self.sketch.wider) for node in holder.all("link")]
+        state.parts += [price for node in links for price in self._fetched(node)]
+        for node in [*links, *form.node.all("choice")]:
+            state.goes = dict.fromkeys(self.leads_from(node), node) | state.goes
+        # What a dialog repeats by itself is told before what it repeats for want of an answer.
+        state.repeats.sort(key=lambda one: one.reason == ASKED_AGAIN)
+        return state
+
+    def _fetched(self, link: Node) -> list[Price]:
+        """What may be played while a link's document is fetched."""
+        return self.steps(tuple(self.sketch.fetching(link)))
+
+    def _add_item(self, state: PricedState, item: Item, form: Form) -> None:
+        """Add the activity of an item; one in a unit ends with its unit."""
+        if id(item.node) not in self.inside:
+            super()._add_item(state, item, form)
+
+    def raised(self, content: Sequence[Act]) -> set[str]:
+        """No event that makes a dialog go on by itself: what is said waits for a question."""
+        return set()
+
+    # Events -------------------------------------------------------------------------------
+
+    def takes_inner(self, handler: Handler) -> bool:
+        """Whether it may take an event of the application's own activity."""
+        return not all(self._is_outside(name) for name in handler.events)
+
+    def _is_outside(self, name: str) -> bool:
+        thrown = self.pages.thrown
+        own = any(takes(name, one) for one in thrown) or "" in thrown
+        return bool(name) and is_foreign(name) and not own
+
+    def _reactions(
+        self, handler: Handler, form: Form | None, rounds: bool
+    ) -> Iterator[PricedReaction]:
+        """The reaction of a handler to events from outside; it goes on with its dialog."""
+        names = tuple(name or "message" for name in handler.events if is_foreign(name))
+        if not names or handler.node.source is not self.page.root.source:
+            return
+        node, content = handler.node, handler.content
+        does = self._content(PricedState(node.get("event") or node.tag, node), [content], form)
+        left = is_left(content, goes_to_item)
+        if form is not None and not left:
+            does.goes.setdefault(self.name_of(form), node)
+        returns = any(act.node.tag == "return" for act in all_acts(content))
+        stays = None if left and not returns else ""
+        yield PricedReaction(names, node, *self._after(handler), does, stays)
+
+    def _after(self, handler: Handler) -> tuple[list[Price], list[Price]]:
         """The first Commands of a handler, and those up to its response: perhaps anything."""
-        firsts = self._first(handler) or parts
-        until = firsts if all(map(responds, firsts)) else [*firsts, *parts]
+        firsts = self._first(handler) or self.everything
+        until = firsts if all(map(responds, firsts)) else [*firsts, *self.everything]
         return firsts, until if any(map(responds, until)) else []
 
-    def _first(self, handler: Node) -> list[Price]:
+    def _first(self, handler: Handler) -> list[Price]:
         """The first Commands of a handler, if they are the same in each case; otherwise nothing."""
-        for piece in handler.content:
-            if isinstance(piece, str) and not piece.strip():
-                continue
-            if isinstance(piece, Node) and piece.tag in SILENT_ACTS:
-                continue
-            said = isinstance(piece, str) or piece.tag in SPOKEN
-            if said and not (isinstance(piece, Node) and piece.get("cond")):
-                return [self._asked_anew(handler)]
-            return [] if isinstance(piece, str) else [*self._steps(piece, first=True)]
-        return []
+        acts = (act for act in handler.content if not isinstance(act, Assign | Clear | Script))
+        first = next(acts, None)
+        if not isinstance(first, CommandRun) or first.node.tag in FETCHING:
+            return []
+        if first.node.namespace != PRIMA_NAMESPACE:
+            return [self._asked_anew(handler.node)]
+        return [self.step(step) for step in first.steps if not step.after]
 
     def _asked_anew(self, handler: Node) -> Price:
         """The question that listened, asked again from its beginning with the handler's speech."""
-        lasts = max((one.lasts for one in self.parts if one.listens), default=1)
+        lasts = max((one.lasts for one in self.everything if one.listens), default=1)
         return Price(handler, "question", QUESTION.devices, lasts, engages=True)
 
-    # Dialogs ----------------------------------------------------------------------------
 
-    def _dialog(self, name: str, dialog: Node) -> PricedState:
-        """The activity of a dialog, and where answers and its own events lead."""
-        state = PricedState(self._key(self.page, name), dialog)
-        items = [dialog] if dialog.tag == "menu" else dialog.nodes
-        root = self.pages.root(self.page)
-        wider = [self._held(one).wide for one in (self.page.root, *([root.root] if root else ()))]
-        for node in chain([dialog], *wider):
-            for inner in self._walk(node):
-                self._lead(state, inner)
-                state.parts += self.said.get(id(inner), ()) if id(inner) not in self.inside else ()
-        for item in items:
-            self._item(state, item, dialog)
-        for node in dialog.walk():
-            if node.tag in HANDLERS:
-                self._catch(node, state)
-        self.parts += state.parts
-        return state
+def is_foreign(name: str) -> bool:
+    """Whether an event may come from the user or the surroundings."""
+    return takes(SERVICES, name) or not any(takes(one, name) for one in OWN)
 
-    def _walk(self, node: Node) -> Iterator[Node]:
-        """An element and its content, without handlers that only wait for events from outside."""
-        if node.tag == "catch" and all(self._is_outside(name) for name in handler_names(node)):
-            return
-        yield node
-        for inner in node.nodes:
-            yield from self._walk(inner)
 
-    def _is_outside(self, name: str) -> bool:
-        own = any(takes(name, one) for one in self.thrown) or "" in self.thrown
-        return bool(name) and is_foreign(name) and not own
-
-    def _item(self, state: PricedState, item: Node, dialog: Node) -> None:
-        """The question of a form item."""
-        if item.key == UNIT:
-            state.parts.append(self._unit(item, dialog))
-        elif item.tag == "transfer":
-            state.parts += self._call(item)
-        elif item.tag in ASKING:
-            asked = self._question(item, dialog)
-            state.parts.append(asked)
-            if not self._bounded(item, dialog):
-                state.repeats.append(Gap(item.place, ASKED_AGAIN))
-
-    def _lead(self, state: PricedState, node: Node) -> None:
-        """Where an element leads without a wait for an event."""
-        if node.tag in TARGETS:
-            target = self.pages.target(self.page, node)
-            for name in target.dialogs if target.page else ():
-                leads = state.calls if node.tag == "subdialog" else state.goes
-                leads[self._key(target.page, name)] = node  # type: ignore[arg-type]
-        if node.tag == "foreach":
-            state.unknown.append(Gap(node.place, OFTEN))
-        if node.tag == "clear" or (node.tag == "goto" and to_item(node)):
-            state.repeats.append(Gap(node.place, "items of the dialog are visited again"))
-
-    def _catch(self, node: Node, around: PricedState) -> None:
-        """A handler: its activity is a reaction if its event comes from outside."""
-        does = PricedState(node.get("event") or node.tag, node)
-        for holder in holders(node):
-            does.parts += self.said[id(holder)]
-        self.parts += does.parts if id(node) not in self.inside else ()
-        for inner in node.walk():
-            self._lead(does, inner)
-        # VoiceXML always continues to ask: a reaction that stays goes on with its dialog.
-        if around.name and not leaves(node.content):
-            does.goes.setdefault(around.name, node)
-        self.caught.append((node, does))
-
-    def _bounded(self, item: Node, dialog: Node) -> bool:
-        """Whether a question is eventually left if the user never answers it."""
-        scope = [one for node in self._scopes(item, dialog) for one in self._held(node).handlers]
-        return all(
-            any(
-                event in handler_names(one) and not one.get("cond") and leaves(one.content)
-                for one in scope
-            )
-            for event in ("noinput", "nomatch")
-        )
+def _is_certain(node: Node) -> bool:
+    """Whether a prompt is always said before its question, at its first visit."""
+    return not node.get("cond") and node.get("count", "1") == "1"
