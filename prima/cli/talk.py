@@ -89,16 +89,12 @@ def talk(
     prima talk --ea museum.xml --world documents/worlds/museum.xml --robot papero.xml
     printf '/back 5s\\n/touch head\\n' | prima talk documents/scenarios/touched-on-the-way.xml
     """
-    from prima import api
     from prima.api.rehearsing import fetcher
     from prima.talk import Conversation, Game
 
     raise_limits(limits)
     _check_options(scenario, bool(fas or eas), bool(world or robot), bool(maps), step and real_time)
-    if scenario is not None:
-        loaded = api.load_scenario(scenario)
-    else:
-        loaded = api.stage(fas, eas, (), world, robot, maps)
+    loaded = _loaded(scenario, fas, eas, world, robot, maps)
     tell_problems(loaded.problems)
     folder = os.path.dirname(scenario or "")
     json = form == "json"
@@ -125,6 +121,22 @@ def talk(
 
 def _is_terminal() -> bool:
     return sys.stdin is not None and sys.stdin.isatty() and sys.stdout.isatty()
+
+
+def _loaded(
+    scenario: str | None,
+    fas: tuple[str, ...],
+    eas: tuple[str, ...],
+    world: str | None,
+    robot: str | None,
+    maps: tuple[str, ...],
+) -> Loaded:
+    """The scenario, or the applications on a stage."""
+    from prima import api
+
+    if scenario is not None:
+        return api.load_scenario(scenario)
+    return api.stage(fas, eas, (), world, robot, maps)
 
 
 def _check_options(
