@@ -48,9 +48,8 @@ class LeavingRules(Endings):
             return
         states = sorted(self.asked.get(app, ()))
         if app in self.calling:
-            last = states[-1:]
-            refused = any(one == app and [state] > last for one, state in self.left)
-            states = [] if refused else last
+            later = (state for one, state in self.left if one == app and state is not None)
+            states = [one for one in states[-1:] if one >= max(later, default=one)]
         for state in states:
             self._is_left(app, state, "it has ended")
 
