@@ -95,6 +95,17 @@ def test_e1_a_failed_trees_loops_end() -> None:
     assert check(stage.records) == []
 
 
+def test_e1_a_failed_trees_loops_end_though_a_later_branch_runs() -> None:
+    stage = Stage()
+    stage.request("ea", steps=[Step(say("One.")), Step(TRACK), Step(command("move-head", pan=1))])
+    assert stage.select() == ["ea#1", "ea#2.1", "ea#3"]
+    stage.at(10).mediator.failed("ea#1", "speaker", "broken")
+    stage.at(500).end("ea#2.1", goal=False)
+    assert stage.select() == []
+    stage.at(600).end("ea#3")
+    assert check(stage.records) == []
+
+
 def test_e1_of_another_requests_loops_that_end_the_application_hears() -> None:
     stage = Stage()
     stage.request("ea", steps=[Step(say("One.")), Step(command("move-head", pan=1))])
