@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import replace
 
 from prima.grammar.answers import Answers
 from prima.interpreter.protocol import Answer, App
@@ -28,8 +29,8 @@ class VoiceInterpreter(App[AnyEngine]):
         self.waits = self._shared.waits
         self._machine = Machine(self._shared)
         self._flow: Flow | None = None
-        self._missed: deque[Event] = deque()
-        """Events that arrived while waiting for an answer (4.1.8): none is lost."""
+        self._missed: deque[tuple[int, Event]] = deque()
+        """Events that arrived while waiting for an answer (4.1.8), and when: none is lost."""
 
     # Calls from the session ---------------------------------------------------------
 
@@ -48,7 +49,7 @@ class VoiceInterpreter(App[AnyEngine]):
         """Deliver an event: one that a handler in scope takes ends the wait (5.2)."""
         self._tick(now)
         if self._is_deaf(event):
-            self._missed.append(event)
+            self._missed.append((now, event))
         else:
             self._happened(event)
             self._catch_up()
@@ -197,11 +198,16 @@ class VoiceInterpreter(App[AnyEngine]):
         self.waits.leave_state()
 
     def _catch_up(self) -> None:
-        """Deliver the events that arrived while waiting for an answer, once there is a wait."""
-        while (
-            self._missed and self.waits.run and not self.over and not self._is_deaf(self._missed[0])
-        ):
-            self._happened(self._missed.popleft())
+        """Deliver the events that arrived while waiting for an answer, once there is a wait.
+
+        Waiting loses the reactive flag (C5).
+        """
+        while self._missed and self.waits.run and not self.over:
+            came, event = self._missed[0]
+            if self._is_deaf(event):
+                return
+            self._missed.popleft()
+            self._happened(event if came == self.now else replace(event, reactive=False))
 
     def _tick(self, now: int) -> None:
         if now != self.now:

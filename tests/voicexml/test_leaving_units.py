@@ -188,6 +188,21 @@ def test_a_handler_in_a_unit_takes_an_event_from_outside_in_it() -> None:
     assert call.said() == ["May I?", "Not now.", "May I?", "Ouch.", "Bye."]
 
 
+def test_an_event_that_waited_for_a_units_last_words_causes_no_reaction() -> None:  # C5
+    asks = "<field name='w' type='boolean'><prompt>Well?</prompt></field>"
+    call = Call(
+        unit(say("Thanks.<goto next='#b'/>"))
+        + f"<form id='b'>{asks}<catch event='touch'>Ouch.<reprompt/></catch></form>"
+    )
+    call.event("touch")
+    assert call.saying() == ["Thanks.", "iu"]
+    call.step(at=call.now + 100)
+    call.finish("Thanks.")
+    said = {r.get("text"): (r["reactive"], r.get("cause")) for r in call.phases("request")}
+    assert call.saying() == ["Ouch."]
+    assert said["Ouch."] == (False, None)
+
+
 def test_a_unit_that_an_event_leads_to_is_a_reaction() -> None:  # C5
     call = Call(
         "<form><field name='w' type='boolean'><prompt>Well?</prompt></field>"
