@@ -51,12 +51,7 @@ class DialoguePrices(Times):
         for form in document.forms.values():
             for item in all_items(form.items):
                 self._item(item, form)
-        found = [one for one in self.of_items.values() if id(one.node) not in self.inside]
-        for _, content, node in document.contents():
-            if id(node) not in self.inside:
-                found += self.steps(content)
-        once = {id(price): price for price in found}.values()
-        self.parts = sorted(once, key=lambda price: price.node.index)
+        self.parts = self._parts()
         """All indivisible parts, in document order."""
         self.firsts = Firsts(document, self.of_items, self.step)
         self.responses = Firsts(document, self.of_items, self.step, response=True)
@@ -65,6 +60,15 @@ class DialoguePrices(Times):
         self._inner = {id(one) for _, one in handlers_of(document) if self.takes_inner(one)}
         """The handlers of events that the application causes itself, by their identities."""
         self._everywhere = [one for one in document.handlers if id(one) in self._inner]
+
+    def _parts(self) -> list[Price]:
+        """What items and content outside of units consist of, each once."""
+        found = [one for one in self.of_items.values() if id(one.node) not in self.inside]
+        for _, content, node in self.document.contents():
+            if id(node) not in self.inside:
+                found += self.steps(content)
+        once = {id(price): price for price in found}.values()
+        return sorted(once, key=lambda price: price.node.index)
 
     def _item(self, item: Item, form: Form) -> None:
         if isinstance(item, Field):
