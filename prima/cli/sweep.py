@@ -187,14 +187,14 @@ def _print(made: Sweep, pool: Pool) -> int:
     from prima.experiments.table import line
 
     write_for_programs()
-    head = [one.name for one in made.columns]
-    worst, exit_column = 0, head.index("exit")
-    for number, row in enumerate(made.results(pool)):
-        if number == 0:  # nothing is printed for a pool that is not there
-            stream(line(head), nl=False)
+    names = [one.name for one in made.columns]
+    worst, exit_column = 0, names.index("exit")
+    head = line(names)  # printed with the first row: there may be none, or it may be refused
+    for row in made.results(pool):
+        stream(head + line(row), nl=False)
+        head = ""
         code = row[exit_column]
         worst = max(worst, code if isinstance(code, int) else 0)
-        stream(line(row), nl=False)
     return worst
 
 

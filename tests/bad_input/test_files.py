@@ -105,6 +105,8 @@ def test_a_name_that_is_not_utf8_is_told(tmp_path: Path) -> None:
     assert (tmp_path / "x.jsonl").read_text() == "kept"
     shown = command.prima("run", name, "--format", "json", cwd=tmp_path)
     assert (shown.returncode, shown.stdout) == (2, ""), "a program could not read it"
+    table = command.prima("sweep", name, cwd=tmp_path)
+    assert (table.returncode, table.stdout) == (2, ""), "nor a table that only has a head"
     (tmp_path / name).write_text("<scenario/>", encoding="utf-8")
     problem = json.loads(command.prima("validate", name, "--format", "json", cwd=tmp_path).stdout)
     assert problem[0]["file"] == name
