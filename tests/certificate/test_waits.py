@@ -177,3 +177,14 @@ def test_where_nothing_starves_the_longest_wait_is_told(tmp_path: Path) -> None:
     assert found.starves == []
     text = format_certificate(found)
     assert "nothing: others than reactions wait up to 0.6 s each time theirs is busy" in text
+
+
+def test_two_texts_of_one_element_are_said_one_after_the_other(tmp_path: Path) -> None:
+    """Both texts belong to the block: VoiceXML puts them into no element of their own."""
+
+    def told(body: str) -> str:
+        found, _, _ = voiced(tmp_path, f"<form><block>{body}</block></form>", LATER)
+        return format_certificate(found).partition("others than reactions ")[2]
+
+    one, two = "<prompt>Eins zwei drei.</prompt>", "<prompt>Vier sechs.</prompt>"
+    assert told("Eins zwei drei. <log/> Vier sechs.") == told(f"{one}<log/>{two}")

@@ -110,7 +110,7 @@ def _busy(outline: Outline, states: list[PricedState]) -> Busy:
         if not loop.states.isdisjoint(names):
             found.endless.append(Gap(loop.place, loop.what))
     for state in states:
-        parts = {(id(part.node), part.what): part for part in state.parts}.values()
+        parts = {id(part): part for part in state.parts}.values()
         found.lasts += state.times * sum(part.lasts for part in parts)
         found.endless += [
             Gap(part.place, f"{part.what} goes on until its goal is reached")
