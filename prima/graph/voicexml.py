@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from urllib.parse import urlsplit
 
-from prima.errors import DocumentError
 from prima.graph.labels import (
     ASKED,
     AnswerLabel,
@@ -32,12 +30,10 @@ from prima.graph.voicenodes import (
 )
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
-from prima.markup.uris import parted
 from prima.voicexml.arranging import is_unit, parts_of
-from prima.voicexml.document import FetchError, Page, VoiceDocument
+from prima.voicexml.document import Page, VoiceDocument
 from prima.voicexml.elements import ITEMS
-from prima.voicexml.pages import MOST_PAGES
-from prima.voicexml.reading import read_page
+from prima.voicexml.pages import Pages
 from prima.voicexml.sketch import ASKING
 from prima.voicexml.vocabulary import NAMESPACE
 
@@ -54,42 +50,31 @@ class _VoiceGraph(Transitions[Node]):
 
     def __init__(self, document: VoiceDocument) -> None:
         super().__init__(f"The states of {clean(document.id)}")
-        self.fetch = document.fetch
-        self.pages: dict[str, Page | None] = {document.page.uri: document.page}
+        self.pages = Pages(document.page, document.folder, document.fetch)
         self.first = self.page = document.page
         self.outer: list[Sequence[Taker[Node]]] = []
         """The handlers of the document, and of its root document."""
-        self._declare(self.first)
-        self._read_pages()
+        for page in self.pages:
+            self._declare(page)
+        for page in self.pages:
+            self._read(page)
         settle(self.graph, self._everywhere_of())
 
     # Documents --------------------------------------------------------------------------------
-
-    def _read_pages(self) -> None:
-        """Read all documents that the first one leads to."""
-        done: set[str] = set()
-        while waiting := [page for page in self._known() if page.uri not in done]:
-            for page in waiting:
-                done.add(page.uri)
-                self._read(page)
 
     def _read(self, page: Page) -> None:
         """Add the transitions of a document."""
         self.page = page
         self.hints = _hints(page)
-        root = self._open(page.application) if page.application else None
+        root = self.pages.root(page)
         self.outer = [takers(page.root), *([takers(root.root)] if root else [])]
         for name, dialog in page.dialogs.items():
             self._dialog(name, dialog)
         self._everywhere()
 
-    def _known(self) -> list[Page]:
-        """The documents read so far."""
-        return [page for page in self.pages.values() if page]
-
     def _everywhere_of(self) -> dict[str, list[str]]:
         """The dialogs, also of leaf documents, in which each document's handlers are active."""
-        pages = self._known()
+        pages = list(self.pages)
         found: dict[str, list[str]] = {}
         for page in pages:
             leaves = [other for other in pages if other.application == page.uri]
@@ -109,19 +94,6 @@ class _VoiceGraph(Transitions[Node]):
 
     def _key(self, page: Page, name: str) -> str:
         return f"{page.uri}#{name}"
-
-    def _open(self, uri: str) -> Page | None:
-        """A document of the application's folder, read once; None if it cannot be read."""
-        if uri not in self.pages:
-            self.pages[uri] = None
-            if len(self.pages) <= MOST_PAGES:
-                try:
-                    page = read_page(uri, uri, self.fetch(uri))
-                except (FetchError, DocumentError):
-                    return None
-                self.pages[uri] = page
-                self._declare(page)
-        return self.pages[uri]
 
     # Dialogs ----------------------------------------------------------------------------------
 
@@ -201,7 +173,7 @@ class _VoiceGraph(Transitions[Node]):
             self.graph.node(self.here, self._title_of_any(), kind="any")
 
     def _title_of_any(self) -> str:
-        pages, uri = self._known(), self.page.uri
+        pages, uri = list(self.pages), self.page.uri
         title = "in any state" if len(pages) == 1 else f"in any state of {uri}"
         is_root = any(page.application == uri for page in pages)
         return title + (" and its leaf documents" if is_root else "")
@@ -259,24 +231,14 @@ class _VoiceGraph(Transitions[Node]):
                 self.graph.edge(self.here, self._key(self.page, name), "guess", label)
             self.graph.edge(self.here, "", "computed", label, code)
             return
-        uri = node.get(plain).strip()
-        base, fragment = parted(self.page.resolve(uri, node) if uri[:1] != "#" else uri)
-        if urlsplit(base).scheme == "service" and fragment in self.page.dialogs:
-            label, base = f"{label}, asks {base}", ""
-        if urlsplit(base).scheme or base.startswith("//"):
-            self.graph.edge(self.here, "", "outside", label, uri)
-        elif key := self._dialog_at(base, fragment):
-            self.graph.edge(self.here, key, kind, label)
+        target = self.pages.target(self.page, node)
+        page = target.page
+        if page is not None and target.key in page.dialogs:
+            label = f"{label}, asks {target.asked}" if target.asked else label
+            self.graph.edge(self.here, self._key(page, target.key), kind, label)
         else:
-            self.graph.edge(self.here, "", "missing", label, uri)
-
-    def _dialog_at(self, uri: str, fragment: str) -> str:
-        """The key of a dialog, by default a document's first one; empty if there is none."""
-        page = self._open(uri) if uri else self.page
-        if page is None:
-            return ""
-        name = fragment or next(iter(page.dialogs), "")
-        return self._key(page, name) if name in page.dialogs else ""
+            kind = "outside" if target.asked else "missing"
+            self.graph.edge(self.here, "", kind, label, node.get(plain).strip())
 
 
 def _describe(box: Box, dialog: Node) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from os.path import exists
+from os.path import dirname, exists
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
@@ -80,7 +80,7 @@ def voicexml_problems(
 
     folder = Path(site.folder) if site else Path(path).parent
     first = read_page(site.name(site.uri) if site else Path(path).name, path, data, site)
-    pages = Pages(first, path, Folder(str(folder)).fetch)
+    pages = Pages(first, site.folder if site else dirname(path), Folder(str(folder)).fetch)
 
     def script(page: Page, node: Node) -> str | None:
         try:
@@ -126,7 +126,7 @@ def _not_there(
 
     The indices of the elements that name them are put into ``missing``.
     """
-    from prima.voicexml.pages import LEADING
+    from prima.voicexml.pages import TARGETS
 
     listed: dict[Path, list[Path]] = {}
     for node, name, file in _files_named(page, answered):
@@ -140,7 +140,7 @@ def _not_there(
         few = len(missing) <= LIMITS.problems  # problems that are not listed need no hint
         hint = nearby(folder / file, *spans, listed=listed) if few else Hint()
         dialog = node.get(name).strip()
-        if dialog in page.dialogs and node.key in LEADING:
+        if dialog in page.dialogs and node.key in TARGETS:
             text = f'It is a dialog: write "#{dialog}".'
             hint = replaced(text, f"#{dialog}", *value_span(node, name))
         yield NO_FILE_HERE.at(node.attribute_place(name), hint, file=file[:80])

@@ -172,7 +172,7 @@ def _sayings(cast: Cast) -> tuple[Sayings, Sayings] | None:
             asked += texts_of(document, True)
             said += texts_of(document, False)
             continue
-        pages = Pages(document.page, document.file, document.fetch)
+        pages = Pages(document.page, document.folder, document.fetch)
         if pages.open:
             return None
         spoken = [text for page in pages for text in spoken_in(page)]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Iterator
+from dataclasses import dataclass
 from urllib.parse import unquote, urlsplit
 
 from prima.errors import DocumentError, Problem, suggestion
@@ -17,83 +19,118 @@ from prima.voicexml.vocabulary import PRIMA_NAMESPACE, WORDED
 
 MOST_PAGES = 100
 """Maximum number of documents read for one application."""
-LEADING = {"goto": "next", "link": "next", "choice": "next", "submit": "next", "subdialog": "src"}
-"""Elements that lead to a dialog, and the attribute that names it."""
+TARGETS = {
+    "goto": ("next", "expr"),
+    "submit": ("next", "expr"),
+    "subdialog": ("src", "srcexpr"),
+    "link": ("next", "expr"),
+    "choice": ("next", "expr"),
+}
+"""Elements that lead to a dialog: the attribute that names it, and the one that computes it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """The dialog that an element names."""
+
+    page: Page | None = None
+    """Its document, if that can be read."""
+    name: str = ""
+    """Its name; empty for the document's first one."""
+    asked: str = ""
+    """The URI of a service that is asked before, or of an answer that only a run determines."""
+
+    @property
+    def key(self) -> str:
+        """Its key among its document's dialogs."""
+        return self.name or next(iter(self.page.dialogs if self.page else ()), "")
 
 
 class Pages:
-    """The documents of an application by their URIs, the first one first."""
+    """The documents of an application, the first one first, then as others name them."""
 
-    def __init__(self, first: Page, file: str, fetch: Fetch) -> None:
-        self._folder = file[: len(file) - len(first.uri)] if file.endswith(first.uri) else ""
-        if first.site is not None:
-            self._folder = f"{first.site.folder}/"
+    def __init__(self, first: Page, folder: str, fetch: Fetch) -> None:
+        self._folder = folder
         self._site = first.site
         self._fetch = fetch
         self._pages: dict[str, Page | None] = {first.uri: first}
+        self._read = [first]
         self.problems: list[Problem] = []
         """Problems of documents that cannot be read at all."""
         self.open = False
         """Whether something leads to a document that only a run determines."""
-        waiting = [first]
-        while waiting:
-            page = waiting.pop(0)
-            waiting += [one for uri in _named(page) if (one := self._read(uri)) is not None]
+        for page in self._read:  # which grows meanwhile
+            self.root(page)
+            for node in page.root.walk():
+                self.open |= node.key in TARGETS and self._is_open(page, node)
         self.thrown = {name for page in self for name in thrown_in(page.root)}
         """The events that they throw."""
-        self.open = any(self._is_open(page, node) for page in self for node in page.root.walk())
-
-    def _is_open(self, page: Page, node: Node) -> bool:
-        if node.key not in LEADING:
-            return False
-        named = node.get(LEADING[node.key]).strip()
-        computed = "expr" in node.attributes or "srcexpr" in node.attributes
-        return computed or (bool(named) and self._target(page, node)[0] is None)
 
     def __iter__(self) -> Iterator[Page]:
-        return (page for page in self._pages.values() if page is not None)
+        return iter(self._read)
 
-    def _read(self, uri: str) -> Page | None:
-        """A document that is read for the first time, if it can be."""
-        if uri in self._pages or len(self._pages) >= MOST_PAGES:
-            return None
-        page: Page | None = None
-        try:
-            file = f"{self._folder}{unquote(uri)}"
-            page = read_page(uri, file, self._fetch(uri), self._site)
-        except FetchError:
-            pass  # reported where it is named
-        except DocumentError as error:
-            self.problems += error.problems
-        self._pages[uri] = page
-        return page
+    def _is_open(self, page: Page, node: Node) -> bool:
+        plain, computed = TARGETS[node.key]
+        named = self.target(page, node).page is not None or not node.get(plain).strip()
+        return computed in node.attributes or not named
+
+    @property
+    def full(self) -> bool:
+        """Whether no further document is read."""
+        return len(self._pages) >= MOST_PAGES
 
     def root(self, page: Page) -> Page | None:
         """The application root document of a page, if it has one that can be read."""
-        return self._pages.get(page.application) if page.application else None
+        uri = page.application
+        return self._page(uri) if uri and uri != page.uri else None
+
+    def target(self, page: Page, node: Node) -> Target:
+        """The dialog that one of ``TARGETS`` names literally; no document if it names none."""
+        uri = node.get(TARGETS[node.key][0]).strip()
+        if not uri:
+            return Target()
+        if uri[0] == "#":
+            return Target(page, parted(uri)[1])
+        base, name = parted(page.resolve(uri, node))
+        parts = urlsplit(base)
+        if parts.scheme == "service" and name in page.dialogs:
+            return Target(page, name, base)
+        if parts.scheme or parts.netloc:
+            return Target(asked=base)
+        program = node.key == "submit" and not parts.path.endswith(".vxml")
+        return Target(self._page(parts.path, program), name)
+
+    def _page(self, uri: str, program: bool = False) -> Page | None:
+        """A document of the folder, read once; None if it cannot be read.
+
+        A file that may be a ``program`` of the server need not be VoiceXML.
+        """
+        if uri not in self._pages and not self.full:
+            self._pages[uri] = None
+            try:
+                file = posixpath.join(self._folder, unquote(uri).lstrip("/"))
+                page = read_page(uri, file, self._fetch(uri), self._site)
+                self._pages[uri] = page
+                self._read.append(page)
+            except FetchError:
+                pass  # reported where it is named
+            except DocumentError as error:
+                self.problems += [] if program else error.problems
+        return self._pages.get(uri)
 
     def between(self) -> Iterator[Problem]:
         """Dialogs that other documents lack, and params that no called form takes (2.3.4)."""
         for page in self:
             for node in page.root.walk():
-                other, name = self._target(page, node)
-                if other is None:
+                target = self.target(page, node) if node.key in TARGETS else Target()
+                other, name = target.page, target.name
+                if other is None or target.asked:
                     continue
                 dialog = other.dialog(name)
                 if dialog is None and name and other is not page:
                     yield _not_there(node, name, other)
                 elif dialog is not None and (node.key, dialog.tag) == ("subdialog", "form"):
                     yield from _untaken(node, dialog)
-
-    def _target(self, page: Page, node: Node) -> tuple[Page | None, str]:
-        """The target of an element: its document, if known, and its dialog."""
-        uri = node.get(LEADING.get(node.key, "")).strip()
-        if not uri:
-            return None, ""
-        if uri[0] == "#":
-            return page, parted(uri)[1]
-        base, name = parted(page.resolve(uri, node))
-        return self._pages.get(urlsplit(base).path), name
 
 
 NO_DIALOG = NO_SUCH_FORM.says(
@@ -107,23 +144,9 @@ NOT_TAKEN = UNDECLARED_VARIABLE.says(
 
 
 def _not_there(node: Node, name: str, page: Page) -> Problem:
-    place = node.attribute_place(LEADING[node.key])
-    hint = suggestion(name, page.dialogs, *value_span(node, LEADING[node.key], name))
+    place = node.attribute_place(TARGETS[node.key][0])
+    hint = suggestion(name, page.dialogs, *value_span(node, TARGETS[node.key][0], name))
     return NO_DIALOG.at(place, hint, name=name, page=page.uri)
-
-
-def _named(page: Page) -> Iterator[str]:
-    """The URIs of the documents that a page names, without their dialogs."""
-    if page.application:
-        yield page.application
-    for node in page.root.walk():
-        uri = node.get(LEADING.get(node.key, "")).strip()
-        if not uri or uri[:1] == "#":
-            continue
-        whole = urlsplit(page.resolve(uri, node))
-        asks = node.key == "submit" and not whole.path.endswith(".vxml")  # the server generates it
-        if not (whole.scheme or whole.netloc or asks) and whole.path:
-            yield whole.path
 
 
 def _untaken(node: Node, form: Node) -> Iterator[Problem]:

@@ -223,6 +223,18 @@ def test_further_documents_are_no_business_of_a_run(tmp_path: Path) -> None:
     assert loading.stage([], [str(tmp_path / "main.vxml")]).problems == []
 
 
+def test_a_program_that_answers_a_submit_need_not_be_voicexml(tmp_path: Path) -> None:
+    """In simulation its file in the folder answers, so one that is VoiceXML is checked."""
+    content = '<form><block><{} next="answer.php"/></block></form>'
+    (tmp_path / "answer.php").write_text("<?php echo 'hm';")
+    assert told(tmp_path, content.format("submit")) == []
+    (one,) = told(tmp_path, content.format("goto"))
+    assert one.startswith("answer.php not-xml")
+    (tmp_path / "answer.php").write_text(SECOND)
+    (one,) = told(tmp_path, content.format("submit"))
+    assert one.startswith("answer.php no-such-file") and "gone.grxml" in one
+
+
 def test_documents_that_lead_to_each_other_are_read_once(tmp_path: Path) -> None:
     second = VXML.format("", '<form><block><goto next="main.vxml"/></block></form>')
     content = '<form><block><goto next="second.vxml"/></block></form>'

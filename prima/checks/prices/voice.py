@@ -10,7 +10,7 @@ from itertools import chain
 from prima.checks.prices.dialogue import DialoguePrices
 from prima.checks.prices.firsts import responds
 from prima.checks.prices.model import Outline, Price, PricedReaction, PricedState
-from prima.checks.prices.pages import TARGETS, PageTarget, PricedPages
+from prima.checks.prices.pages import PricedPages
 from prima.checks.prices.speech import SpeechReader, says
 from prima.checks.prices.times import ASKED_AGAIN, QUESTION, SERVICES
 from prima.devices.profile import Profile
@@ -34,6 +34,7 @@ from prima.markup.tree import Node
 from prima.voicexml.acting import VoiceCommand
 from prima.voicexml.calls import CONNECT_MS, kind_of
 from prima.voicexml.document import Page, VoiceDocument
+from prima.voicexml.pages import TARGETS
 from prima.voicexml.platform import own_words
 from prima.voicexml.recorder import BEEP_MS
 from prima.voicexml.sketch import FETCHING, Sketch
@@ -201,9 +202,7 @@ class PagePrices(DialoguePrices):
 
     def leads_from(self, node: Node) -> list[str]:
         """The states to which an element leads, in any document of the application."""
-        target = self.pages.target(self.page, node) if node.tag in TARGETS else PageTarget()
-        page = target.page
-        return [f"{page.uri}#{name}" for name in target.dialogs] if page is not None else []
+        return self.pages.leads(self.page, node)[0] if node.key in TARGETS else []
 
     def _state(self, form: Form) -> PricedState:
         """The activity of a dialog, and where answers, links and its own events lead."""
@@ -236,8 +235,7 @@ class PagePrices(DialoguePrices):
         return not all(self._is_outside(name) for name in handler.events)
 
     def _is_outside(self, name: str) -> bool:
-        thrown = self.pages.thrown
-        own = any(takes(name, one) for one in thrown) or "" in thrown
+        own = self.pages.throws_any or any(takes(name, one) for one in self.pages.thrown)
         return bool(name) and is_foreign(name) and not own
 
     def _reactions(
