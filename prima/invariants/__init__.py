@@ -48,7 +48,8 @@ from collections.abc import Collection, Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from prima.interpreter.elements import Document
-from prima.invariants.checker import Checker
+from prima.invariants.checker import violations
+from prima.invariants.memory import Memory
 from prima.invariants.model import Record
 
 if TYPE_CHECKING:
@@ -80,10 +81,7 @@ def check(
     not have been left before another one makes a request. Under ``none`` invariant 1 is expected
     to fail: nothing keeps devices apart.
     """
-    checker = Checker(records, policy, declared, calling)
-    if patience is not None:
-        checker.patience = patience
-    return checker.run()
+    return violations(Memory(records, policy, declared, calling, patience))
 
 
 def callers(documents: Iterable[AnyDocument]) -> set[str]:

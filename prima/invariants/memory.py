@@ -20,6 +20,9 @@ from prima.invariants.model import (
     ms,
 )
 
+SECONDS = 60
+"""How long an application may keep another from the speaker by default (E6)."""
+
 
 def in_ms(records: Iterable[Record]) -> list[Record]:
     """Records with times in ms; transcripts, which begin with ``run``, use seconds."""
@@ -30,7 +33,7 @@ def in_ms(records: Iterable[Record]) -> list[Record]:
 
 
 class Memory:
-    """The state so far. The families of rules build on it."""
+    """The state so far, which the rules read and change."""
 
     def __init__(
         self,
@@ -38,6 +41,7 @@ class Memory:
         policy: str,
         declared: Sequence[str] = (),
         calling: Collection[str] = (),
+        patience: int | None = None,
     ) -> None:
         self.calling = calling
         """Applications whose states may follow ones that were not left."""
@@ -107,8 +111,19 @@ class Memory:
         """ABs for which the robot turns to the user (X4)."""
         self.robot: tuple[float, float] | None = None
         """Where the robot is, as reported by its devices."""
+        self.kept: dict[str, int] = {}
+        """How long (ms) others have kept waiting ABs from the speaker (E6)."""
+        self.kept_now: set[str] = set()
+        """The ABs that are kept from it at present."""
+        self.starving: set[str] = set()
+        """The ABs that have been reported to starve."""
+        self.answered: dict[str, int] = {}
+        """When the user last answered a question of each stream (E6)."""
+        head = self.records[0].get("data") or {} if self.records else {}
+        self.patience = ms(head.get("patience", SECONDS)) if patience is None else patience
+        """E6's bound (ms); 0 if there is none."""
         self._read_ahead()
-        self._new_instant()
+        self.new_instant()
 
     def _read_ahead(self) -> None:
         """Note what only later records show."""
@@ -127,7 +142,8 @@ class Memory:
                 case "request" if record["command"] == "iu" and record.get("unit"):
                     self.nested.add(record["behavior"])
 
-    def _new_instant(self) -> None:
+    def new_instant(self) -> None:
+        """Forget what concerns one instant alone."""
         self.cuts: list[Cut] = []
         self.urgent: list[tuple[AB, int]] = []
         """Commands with ``now`` of this instant, and their indices (O2)."""

@@ -2,95 +2,90 @@
 
 from __future__ import annotations
 
-from prima.invariants.model import AB, LINKED, WAITING, Record, base, ms
-from prima.invariants.streams import Streams
+from prima.invariants.channel import refused_by_channel
+from prima.invariants.floor import kept_by_floor, refused_by_topic
+from prima.invariants.memory import Memory
+from prima.invariants.model import AB, LINKED, WAITING, Record, base
 
-SECONDS = 60
-"""How long an application may keep another from the speaker by default."""
+
+def pass_time(memory: Memory, time: int) -> None:
+    """Count the time that passes without changes."""
+    for name in memory.kept_now:
+        memory.kept[name] = memory.kept.get(name, 0) + time - memory.now
 
 
-class Patience(Streams):
-    """E6: how long others, and not rules, have kept each waiting AB from the speaker."""
+def note_keepers(memory: Memory) -> None:
+    """At the end of an instant: note which ABs are kept from the speaker from now on."""
+    memory.kept = {name: time for name, time in memory.kept.items() if _waits(memory, name)}
+    memory.starving = {name for name in memory.starving if _waits(memory, name)}
+    memory.kept_now = set()
+    if memory.halted:
+        return
+    waiting = {ab.name: ab for ab in memory.waiting.values() if ab.unit is None}
+    memory.kept_now = {name for name, ab in waiting.items() if _kept_from_speaker(memory, ab)}
+    for name in sorted((memory.kept.keys() & waiting.keys()) - memory.starving):
+        if overdue(memory, waiting[name]):
+            memory.report(13, "E6", f"{name} starves, and nothing says so")
 
-    def _read_ahead(self) -> None:
-        super()._read_ahead()
-        head = self.records[0].get("data") or {} if self.records else {}
-        self.patience = ms(head.get("patience", SECONDS))
-        """The bound (ms); 0 if there is none."""
-        self._kept: dict[str, int] = {}
-        self._kept_now: set[str] = set()
-        self._answered: dict[str, int] = {}
-        """When the user last answered a question of each stream."""
-        self._starving: set[str] = set()
-        """The ABs that have been reported."""
 
-    def pass_time(self, time: int) -> None:
-        """Count the time that passes without changes."""
-        for name in self._kept_now:
-            self._kept[name] = self._kept.get(name, 0) + time - self.now
+def _waits(memory: Memory, name: str) -> bool:
+    """Whether an AB has yet to start, be it behind a way back of its stream (X1)."""
+    return memory.abs[name].phase in (WAITING, LINKED)
 
-    def note_keepers(self) -> None:
-        """At the end of an instant: note which ABs are kept from the speaker from now on."""
-        self._kept = {name: time for name, time in self._kept.items() if self._waits(name)}
-        self._starving = set(filter(self._waits, self._starving))
-        self._kept_now = set()
-        if self.halted:
-            return
-        waiting = {ab.name: ab for ab in self.waiting.values() if ab.unit is None}
-        self._kept_now = {name for name, ab in waiting.items() if self._kept_from_speaker(ab)}
-        for name in sorted((self._kept.keys() & waiting.keys()) - self._starving):
-            if self.overdue(waiting[name]):
-                self.report(13, "E6", f"{name} starves, and nothing says so")
 
-    def _waits(self, name: str) -> bool:
-        """Whether an AB has yet to start, be it behind a way back of its stream (X1)."""
-        return self.abs[name].phase in (WAITING, LINKED)
+def _kept_from_speaker(memory: Memory, ab: AB) -> bool:
+    if not memory.prima or "speaker" not in ab.devices or ab.cause is not None:
+        return False
+    by = ab.said[1] if ab.said is not None else ""
+    if by.replace("#", ":").partition(":")[0] in ("", ab.app):
+        return False  # its own application keeps it waiting
+    if kept_by_floor(memory, ab) or refused_by_channel(memory, ab):
+        return False
+    speaks = [
+        one for one in memory.running.values() if one.unit is None and "speaker" in one.devices
+    ]
+    if speaks:
+        return speaks[0].app != ab.app
+    return refused_by_topic(memory, ab) is not None
 
-    def _kept_from_speaker(self, ab: AB) -> bool:
-        if not self.prima or "speaker" not in ab.devices or ab.cause is not None:
-            return False
-        by = ab.said[1] if ab.said is not None else ""
-        if by.replace("#", ":").partition(":")[0] in ("", ab.app):
-            return False  # its own application keeps it waiting
-        if self.kept_by_floor(ab) or self.refused_by_channel(ab):
-            return False
-        speaks = [
-            one for one in self.running.values() if one.unit is None and "speaker" in one.devices
-        ]
-        if speaks:
-            return speaks[0].app != ab.app
-        return self.refused_by_topic(ab) is not None
 
-    def overdue(self, ab: AB) -> bool:
-        """Whether others have kept it from the speaker for the maximum time."""
-        return self.patience > 0 and self._kept.get(ab.name, 0) >= self.patience
+def overdue(memory: Memory, ab: AB) -> bool:
+    """Whether others have kept it from the speaker for the maximum time."""
+    return memory.patience > 0 and memory.kept.get(ab.name, 0) >= memory.patience
 
-    def its_turn(self, ab: AB) -> bool:
-        """E6: whether it precedes all but reactions, since no response to an answer waits."""
-        return self.overdue(ab) and not any(map(self._acknowledges, self.waiting.values()))
 
-    def _acknowledges(self, ab: AB) -> bool:
-        just = ab.followed_at == self.now == self._answered.get(ab.tree.name)
-        return ab.unit is None and just and "speaker" in ab.devices and not ab.asks
+def its_turn(memory: Memory, ab: AB) -> bool:
+    """E6: whether it precedes all but reactions, since no response to an answer waits."""
+    return overdue(memory, ab) and not any(
+        _acknowledges(memory, one) for one in memory.waiting.values()
+    )
 
-    def note_answer(self, record: Record) -> None:
-        """Note that a question was answered without a device's end."""
-        ab = self.abs.get(base(record["behavior"]))
-        if ab is not None and ab.asks and not record.get("inbound"):
-            self._answered[ab.tree.name] = self.now
 
-    def answered_now(self, ab: AB) -> None:
-        """X8, X10: a question was answered before it was asked."""
-        self._answered[ab.tree.name] = self.now
-        if ab.unit is None:
-            self.answered_tree = ab.tree
+def _acknowledges(memory: Memory, ab: AB) -> bool:
+    just = ab.followed_at == memory.now == memory.answered.get(ab.tree.name)
+    return ab.unit is None and just and "speaker" in ab.devices and not ab.asks
 
-    def note_starve(self, record: Record) -> None:
-        """An AB recorded as starving is waiting, and by E6 for the required time."""
-        ab = self.abs.get(base(record["behavior"]))
-        if ab is None or ab.name not in self.waiting:
-            self.report(13, "E6", f"{record['behavior']} is said to starve, but does not wait")
-            return
-        self._starving.add(ab.name)
-        if record["rule"] == "E6" and not self.overdue(ab):
-            self.report(13, "E6", f"{ab.name} is said to starve, but nobody kept it so long")
+
+def note_answer(memory: Memory, record: Record) -> None:
+    """Note that a question was answered without a device's end."""
+    ab = memory.abs.get(base(record["behavior"]))
+    if ab is not None and ab.asks and not record.get("inbound"):
+        memory.answered[ab.tree.name] = memory.now
+
+
+def answered_now(memory: Memory, ab: AB) -> None:
+    """X8, X10: a question was answered before it was asked."""
+    memory.answered[ab.tree.name] = memory.now
+    if ab.unit is None:
+        memory.answered_tree = ab.tree
+
+
+def note_starve(memory: Memory, record: Record) -> None:
+    """An AB recorded as starving is waiting, and by E6 for the required time."""
+    ab = memory.abs.get(base(record["behavior"]))
+    if ab is None or ab.name not in memory.waiting:
+        memory.report(13, "E6", f"{record['behavior']} is said to starve, but does not wait")
+        return
+    memory.starving.add(ab.name)
+    if record["rule"] == "E6" and not overdue(memory, ab):
+        memory.report(13, "E6", f"{ab.name} is said to starve, but nobody kept it so long")

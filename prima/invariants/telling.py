@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.invariants.leaving import LeavingRules
+from prima.invariants.memory import Memory
 from prima.invariants.model import Record, base
 
 ALONE = {
@@ -21,28 +21,26 @@ SAME = ("app", "tree", "command", "text", "unit")
 """Fields that every record of an AB shares with its request."""
 
 
-class Telling(LeavingRules):
-    """Checks each record against the request, stream or rule that it is about."""
+def tells_rightly(memory: Memory, record: Record) -> None:
+    """Check a record before it is processed."""
+    phase = record["phase"]
+    rule = ALONE.get(phase)
+    if rule is not None and record.get("rule") != rule:
+        memory.report(13, rule, f"a {phase} has the rule {record.get('rule')}")
+    name = base(record.get("winner") or record.get("behavior") or "")
+    if phase == "request":
+        memory.requests.setdefault(name, record)
+    elif name in memory.requests:
+        _check_repeated(memory, record, name)
+    tree = record.get("tree")
+    if tree is not None and record["app"] != tree.rpartition(":")[0]:
+        memory.report(13, "C1", f"a {phase} of {tree} has the application {record['app']}")
 
-    def tells_rightly(self, record: Record) -> None:
-        """Check a record before it is processed."""
-        phase = record["phase"]
-        rule = ALONE.get(phase)
-        if rule is not None and record.get("rule") != rule:
-            self.report(13, rule, f"a {phase} has the rule {record.get('rule')}")
-        name = base(record.get("winner") or record.get("behavior") or "")
-        if phase == "request":
-            self.requests.setdefault(name, record)
-        elif name in self.requests:
-            self._check_repeated(record, name)
-        tree = record.get("tree")
-        if tree is not None and record["app"] != tree.rpartition(":")[0]:
-            self.report(13, "C1", f"a {phase} of {tree} has the application {record['app']}")
 
-    def _check_repeated(self, record: Record, name: str) -> None:
-        request = self.requests[name]
-        for field in SAME:
-            value = record.get(field)
-            if value is not None and value != request.get(field):
-                text = f"a {record['phase']} of {name} has the {field} {value}"
-                self.report(13, "U1", f"{text}, not {request.get(field)}")
+def _check_repeated(memory: Memory, record: Record, name: str) -> None:
+    request = memory.requests[name]
+    for field in SAME:
+        value = record.get(field)
+        if value is not None and value != request.get(field):
+            text = f"a {record['phase']} of {name} has the {field} {value}"
+            memory.report(13, "U1", f"{text}, not {request.get(field)}")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from prima.invariants.checker import Checker
+from prima.invariants.checker import violations
+from prima.invariants.memory import Memory
 from prima.invariants.model import GONE, Record
 from prima.invariants.table import contradictions, row
 
@@ -29,11 +30,11 @@ def wrong_additions(records: Iterable[Record]) -> list[str]:
 
 def unfinished(records: Iterable[Record], policy: str = "prima") -> list[str]:
     """ABs that are still in working memory after the last record (for invariant 9)."""
-    checker = Checker(records, policy)
-    checker.run()
+    memory = Memory(records, policy)
+    violations(memory)
     return [
         f"invariant 9: {ab.shown} of {ab.tree.name} is {ab.phase} at the end"
-        for ab in checker.abs.values()
+        for ab in memory.abs.values()
         if ab.phase != GONE
     ]
 
