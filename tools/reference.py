@@ -73,9 +73,9 @@ MARKER = re.compile(
 )
 Groups = Mapping[str, tuple[str, ...]]
 GROUPS: Groups = {
-    "[executable content](#executable-content)": CONTENT,
-    "[Commands](#commands)": (*SPEAKING, "command"),
-    "[handlers](#handlers)": HANDLERS,
+    "[executable content](#executable-content)": tuple(CONTENT.split()),
+    "[Commands](#commands)": (*SPEAKING.split(), "command"),
+    "[handlers](#handlers)": tuple(HANDLERS.split()),
 }
 """Children of the dialogue language that are listed together in the tables."""
 

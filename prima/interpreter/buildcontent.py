@@ -48,12 +48,12 @@ from prima.script.globals import HANDLED, RESERVED
 Parts = dict[str, list[Node]]
 """An element's children by purpose: see :data:`PARTS`."""
 PARTS = {
-    **dict.fromkeys(HANDLERS, "handlers"),
+    **dict.fromkeys(HANDLERS.split(), "handlers"),
     **dict.fromkeys(("var", "script"), "setup"),
     **dict.fromkeys(("block", "field", "subdialog", "iu"), "items"),
 }
 """Purposes shared by several elements; the others go by their tags."""
-COMMANDS = frozenset(ACTING)
+COMMANDS = frozenset(ACTING.split())
 ONLY_NEXT = frozenset(["next"])
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from prima.devices.vocabulary.robot import ROBOT
 from prima.devices.vocabulary.services import SERVICES
@@ -13,8 +13,8 @@ from prima.lsp.scan import ScannedTag, ScannedText
 from prima.markup.vocabulary import (
     Element,
     Vocabulary,
-    attribute,
     attributes_by_name,
+    elements,
 )
 from prima.scheduler.policy import BASELINES
 from prima.sim.vocabulary.scenario import SCENARIO
@@ -31,71 +31,33 @@ from prima.voicexml.vocabulary import (
     VOICEXML,
 )
 
-_PARTS = ("one-of", "item", "ruleref", "tag", "token")
-_REPEAT = (
-    attribute("repeat", "text", ""),
-    attribute("repeat-prob", "text", ""),
-    attribute("weight", "text", ""),
-)
-
+_PARTS = "one-of item ruleref tag token"
+TABLE = f"""
+rule > {_PARTS} example #text | A named part of a grammar. | SRGS 3.1
+  id*: id | its name
+  scope: text(private public) |
+one-of > item | Alternatives. | SRGS 2.4
+item repeat repeat-prob weight > {_PARTS} #text | A part of an expansion, or an alternative. | SRGS
+    2.5
+ruleref | Another rule: of this grammar, of a file, or a special one. | SRGS 2.2
+  uri: text |
+  special: text(NULL VOID GARBAGE) |
+  type: text |
+tag > #text | The meaning of a match. | SRGS 2.6, SISR 1.0
+token > #text | Words that belong together. | SRGS 2.1
+example > #text | A phrase that the rule takes, for the reader. | SRGS 3.3
+"""
+_OWN = VOICEXML.elements["grammar"]
 GRAMMAR = Vocabulary(
     SRGS,
     "srgs",
     "grammar",
     (
-        Element(
-            "grammar",
-            VOICEXML.elements["grammar"].doc,
-            VOICEXML.elements["grammar"].attributes,
-            ("rule", *_PARTS, "meta", "metadata", "lexicon"),
-            True,
-            source="SRGS 4",
+        replace(
+            _OWN, children=("rule", *_PARTS.split(), "meta", "metadata", "lexicon"), source="SRGS 4"
         ),
-        Element(
-            "rule",
-            "A named part of a grammar.",
-            (
-                attribute("id", "id", "its name", "required"),
-                attribute("scope", "text", "", choices=("private", "public")),
-            ),
-            (*_PARTS, "example"),
-            True,
-            source="SRGS 3.1",
-        ),
-        Element("one-of", "Alternatives.", (), ("item",), source="SRGS 2.4"),
-        Element(
-            "item",
-            "A part of an expansion, or an alternative.",
-            _REPEAT,
-            _PARTS,
-            True,
-            source="SRGS 2.5",
-        ),
-        Element(
-            "ruleref",
-            "Another rule: of this grammar, of a file, or a special one.",
-            (
-                attribute("uri", "text", ""),
-                attribute("special", "text", "", choices=("NULL", "VOID", "GARBAGE")),
-                attribute("type", "text", ""),
-            ),
-            source="SRGS 2.2",
-        ),
-        Element("tag", "The meaning of a match.", (), (), True, source="SRGS 2.6, SISR 1.0"),
-        Element("token", "Words that belong together.", (), (), True, source="SRGS 2.1"),
-        Element(
-            "example",
-            "A phrase that the rule takes, for the reader.",
-            (),
-            (),
-            True,
-            source="SRGS 3.3",
-        ),
-        Element("meta", VOICEXML.elements["meta"].doc, VOICEXML.elements["meta"].attributes),
-        Element("metadata", VOICEXML.elements["metadata"].doc, (), (), True),
-        Element(
-            "lexicon", VOICEXML.elements["lexicon"].doc, VOICEXML.elements["lexicon"].attributes
-        ),
+        *elements(TABLE),
+        *(replace(VOICEXML.elements[key], source="") for key in ("meta", "metadata", "lexicon")),
     ),
 )
 """SRGS in XML, as used in VoiceXML documents."""

@@ -6,9 +6,10 @@ the tables of the language reference are made from it; a test holds them togethe
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,20 +109,64 @@ class Vocabulary:
         )
 
 
-def attribute(
-    name: str,
-    kind: str,
-    doc: str,
-    *marks: Literal["required", "dynamic"],
-    default: str = "",
-    choices: tuple[str, ...] = (),
-    low: float | None = None,
-    high: float | None = None,
-) -> Attribute:
-    """Write an :class:`Attribute` on one line."""
+ROW = re.compile(
+    r"(?P<name>[\w:.-]+)(?P<required>\*)?(?P<dynamic>\+expr)?: (?P<kind>\w+)"
+    r"(\((?P<choices>[^)]+)\))?( (?P<low>-?\d+(\.\d+)?)?\.\.(?P<high>-?\d+(\.\d+)?)?)?"
+    r"( = (?P<default>.*?))? \|(?P<doc>.*)"
+)
+
+
+def attribute(row: str) -> Attribute:
+    """Read an :class:`Attribute`: ``NAME: KIND(CHOICES) LOW..HIGH = DEFAULT | DOC``.
+
+    ``*`` behind the name means required, ``+expr`` dynamic. Choices are separated by spaces.
+
+    Raises:
+        ValueError: it is written otherwise.
+    """
+    found = ROW.fullmatch(" ".join(row.split()))
+    if found is None:
+        raise ValueError(f"not an attribute: {row}")
+    low, high = (float(found[name]) if found[name] else None for name in ("low", "high"))
     return Attribute(
-        name, kind, doc, "required" in marks, default, choices, "dynamic" in marks, low, high
+        found["name"],
+        found["kind"],
+        found["doc"].strip(),
+        bool(found["required"]),
+        found["default"] or "",
+        tuple((found["choices"] or "").split()),
+        bool(found["dynamic"]),
+        low,
+        high,
     )
+
+
+def elements(table: str) -> tuple[Element, ...]:
+    """Read elements: ``KEY=NAME ATTRIBUTES > CHILDREN | DOC | SOURCE``, then their attributes.
+
+    ``#text`` among the children means that it holds text. Rows of attributes are indented by two
+    spaces; attributes without one are text without a description. More indented lines continue
+    the one before.
+    """
+    found: list[tuple[str, list[str]]] = []
+    for line in filter(None, re.sub(r"\n {3,}", " ", table).splitlines()):
+        if line.startswith(" "):
+            found[-1][1].append(line)
+        else:
+            found.append((line, []))
+    return tuple(_element(*one) for one in found)
+
+
+def _element(head: str, rows: list[str]) -> Element:
+    what, doc, *source = head.split(" | ", 2)
+    names, _, children = what.partition(" >")
+    first, *plain = names.split()
+    key, _, name = first.partition("=")
+    bare = (Attribute(one.rstrip("*"), "text", "", one.endswith("*")) for one in plain)
+    held = dict.fromkeys(children.split())
+    text = "#text" in held
+    kept = tuple(one for one in held if one != "#text")
+    return Element(key, doc, (*bare, *map(attribute, rows)), kept, text, name, "".join(source))
 
 
 def attributes_by_name(element: Element) -> dict[str, tuple[Attribute, bool]]:

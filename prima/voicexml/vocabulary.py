@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from prima.language.commands import TABLE_4_2
-from prima.markup.vocabulary import Attribute, Element, Vocabulary
+from prima.markup.vocabulary import Vocabulary, elements
 
 NAMESPACE = "http://www.w3.org/2001/vxml"
 SRGS = "http://www.w3.org/2001/06/grammar"
@@ -24,91 +24,93 @@ HANDLERS = "catch error help noinput nomatch"
 ITEM = "name expr cond"
 FETCH = "fetchhint fetchtimeout maxage maxstale"
 
-# Each line: element, or a key of its own for it = element | attributes (* required) | children | text? | section of VoiceXML 2.0 | what it is.
 TABLE = f"""
-vxml|version* application xml:base xml:lang|{HANDLERS} data form link menu meta metadata property script var||1.5|A VoiceXML document.
-form|id scope|{HANDLERS} block data field filled grammar initial link object property record script subdialog transfer var||2.1|A dialog that presents information and gathers input.
-menu|id scope dtmf accept|{HANDLERS} audio choice enumerate property prompt value|text|2.2|A dialog that lets the user choose where to go.
-choice|dtmf accept next expr event eventexpr message messageexpr fetchaudio {FETCH}|{BLOCKS} grammar|text|2.2|A choice of the menu: what the user may say, and where it leads.
-enumerate||{BLOCKS}|text|2.2.4|The choices of the menu, or the options of the field, one after another.
-block|{ITEM}|{EXECUTABLE}|text|2.3.2|Content that runs once, without a question.
-field|{ITEM} type slot modal xml:lang|{HANDLERS} audio enumerate filled grammar link option prompt property value|text|2.3.1|Asks the user something and keeps the answer.
-initial|{ITEM}|{HANDLERS} audio enumerate link prompt property value|text|2.3.3|The first question of a form that takes several answers at once.
-option|dtmf accept value||text|2.3.1.3|An answer that the field takes.
-object|{ITEM} classid codebase codetype data type archive {FETCH}|{HANDLERS} audio enumerate filled param prompt property value|text|2.3.5|An object of the platform; this one has none.
-record|{ITEM} modal beep maxtime finalsilence dtmfterm type dest|{HANDLERS} audio enumerate filled grammar prompt property value|text|2.3.6|Records what the user says.
-subdialog|{ITEM} namelist src srcexpr method enctype fetchaudio {FETCH}|{HANDLERS} audio enumerate filled param prompt property value|text|2.3.4|Calls another dialog and comes back with its result.
-transfer|{ITEM} dest destexpr bridge type connecttimeout maxtime transferaudio aai aaiexpr|{HANDLERS} audio enumerate filled grammar prompt property value|text|2.3.7|Connects the user to somebody else.
-filled|mode namelist|{EXECUTABLE}|text|2.4|What to do when input items have been filled.
-link|next expr event eventexpr message messageexpr dtmf fetchaudio {FETCH}|grammar||2.5|What the user may say at any time in its scope.
-grammar|version xml:lang mode root tag-format xml:base src srcexpr scope type weight {FETCH}|example lexicon meta metadata one-of item rule ruleref tag token|text|3.1|What the user may say or key in.
-catch|event cond count|{EXECUTABLE}|text|5.2.2|A handler of events.
-error|cond count|{EXECUTABLE}|text|5.2.3|A handler of every error.
-help|cond count|{EXECUTABLE}|text|5.2.3|A handler of a request for help.
-noinput|cond count|{EXECUTABLE}|text|5.2.3|A handler for when nobody answered in time.
-nomatch|cond count|{EXECUTABLE}|text|5.2.3|A handler for an answer that no grammar takes.
-prompt|bargein bargeintype cond count timeout xml:lang xml:base|{BLOCKS} lexicon meta metadata|text|4.1|What is said to the user.
-audio|src expr {FETCH}|{BLOCKS} desc|text|4.1.3|A recording, with what to say where there is none.
-value|expr* class mode recsrc|||4.1.4|The value of an expression, as text.
-break|strength time size|||4.1.1|A pause.
-emphasis|level|{SPEECH}|text|4.1.1|Text said with stress.
-mark|name nameexpr|||4.1.1|A place in a prompt; the application can ask whether it was passed.
-phoneme|ph* alphabet||text|4.1.1|How something is pronounced.
-prosody|pitch contour range rate duration volume|{BLOCKS}|text|4.1.1|Rate, pitch and loudness of the text.
-say-as|interpret-as format detail type|value|text|4.1.1|The kind of the text, such as a date.
-sub|alias*||text|4.1.1|What to say in place of the text.
-voice|xml:lang gender age variant name|{BLOCKS}|text|4.1.1|Another voice.
-p|xml:lang|{PARAGRAPH}|text|4.1.1|A paragraph.
-s|xml:lang|{SPEECH}|text|4.1.1|A sentence.
-paragraph|xml:lang|{PARAGRAPH}|text|4.1.1|A paragraph.
-sentence|xml:lang|{SPEECH}|text|4.1.1|A sentence.
-desc|xml:lang||text|4.1.3|A description of a recording.
-lexicon|uri* type|||4.1.1|A document of pronunciations.
-meta|name content* http-equiv|||6.2|A fact about the document.
-metadata||*|text|6.2.2|Facts about the document in another language.
-property|name* value*|||6.3|A setting for the element around it.
-param|name* expr value valuetype type|||6.4|A named value that is passed along.
-var|name* expr|||5.3.1|Declares a variable in the scope around it.
-assign|name* expr*|||5.3.2|Gives a variable a value.
-clear|namelist|||5.3.3|Makes form items undefined again, with their counters.
-if|cond*|{EXECUTABLE} else elseif|text|5.3.4|Content under a condition; elseif and else divide it.
-elseif|cond*|||5.3.4|Divides an if.
-else||||5.3.4|Divides an if.
-reprompt||||5.3.6|Repeats the prompt at the next visit.
-goto|next expr nextitem expritem fetchaudio {FETCH}|||5.3.7|Goes to another item, dialog or document.
-submit|next expr namelist method enctype fetchaudio {FETCH}|||5.3.8|Sends values to a server and goes on with the document it answers.
-exit|expr namelist|||5.3.9|Ends the application.
-return|namelist event eventexpr message messageexpr|||5.3.10|Ends a subdialog.
-disconnect|namelist|||5.3.11|Ends the connection with the user.
-script|src srcexpr charset {FETCH}||text|5.3.12|ECMAScript that runs when it is reached.
-log|label expr|value|text|5.3.13|Writes into the transcript.
-throw|event eventexpr message messageexpr|||5.2.1|Throws an event.
-foreach|array* item*|{EXECUTABLE}|text|VoiceXML 2.1, 6|Runs its content once for every element of an array.
-said-foreach=foreach|array* item*|{BLOCKS}|text|VoiceXML 2.1, 6|Runs its content once for every element of an array.
-data|src srcexpr name method enctype namelist fetchaudio {FETCH}|||VoiceXML 2.1, 5|Fetches XML as a read-only tree of nodes.
+vxml version* application xml:base xml:lang > {HANDLERS} data form link menu meta metadata property
+    script var | A VoiceXML document. | 1.5
+form id scope > {HANDLERS} block data field filled grammar initial link object property record
+    script subdialog transfer var | A dialog that presents information and gathers input. | 2.1
+menu id scope dtmf accept > {HANDLERS} audio choice enumerate property prompt value #text | A dialog
+    that lets the user choose where to go. | 2.2
+choice dtmf accept next expr event eventexpr message messageexpr fetchaudio {FETCH} > {BLOCKS}
+    grammar #text | A choice of the menu: what the user may say, and where it leads. | 2.2
+enumerate > {BLOCKS} #text | The choices of the menu, or the options of the field, one after
+    another. | 2.2.4
+block {ITEM} > {EXECUTABLE} #text | Content that runs once, without a question. | 2.3.2
+field {ITEM} type slot modal xml:lang > {HANDLERS} audio enumerate filled grammar link option prompt
+    property value #text | Asks the user something and keeps the answer. | 2.3.1
+initial {ITEM} > {HANDLERS} audio enumerate link prompt property value #text | The first question of
+    a form that takes several answers at once. | 2.3.3
+option dtmf accept value > #text | An answer that the field takes. | 2.3.1.3
+object {ITEM} classid codebase codetype data type archive {FETCH} > {HANDLERS} audio enumerate
+    filled param prompt property value #text | An object of the platform; this one has none. | 2.3.5
+record {ITEM} modal beep maxtime finalsilence dtmfterm type dest > {HANDLERS} audio enumerate filled
+    grammar prompt property value #text | Records what the user says. | 2.3.6
+subdialog {ITEM} namelist src srcexpr method enctype fetchaudio {FETCH} > {HANDLERS} audio enumerate
+    filled param prompt property value #text | Calls another dialog and comes back with its result.
+    | 2.3.4
+transfer {ITEM} dest destexpr bridge type connecttimeout maxtime transferaudio aai aaiexpr >
+    {HANDLERS} audio enumerate filled grammar prompt property value #text | Connects the user to
+    somebody else. | 2.3.7
+filled mode namelist > {EXECUTABLE} #text | What to do when input items have been filled. | 2.4
+link next expr event eventexpr message messageexpr dtmf fetchaudio {FETCH} > grammar | What the user
+    may say at any time in its scope. | 2.5
+grammar version xml:lang mode root tag-format xml:base src srcexpr scope type weight {FETCH} >
+    lexicon meta metadata #text | What the user may say or key in. | 3.1
+catch event cond count > {EXECUTABLE} #text | A handler of events. | 5.2.2
+error cond count > {EXECUTABLE} #text | A handler of every error. | 5.2.3
+help cond count > {EXECUTABLE} #text | A handler of a request for help. | 5.2.3
+noinput cond count > {EXECUTABLE} #text | A handler for when nobody answered in time. | 5.2.3
+nomatch cond count > {EXECUTABLE} #text | A handler for an answer that no grammar takes. | 5.2.3
+prompt bargein bargeintype cond count timeout xml:lang xml:base > {BLOCKS} lexicon meta metadata
+    #text | What is said to the user. | 4.1
+audio src expr {FETCH} > {BLOCKS} desc #text | A recording, with what to say where there is none. |
+    4.1.3
+value expr* class mode recsrc | The value of an expression, as text. | 4.1.4
+break strength time size | A pause. | 4.1.1
+emphasis level > {SPEECH} #text | Text said with stress. | 4.1.1
+mark name nameexpr | A place in a prompt; the application can ask whether it was passed. | 4.1.1
+phoneme ph* alphabet > #text | How something is pronounced. | 4.1.1
+prosody pitch contour range rate duration volume > {BLOCKS} #text | Rate, pitch and loudness of the
+    text. | 4.1.1
+say-as interpret-as format detail type > value #text | The kind of the text, such as a date. | 4.1.1
+sub alias* > #text | What to say in place of the text. | 4.1.1
+voice xml:lang gender age variant name > {BLOCKS} #text | Another voice. | 4.1.1
+p xml:lang > {PARAGRAPH} #text | A paragraph. | 4.1.1
+s xml:lang > {SPEECH} #text | A sentence. | 4.1.1
+paragraph xml:lang > {PARAGRAPH} #text | A paragraph. | 4.1.1
+sentence xml:lang > {SPEECH} #text | A sentence. | 4.1.1
+desc xml:lang > #text | A description of a recording. | 4.1.3
+lexicon uri* type | A document of pronunciations. | 4.1.1
+meta name content* http-equiv | A fact about the document. | 6.2
+metadata > #text | Facts about the document in another language. | 6.2.2
+property name* value* | A setting for the element around it. | 6.3
+param name* expr value valuetype type | A named value that is passed along. | 6.4
+var name* expr | Declares a variable in the scope around it. | 5.3.1
+assign name* expr* | Gives a variable a value. | 5.3.2
+clear namelist | Makes form items undefined again, with their counters. | 5.3.3
+if cond* > {EXECUTABLE} else elseif #text | Content under a condition; elseif and else divide it. |
+    5.3.4
+elseif cond* | Divides an if. | 5.3.4
+else | Divides an if. | 5.3.4
+reprompt | Repeats the prompt at the next visit. | 5.3.6
+goto next expr nextitem expritem fetchaudio {FETCH} | Goes to another item, dialog or document. |
+    5.3.7
+submit next expr namelist method enctype fetchaudio {FETCH} | Sends values to a server and goes on
+    with the document it answers. | 5.3.8
+exit expr namelist | Ends the application. | 5.3.9
+return namelist event eventexpr message messageexpr | Ends a subdialog. | 5.3.10
+disconnect namelist | Ends the connection with the user. | 5.3.11
+script src srcexpr charset {FETCH} > #text | ECMAScript that runs when it is reached. | 5.3.12
+log label expr > value #text | Writes into the transcript. | 5.3.13
+throw event eventexpr message messageexpr | Throws an event. | 5.2.1
+foreach array* item* > {EXECUTABLE} #text | Runs its content once for every element of an array. |
+    VoiceXML 2.1, 6
+said-foreach=foreach array* item* > {BLOCKS} #text | Runs its content once for every element of an
+    array. | VoiceXML 2.1, 6
+data src srcexpr name method enctype namelist fetchaudio {FETCH} | Fetches XML as a read-only tree
+    of nodes. | VoiceXML 2.1, 5
 """
-GRAMMAR_PARTS = {"example", "one-of", "item", "rule", "ruleref", "tag", "token"}
-
-
-def _elements() -> list[Element]:
-    made = []
-    for row in TABLE.strip().splitlines():
-        names, attributes, children, text, section, doc = row.split("|")
-        key, _, name = names.partition("=")
-        held = [
-            Attribute(word.rstrip("*"), "text", "", word.endswith("*"))
-            for word in attributes.split()
-        ]
-        kept = tuple(
-            dict.fromkeys(
-                child for child in children.split() if child != "*" and child not in GRAMMAR_PARTS
-            )
-        )
-        made.append(Element(key, doc, tuple(held), kept, bool(text), name, section))
-    return made
-
-
-VOICEXML = Vocabulary(NAMESPACE, "voicexml", "vxml", _elements())
+VOICEXML = Vocabulary(NAMESPACE, "voicexml", "vxml", elements(TABLE))
 """VoiceXML's elements; grammars are checked by :mod:`prima.grammar`."""
 
 SPOKEN = frozenset(BLOCKS.split()) - {"said-foreach"} | {"prompt"}

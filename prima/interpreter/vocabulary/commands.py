@@ -6,27 +6,12 @@ from prima.interpreter.vocabulary.names import SPEAKING
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.vocabulary import Attribute, Element, attribute
 
-LONGEST = attribute(
-    "longest",
-    "duration",
-    "its longest duration; then error.unit.timeout is thrown and it ends",
-    default="60s",
-    low=1,
-)
-_ORDER = attribute(
-    "order",
-    "text",
-    "after what the application asked for last, or now, cancelling what wants the same devices",
-    default="after",
-    choices=("after", "now"),
-)
-_RESTARTABLE = attribute(
-    "restartable",
-    "boolean",
-    "whether it gives way to a reaction at once and starts again from its beginning afterwards"
-    " (extension x2)",
-    default="false",
-)
+LONGEST = """longest: duration 1.. = 60s | its longest duration; then error.unit.timeout is thrown and it
+    ends"""
+_ORDER = """order: text(after now) = after | after what the application asked for last, or now, cancelling
+    what wants the same devices"""
+_RESTARTABLE = """restartable: boolean = false | whether it gives way to a reaction at once and starts again from
+    its beginning afterwards (extension x2)"""
 
 
 def _command(row: CommandType) -> Element:
@@ -43,8 +28,8 @@ def _command(row: CommandType) -> Element:
         )
         for name, argument in row.arguments.items()
     )
-    order = () if row.now else (_ORDER,)
-    restart = () if row.feedback or row.now else (_RESTARTABLE,)
+    order = () if row.now else (attribute(_ORDER),)
+    restart = () if row.feedback or row.now else (attribute(_RESTARTABLE),)
     says = row.text != "none"
     marks = [
         "devices " + ", ".join(sorted(row.devices)) if row.devices else "no devices",
@@ -68,40 +53,20 @@ def _shown(kind: str, value: object) -> str:
     return str(value).lower() if isinstance(value, bool) else f"{value:g}"
 
 
-COMMANDS = (
-    Element(
-        "iu",
-        "An Information Unit around Commands: they are one Atomic Behavior that nothing breaks.",
-        (LONGEST, _RESTARTABLE),
-        (*SPEAKING, "command", "par", "seq"),
-        source="thesis 4.1 (2); rule U4",
-    ),
-    Element(
-        "par",
-        "Branches that run in parallel; what follows waits for all of them.",
-        (),
-        (*SPEAKING, "command", "seq", "iu"),
-        source="SMIL; thesis Figure 4.1",
-    ),
-    Element(
-        "seq",
-        "Commands one after another, inside a par or a unit.",
-        (),
-        (*SPEAKING, "command", "par", "iu"),
-        source="SMIL; rule U3",
-    ),
-    Element(
-        "command",
-        "A Command that the robot's profile adds. A param with the name of one of its motion"
-        " arguments gives that argument; others are additional arguments.",
-        (
-            attribute("type", "id", "the Command's name in the profile", "required"),
-            _ORDER,
-            _RESTARTABLE,
-        ),
-        ("param", "on", "value"),
-        text=True,
-        source="thesis 5.3 (6)",
-    ),
-    *(_command(row) for row in TABLE_4_2.values() if row.name != "q-and-a"),
-)
+ARRANGING = f"""
+iu > {SPEAKING} command par seq | An Information Unit around Commands: they are one Atomic Behavior
+    that nothing breaks. | thesis 4.1 (2); rule U4
+  {LONGEST}
+  {_RESTARTABLE}
+par > {SPEAKING} command seq iu | Branches that run in parallel; what follows waits for all of them.
+    | SMIL; thesis Figure 4.1
+seq > {SPEAKING} command par iu | Commands one after another, inside a par or a unit. | SMIL; rule
+    U3
+command > param on value #text | A Command that the robot's profile adds. A param with the name of
+    one of its motion arguments gives that argument; others are additional arguments. | thesis 5.3
+    (6)
+  type*: id | the Command's name in the profile
+  {_ORDER}
+  {_RESTARTABLE}
+"""
+COMMANDS = tuple(_command(row) for row in TABLE_4_2.values() if row.name != "q-and-a")

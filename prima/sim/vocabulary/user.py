@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from prima.devices.vocabulary.common import ID, TITLE, VERSION
-from prima.markup.vocabulary import Element, Vocabulary, attribute
+from prima.markup.vocabulary import Element, Vocabulary, elements
 from prima.sim.vocabulary.happenings import CHANCE, DOINGS, SPEED
 from prima.sim.vocabulary.scenario import SCENARIO
 
@@ -16,22 +16,23 @@ def _without(element: Element, name: str, children: tuple[str, ...] = ()) -> Ele
     return replace(element, attributes=kept, children=children or element.children)
 
 
+TABLE = f"""
+user > answers answer when | A kind of users: how a person of a scenario behaves, whatever the
+    scenario.
+  {VERSION}
+  {ID}
+  {TITLE}
+  {SPEED}
+answers | How they give the scenario's answers, unless these specify it themselves.
+  after: delay = 1s | how long after the question
+  {CHANCE}
+"""
 USER = Vocabulary(
     "urn:prima:user:1",
     "user",
     "user",
     (
-        Element(
-            "user",
-            "A kind of users: how a person of a scenario behaves, whatever the scenario.",
-            (VERSION, ID, TITLE, SPEED),
-            ("answers", "answer", "when"),
-        ),
-        Element(
-            "answers",
-            "How they give the scenario's answers, unless these specify it themselves.",
-            (attribute("after", "delay", "how long after the question", default="1s"), CHANCE),
-        ),
+        *elements(TABLE),
         _without(SCENARIO.elements["answer"], "person"),
         _without(SCENARIO.elements["when"], "person", ("one-of", *DOINGS)),
         replace(SCENARIO.elements["one-of"], children=DOINGS),
