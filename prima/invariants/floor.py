@@ -93,7 +93,7 @@ def _speaks_next(ab: AB) -> bool:
         for child in ab.tree.members.values():
             if child.phase != LINKED or before.name not in child.parents:
                 continue
-            if "speaker" in child.devices:
+            if child.says:
                 return True
             if not child.feedback and child not in reached:
                 reached.append(child)

@@ -168,8 +168,7 @@ def f6(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
 def speaks_next(ab: Behavior) -> bool:
     """F6: whether a speaking AB is linked behind this one, with no looping AB in between."""
     return any(
-        child.state is not GONE
-        and ("speaker" in child.devices or (not child.feedback and speaks_next(child)))
+        child.state is not GONE and (child.says or (not child.feedback and speaks_next(child)))
         for child in ab.children
     )
 

@@ -241,6 +241,17 @@ def test_f6_holds_only_between_two_utterances(between: list[Command]) -> None:
     assert "fa#1" in stage.select()
 
 
+def test_f6_a_question_that_only_listens_is_no_utterance() -> None:
+    stage = Stage()
+    stage.request("ea", say("Ask me."), command("move-head", pan=30), Command("q-and-a"))
+    stage.select()
+    stage.at(5).request("fa", say("I like trains."))
+    stage.select()
+    stage.at(10).end("ea#1")
+    assert stage.select() == ["ea#2", "fa#1"]
+    assert check(stage.records) == []
+
+
 def test_f6_a_stream_that_has_not_spoken_is_no_topic_yet() -> None:
     stage = Stage()
     stage.request("ea", command("move-head", pan=30), say("Forty two."))
