@@ -35,11 +35,18 @@ def e1(mediation: Mediation, ab: Behavior, event: str, reason: str, inbound: boo
     remove(mediation, ab)
     if ab.inserted or ab.silent:
         return  # the AB that it was inserted for, or its replacement, goes on without it
-    tree = ab.stream.members if ab.unit is None else ab.unit.inner
-    delete_rest(mediation, tree, ab.run, "E1")
+    delete_rest(mediation, _tree_of(ab), ab.run, "E1")
     if ab.run is not None:
         notice = Notice("failed", ab.run.number, command, event=event, message=reason)
         mediation.tell(ab.app, ab.stream, notice)
+
+
+def _tree_of(ab: Behavior) -> dict[str, Behavior]:
+    """E1, U5: whose rest is deleted with an AB: its stream's, or that of the spanning unit around it."""
+    unit = ab.unit
+    while unit is not None and not unit.spans:
+        unit = unit.unit
+    return ab.stream.members if unit is None else unit.inner
 
 
 def _unit_that_fails(mediation: Mediation, ab: Behavior, event: str, reason: str) -> Behavior:
@@ -111,7 +118,7 @@ def unit_timeout(mediation: Mediation, unit: Behavior) -> None:
     for ab in reversed(list(unit.inner.values())):
         if ab.state is not RUNNING:
             delete(mediation, ab, "U5")
-    delete_rest(mediation, unit.stream.members, run, "U5")
+    delete_rest(mediation, _tree_of(unit), run, "U5")
     awaited = run.number if run else 0
     notice = Notice("failed", awaited, event="error.unit.timeout", message=message)
     mediation.tell(unit.app, unit.stream, notice)

@@ -127,6 +127,22 @@ def test_u5_a_unit_inside_another_that_takes_too_long_belongs_to_no_request() ->
     assert [(notice.what, notice.run) for _, notice in stage.notices] == [("failed", 0)]
 
 
+def test_u5_a_unit_of_one_request_that_takes_too_long_in_a_unit_leaves_the_rest_outside() -> None:
+    """As a device that fails in a unit does (E1)."""
+    stage = Stage()
+    stage.open("ea", 1, "speaker", "neck")
+    stage.request("ea", say("After."))
+    inner = Group(chain(say("One."), say("Two.")), longest=1_000)
+    number = stage.request("ea", inner, command("move-head", pan=1), unit=1)
+    stage.select()
+    assert takes_too_long(stage) == ("failed", number)
+    assert [one["behavior"] for one in stage.phases("cancel")] == ["ea#6", "ea#4"]
+    stage.at(3_000).end("ea#5")
+    stage.close("ea", 1)
+    assert stage.select() == ["ea#2"], "what follows the unit"
+    assert check(stage.records) == []
+
+
 @pytest.mark.parametrize(
     ("unit", "due"), [(Group(chain(say())), None), (Group(chain(say()), 900), 900)]
 )
