@@ -93,7 +93,10 @@ def expire(mediation: Mediation) -> None:
     now, running = mediation.now, mediation.memory.running
     for name in [name for name, due in mediation.holds.items() if due <= now]:
         let_go(mediation, mediation.memory.streams[name], "over")
-    for ab in [ab for ab in running.values() if ab.late is not None and ab.late <= now]:
+    late = [ab for ab in running.values() if ab.late is not None and ab.late <= now]
+    active = mediation.memory.active
+    late.sort(key=lambda ab: (ab.app is not active, ab.app.order, ab.serial))  # V3
+    for ab in late:
         if ab.name not in running:  # it ended with another one
             continue
         if ab.inside is not None:

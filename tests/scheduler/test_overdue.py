@@ -83,6 +83,20 @@ def test_e1_a_unit_of_several_requests_goes_on_after_a_failure_in_it() -> None:
     assert [(one["behavior"], one["rule"]) for one in stage.phases("cancel")] == [("ea#3", "E1")]
 
 
+def test_v3_what_takes_too_long_in_one_instant_ends_in_the_order_of_applications() -> None:
+    """The one whose stream is active comes first, then the declared order, then the number."""
+    units = {"fa": (1, "speaker"), "ea": (2, "neck"), "xa": (3, "arm")}
+    for started, told in (("xa ea fa", [1, 2, 3]), ("xa fa ea", [2, 1, 3])):
+        stage = Stage(apps={"fa": "fa", "ea": "ea", "xa": "ea"})
+        for app in started.split():
+            number, device = units[app]
+            stage.open(app, number, device, longest=1_000)
+            stage.select()
+        stage.at(1_000).mediator.expire()
+        stage.settle()
+        assert [notice.run for _, notice in stage.notices] == told
+
+
 def takes_too_long(stage: Stage) -> tuple[str, int]:
     """A unit of one second fails once, however long it goes on: the notice and its number."""
     for now in (1_000, 2_000):
