@@ -12,6 +12,7 @@ from prima.errors import DocumentError, UsageError, argument, has_errors
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.loading import is_voicexml, validate
 from prima.loading.files import read_file
+from prima.loading.stages import UNFIT
 from prima.markup.reader import parse
 from prima.sim.map import read_world
 from prima.sim.vocabulary.world import WORLD
@@ -36,12 +37,17 @@ def write(kind: str, name: str) -> list[Path]:
         name: its file, with or without ``.xml`` (``.vxml``); its id is derived from this.
 
     Raises:
-        UsageError: the file already exists, or cannot be written.
+        UsageError: the file already exists, cannot be written, or has a name that no document
+            can hold as its title.
     """
     ending = ".vxml" if kind == "vxml" else ".xml"
     stem = name.removesuffix(".vxml").removesuffix(".xml")
     if Path(name).name in ("", ".", "..") or name.endswith("/"):
         raise UsageError(f'"{name}" is not a file name.')
+    if re.search(UNFIT, name):
+        raise UsageError(
+            f'The name "{name}" holds a control character, or is not UTF-8. Name another file.'
+        )
     path = Path(stem + ending)
     if path.exists():
         raise UsageError(f"{path}: already exists; name another file.")

@@ -113,7 +113,7 @@ def test_a_name_that_is_not_utf8_is_told(tmp_path: Path) -> None:
     sarif = command.prima("validate", name, "--format", "sarif", cwd=tmp_path).stdout
     assert "l%E9.xml" in sarif and json.loads(sarif)
     done = command.prima("new", "ea", os.fsdecode(b"m\xe9"), cwd=tmp_path)
-    assert done.returncode == 2 and "rename it" in done.stderr
+    assert done.returncode == 2 and "is not UTF-8. Name another file" in done.stderr
 
 
 FOREIGN = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="ave"><form id="a">

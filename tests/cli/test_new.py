@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from pathlib import Path
 
@@ -29,6 +30,14 @@ def test_what_is_told_to_try_works(tmp_path: Path, kind: str) -> None:
     assert done.returncode == 0, done.stderr
     if kind in ("ea", "vxml", "scenario"):
         assert "tea is" in done.stdout.lower() and "exit" in done.stdout.splitlines()[-1]
+
+
+@pytest.mark.parametrize("name", ["a\x01", "a\uffff", os.fsdecode(b"m\xe9")])
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_name_that_no_document_can_hold_is_refused(tmp_path: Path, kind: str, name: str) -> None:
+    done = prima("new", kind, name, cwd=tmp_path)
+    assert done.returncode == 2 and "Name another file" in done.stderr
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_scenario_takes_in_what_its_folder_has(tmp_path: Path) -> None:
