@@ -86,6 +86,8 @@ class Sweep:
         """Refuse a scenario that is named twice: each of its runs would count twice."""
         seen: dict[str, str] = {}
         for name in question.scenarios:
+            if "\0" in name:
+                raise UsageError(f"{name}: this is not a file's name.")
             path = os.path.realpath(name)  # Path.resolve fails on loops of links
             if path in seen:
                 also = f', as "{seen[path]}"' if seen[path] != name else ""

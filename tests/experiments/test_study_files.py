@@ -90,6 +90,7 @@ def test_options_come_before_the_file(folder: Path) -> None:
         ("[0.5, 1]", "9", ":10", 'person.speed: "9" is out of range'),
         ("touch =", "toch =", ":8", '"toch" is not a value of the scenario. Did you mean "touch"'),
         ("site/visit.xml", "site/none.xml", ":2", "none.xml: cannot be read"),
+        ("site/visit.xml", "site\\u0000.xml", ":2", "this is not a file's name"),
         ('"prima", "fifo"', '"pirma"', ":3", 'Did you mean "prima"'),
     ],
 )
