@@ -103,9 +103,10 @@ def _patterns(file: Path) -> list[str]:
     """
     shown = os.path.relpath(file)
     try:
-        settings = parse_toml(read_file(file).decode()).get("tool", {}).get("prima", {})
-    except (ValueError, AttributeError) as error:
+        tools = parse_toml(read_file(file).decode()).get("tool", {})
+    except ValueError as error:
         raise UsageError(f"{shown}: cannot be read: {error}.") from None
+    settings = tools.get("prima", {}) if isinstance(tools, dict) else tools
     if not isinstance(settings, dict):
         raise UsageError(f"{shown}: tool.prima must be a table: write [tool.prima].")
     for name in settings:

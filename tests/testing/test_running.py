@@ -200,6 +200,13 @@ def test_wrong_settings_of_a_project_are_told(workshop: Path, settings: str, tol
         find(["."])
 
 
+@pytest.mark.parametrize("settings", ["tool = 3", "tool = [3]", "[tool]\nprima = 3"])
+def test_settings_that_are_no_table_are_told(workshop: Path, settings: str) -> None:
+    (workshop / "pyproject.toml").write_text(settings)
+    with pytest.raises(UsageError, match=r"tool\.prima must be a table: write \[tool\.prima\]"):
+        find(["."])
+
+
 def test_the_nearest_settings_count(workshop: Path) -> None:
     ignoring(workshop, 'ignore = ["*"]')
     ignoring(workshop / "drafts", "")
