@@ -87,6 +87,8 @@ class _Levels:
 
     def read(self, text: str) -> Factor:
         path, kind = self.target.path, self.kind
+        if re.search("[\ud800-\udfff]", text):  # bytes of the command line
+            raise self.wrong("Its levels are not UTF-8. Write them anew.")
         pieces = [one.replace("\\|", "|") for one in SPLIT.split(text)]
         self.count(len(pieces))
         if kind not in MEASURED:

@@ -51,6 +51,7 @@ def test_levels(path: str, levels: str, made: tuple[str, ...]) -> None:
     ("path", "levels", "why"),
     [
         ("touch", "soon", '"soon"'),
+        ("reply", "Yes.|\udcff", "reply: Its levels are not UTF-8"),
         ("touch", "1s|1s", 'The level "1s" is there twice.'),
         ("touch", "1s|2s|1000ms", 'The level "1000ms" is there twice, as "1s".'),
         ("person.speed", "1|1.0", 'The level "1.0" is there twice, as "1".'),
