@@ -350,6 +350,8 @@ def test_an_items_expression_without_a_value_is_error_semantic(item: str) -> Non
     ("body", "told"),
     [
         ("<var name='_a'/>", ['"_a" is reserved']),
+        ("<var name=''/><form><block name=''/><field name=' ' type='boolean'/></form>", ['"" is not a name']),
+        ("<form><block><foreach item=' ' array='[]'/></block></form>", ['"" is not a name']),
         ("<form><field name='a$'><option>x</option></field></form>", ['"a$" is reserved']),
         ("<form><block><foreach item='a.b' array='[]'/></block></form>", ['"a.b" is not a name']),
         ("<form><block><prompt><foreach item='1' array='[]'/></prompt></block></form>", ['"1" is not a name']),

@@ -23,6 +23,8 @@ NAMING = {
     **dict.fromkeys(["foreach", "said-foreach"], "item"),
 }
 """Elements that declare a variable, with the attribute that names it."""
+NEEDING = ("var", "foreach", "said-foreach")
+"""Those of them that have no hidden variable in place of an empty name."""
 
 HIDES = BAD_VALUE.says('The variable "{name}" hides {what}.', "Write another name.", "warning")
 NOT_A_NAME = BAD_VALUE.says(
@@ -60,7 +62,7 @@ def check_name(node: Node) -> Iterator[Problem]:
     """A variable that no expression can name, or whose name is the platform's (5.1.1)."""
     attribute = NAMING.get(node.key, "")
     name = node.get(attribute)
-    if not name:
+    if attribute not in node.attributes or (not name and node.key not in NEEDING):
         return
     place = node.attribute_place(attribute)
     if name in HIDING:
