@@ -9,6 +9,7 @@ from prima.errors.diagnoses.values import BAD_VALUE
 from prima.markup.tree import Node
 from prima.script.names import script_names
 from prima.script.walk import OBJECTS
+from prima.script.wrapping import PLACE
 from prima.voicexml.arranging import UNIT
 from prima.voicexml.elements import ITEMS
 from prima.voicexml.variablenames import wrong_name
@@ -44,6 +45,12 @@ READ_ONLY = BAD_VALUE.says(
     "warning",
 )
 
+NO_VARIABLE = BAD_VALUE.says(
+    '"{name}" names no variable: a run throws error.semantic.',
+    "Write the name of a variable, or of a part of its value.",
+    "warning",
+)
+
 
 def check_script_names(script: Node) -> Iterator[Problem]:
     """Variables of a script that hide the platform's scopes (5.1.2)."""
@@ -72,6 +79,9 @@ def check_name(node: Node) -> Iterator[Problem]:
 
 
 def check_assigned(node: Node) -> Iterator[Problem]:
-    """An assignment to a variable of the session, which is read-only (5.1.2)."""
-    if node.get("name").startswith("session."):
-        yield READ_ONLY.at(node.attribute_place("name"), name=node.get("name"))
+    """An assignment to a variable of the session, which is read-only (5.1.2), or to none."""
+    name = node.get("name")
+    if name.startswith("session."):
+        yield READ_ONLY.at(node.attribute_place("name"), name=name)
+    elif "name" in node.attributes and PLACE.fullmatch(name) is None:
+        yield NO_VARIABLE.at(node.attribute_place("name"), name=name)
