@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
+from typing import Any
 
 from prima.errors import UsageError, one_of
 from prima.experiments.levels import Factor
@@ -82,7 +83,8 @@ class Design:
             return self._combined(number)
         seed = number + self.seeds
         lhs = self.kind == "lhs"
-        shares = self._points[number] if lhs else [share(seed, one.path) for one in self.factors]
+        drawn = (share(seed, one.path) for one in self.factors)
+        shares: list[float] = self._points[number].tolist() if lhs else list(drawn)
         pairs = zip(self.factors, shares, strict=True)
         return seed, tuple(one.drawn(share) for one, share in pairs)
 
@@ -97,12 +99,12 @@ class Design:
         return seed + 1, tuple(reversed(values))
 
     @cached_property
-    def _points(self) -> Sequence[Sequence[float]]:
+    def _points(self) -> Any:
         return _hypercube(len(self.factors), self.count, self.seeds)
 
 
-def _hypercube(factors: int, runs: int, seed: int) -> Sequence[Sequence[float]]:
-    """The points of a Latin hypercube.
+def _hypercube(factors: int, runs: int, seed: int) -> Any:
+    """The points of a Latin hypercube, as an array of NumPy: millions of lists need too much.
 
     Raises:
         UsageError: scipy is not installed.
@@ -112,7 +114,4 @@ def _hypercube(factors: int, runs: int, seed: int) -> Sequence[Sequence[float]]:
     except ImportError:
         message = "--design lhs needs scipy: pip install 'prima[experiments]'."
         raise UsageError(message) from None
-    points: Sequence[Sequence[float]] = (
-        qmc.LatinHypercube(d=factors, rng=seed).random(runs).tolist()
-    )
-    return points
+    return qmc.LatinHypercube(d=factors, rng=seed).random(runs)
