@@ -22,8 +22,8 @@ Evaluator = TypeVar("Evaluator", bound="AnyEngine | PythonEngine")
 """The evaluator of an application's code."""
 MAX_STEPS = 20_000
 """Pieces of content that an application may execute in one instant."""
-HANDLERS_A_STEP = 100
-"""How many handlers are looked at, to find the one that takes an event, for a piece of content."""
+LOOKED_AT_A_STEP = 50
+"""How many handlers or form items are looked at, to find the next one, for a piece of content."""
 MAX_OUTPUT, MAX_WRITTEN = 1_000_000, 10_000_000
 """Characters that an application may say, log, send and pass on in one instant, and in a run."""
 MAX_RUN_STEPS, STEPS_A_SECOND = 1_500_000, 5_000
@@ -145,10 +145,10 @@ class Bounds(Generic[Evaluator]):
         if self.engine.lost:
             self.give_up(node, self.engine.lost)
 
-    def count_handlers(self, node: Node, handlers: Sized) -> None:
-        """Bound the handlers looked at: a document may have very many."""
-        if len(handlers) >= HANDLERS_A_STEP:
-            self.count_step(node, len(handlers) // HANDLERS_A_STEP)
+    def count_looked_at(self, node: Node, some: Sized) -> None:
+        """Bound the handlers and form items looked at: a document may have very many."""
+        if len(some) >= LOOKED_AT_A_STEP:
+            self.count_step(node, len(some) // LOOKED_AT_A_STEP)
 
     def count_output(self, characters: int, node: Node) -> None:
         """Bound the text that an application says, logs, sends and passes on."""

@@ -219,7 +219,7 @@ class Handling:
             if unit is not item:
                 found += unit.handlers
         found += [*frame.form.handlers, *self.owner.document.handlers]
-        self.owner.count_handlers(frame.form.node, found)
+        self.owner.count_looked_at(frame.form.node, found)
         return offers(found, event)
 
     def takers(self, frame: Frame, item: Item | None, event: str) -> Taking:
@@ -245,7 +245,7 @@ class Handling:
             first = candidates[0].handler
             if first.cond is None and first.count <= 1:
                 return first
-        self.owner.count_handlers(frame.form.node, candidates)
+        self.owner.count_looked_at(frame.form.node, candidates)
         return select_handler(
             candidates,
             lambda name: frame.counters.seen(name_of(item), name),

@@ -51,7 +51,7 @@ class Events:
         """The handler of an event: innermost scope, prefix, condition, count, order (5.2.4)."""
         local, where = self._scope(thrown), _place(context)
         found = self._takers(context, thrown)
-        self.shared.app.count_handlers(self.shared.document.node, found)
+        self.shared.app.count_looked_at(self.shared.document.node, found)
         return select_handler(
             found,
             lambda name: context.counters.seen(where, name),
@@ -109,7 +109,7 @@ class Events:
         takers = self._kept.get(key)
         if takers is None:
             found = [one for node in scopes if node is not None for one in node.all(*HANDLERS)]
-            self.shared.app.count_handlers(self.shared.document.node, found)
+            self.shared.app.count_looked_at(self.shared.document.node, found)
             known = (
                 Candidate(one, tuple(handler_names(one)), handler_number(one)) for one in found
             )

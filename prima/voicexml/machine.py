@@ -132,6 +132,7 @@ class Machine:
     def _interpret(self, context: Context, form: Node, heard: TakenUtterance | None) -> Flow:
         """Initialise, then select, collect, process (appendix C)."""
         self.app.count_step(form, DIALOG_STEPS)
+        self.app.count_looked_at(form, form.content)
         context.form, context.item, context.unit = form, None, None
         context.counters, context.visited = Counters(), set()
         context.quiet = False
