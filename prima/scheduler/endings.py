@@ -150,9 +150,12 @@ def withdraw(mediation: Mediation, behaviors: list[Behavior], rule: str) -> None
 
 
 def silence(ab: Behavior) -> None:
-    """Let a running AB finish without notifying anybody; a unit's time limit is lifted (U5)."""
+    """Let a running AB finish without notifying anybody.
+
+    A unit around form items is left, and has no time limit any more (U5); others keep theirs.
+    """
     ab.silent = True
-    if ab.inside is not None:
+    if ab.spans:
         ab.late = None
 
 

@@ -117,10 +117,14 @@ def unit_timeout(mediation: Mediation, unit: Behavior) -> None:
         notice = Notice("unit-timeout", number, event="error.unit.timeout", message=message)
         mediation.tell(unit.app, unit.stream, notice)
         return
+    heard = not unit.silent
     silence(unit)
+    unit.late = None
     for ab in reversed(list(unit.inner.values())):
         if ab.state is not RUNNING:
             delete(mediation, ab, "U5")
+    if not heard:
+        return  # its replacement goes on
     delete_rest(mediation, _tree_of(unit), run, "U5")
     awaited = run.number if run else 0
     notice = Notice("failed", awaited, event="error.unit.timeout", message=message)

@@ -7,8 +7,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import pytest
-
 from prima.invariants import check
 from prima.language.commands import TABLE_4_2
 from prima.messages import (
@@ -190,15 +188,11 @@ def test_u5_a_unit_that_takes_too_long_ends_and_its_application_is_told() -> Non
     assert stage.running == set()
 
 
-@pytest.mark.parametrize("spans", [True, False])
-def test_u5_a_unit_that_was_left_has_no_time_to_keep(spans: bool) -> None:
+def test_u5_a_unit_that_was_left_has_no_time_to_keep() -> None:
     """What takes its place is not deleted, and nobody hears that it took too long."""
     stage = Stage()
-    if spans:
-        stage.open("ea", 1, "speaker", longest=2000)
-        stage.request("ea", say("Long."), unit=1)
-    else:
-        stage.request("ea", Group(chain(say("Long.")), longest=2000))
+    stage.open("ea", 1, "speaker", longest=2000)
+    stage.request("ea", say("Long."), unit=1)
     stage.select()
     stage.at(1500).leave("ea")
     stage.close("ea", 1)
@@ -209,6 +203,25 @@ def test_u5_a_unit_that_was_left_has_no_time_to_keep(spans: bool) -> None:
     stage.at(3000).end("ea#2")
     assert stage.select() == ["ea#3"]
     assert stage.phases("fail") == [] and stage.told("ea") == []
+    assert check(stage.records) == []
+
+
+def test_u4_a_group_whose_state_was_left_keeps_its_time() -> None:
+    """It ends, as it would else; what takes its place is not deleted, and nobody hears of it."""
+    stage = Stage()
+    stage.request("ea", Group(chain(say("One."), say("Two."), say("Three.")), longest=2000))
+    stage.select()
+    stage.at(1500).leave("ea")
+    stage.request("ea", say("On."), state=2)
+    stage.at(1700).end("ea#2")
+    assert stage.select() == ["ea#3"], "a group is not cut by leaving"
+    assert stage.mediator.deadline() == 2000
+    stage.at(2000).mediator.expire()
+    assert stage.select() == [] and stage.mediator.deadline() != 2000
+    stage.at(2500).end("ea#3")
+    assert stage.select() == ["ea#5"]
+    [failed] = stage.phases("fail")
+    assert (failed["behavior"], failed["rule"]) == ("ea#1", "U5") and stage.told("ea") == []
     assert check(stage.records) == []
 
 
