@@ -96,8 +96,7 @@ class Sweep:
 
     def _plan(self, question: SweepQuestion) -> None:
         settings = ExperimentSettings(question.bound, question.patience, question.isolate)
-        paths = list(question.vary)
-        self.stage = Stage.of(question.scenarios, paths, settings)
+        self.stage = Stage.of(question.scenarios, list(question.vary), settings)
         self.factors = self._factors()
         self._check_seeds()
         self.design = Design(question.design, self.factors, question.seeds, question.runs)
@@ -323,13 +322,11 @@ class Output:
             if row["order"]:
                 firsts.setdefault(str(row["order"]), int(str(row["run"])))
         left = {n: o for o, n in firsts.items() if not (folder / f"{o}.jsonl").is_file()}
-        if not left:
-            return
         for variant in self.sweep:
-            if (order := left.pop(variant.number, None)) is not None:
-                self.sweep.stage.save(folder, order, variant)
             if not left:
                 return
+            if (order := left.pop(variant.number, None)) is not None:
+                self.sweep.stage.save(folder, order, variant)
 
 
 def estimate(sweep: Sweep, workers: int) -> str:

@@ -111,19 +111,23 @@ class Memory:
         """ABs for which the robot turns to the user (X4)."""
         self.robot: tuple[float, float] | None = None
         """Where the robot is, as reported by its devices."""
+        self._begin_waits(patience)
+        self._read_ahead()
+        self.new_instant()
+
+    def _begin_waits(self, patience: int | None) -> None:
+        """Prepare for counting how long ABs wait (E6)."""
+        head = self.records[0].get("data") or {} if self.records else {}
+        self.patience = ms(head.get("patience", SECONDS)) if patience is None else patience
+        """The bound (ms); 0 if there is none."""
         self.kept: dict[str, int] = {}
-        """How long (ms) others have kept waiting ABs from the speaker (E6)."""
+        """How long (ms) others have kept waiting ABs from the speaker."""
         self.kept_now: set[str] = set()
         """The ABs that are kept from it at present."""
         self.starving: set[str] = set()
         """The ABs that have been reported to starve."""
         self.answered: dict[str, int] = {}
-        """When the user last answered a question of each stream (E6)."""
-        head = self.records[0].get("data") or {} if self.records else {}
-        self.patience = ms(head.get("patience", SECONDS)) if patience is None else patience
-        """E6's bound (ms); 0 if there is none."""
-        self._read_ahead()
-        self.new_instant()
+        """When the user last answered a question of each stream."""
 
     def _read_ahead(self) -> None:
         """Note what only later records show."""
