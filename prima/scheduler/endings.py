@@ -120,7 +120,7 @@ def cancel(mediation: Mediation, behaviors: list[Behavior], devices: frozenset[s
             continue
         heard = not ab.silent
         if ab.state is RUNNING and not ab.devices & devices:
-            silence(ab)
+            ab.silent = True
         else:
             delete(mediation, ab, "O2")
         if heard:
@@ -141,22 +141,12 @@ def withdraw(mediation: Mediation, behaviors: list[Behavior], rule: str) -> None
         if ab.in_group:
             continue
         if ab.state is RUNNING:
-            silence(ab)
+            ab.silent = True
             ab.left = True
             if ab.listening:
                 delete(mediation, ab, rule)
         elif not ab.spans:
             delete(mediation, ab, rule)
-
-
-def silence(ab: Behavior) -> None:
-    """Let a running AB finish without notifying anybody.
-
-    A unit around form items is left, and has no time limit any more (U5); others keep theirs.
-    """
-    ab.silent = True
-    if ab.spans:
-        ab.late = None
 
 
 def delete(mediation: Mediation, ab: Behavior, rule: str) -> None:
@@ -185,7 +175,7 @@ def delete_rest(
         if other.state in (LINKED, WAITING):
             delete(mediation, other, rule)
         elif other.feedback and not (other.silent or other.inserted):
-            silence(other)
+            other.silent = True
         else:
             continue
         if other.run is not run:
@@ -217,7 +207,7 @@ def close_unit(mediation: Mediation, app: Application, number: int) -> None:
     unit.inside.open, unit.late = False, None
     for ab in reversed(list(unit.inside.members.values())):
         if ab.state is RUNNING:
-            silence(ab)
+            ab.silent = True
         elif ab.state is not GONE:
             delete(mediation, ab, "U5")
     if unit.name in mediation.memory.running:

@@ -7,7 +7,7 @@ from typing import Final
 from prima.messages import Command, Notice
 from prima.messages.times import earliest
 from prima.scheduler.behavior import RUNNING, Behavior
-from prima.scheduler.endings import close_unit, delete, delete_rest, note_rolling, remove, silence
+from prima.scheduler.endings import close_unit, delete, delete_rest, note_rolling, remove
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.memory import WorkingMemory
 from prima.scheduler.streams import let_go
@@ -118,8 +118,7 @@ def unit_timeout(mediation: Mediation, unit: Behavior) -> None:
         mediation.tell(unit.app, unit.stream, notice)
         return
     heard = not unit.silent
-    silence(unit)
-    unit.late = None
+    unit.silent, unit.late = True, None
     for ab in reversed(list(unit.inner.values())):
         if ab.state is not RUNNING:
             delete(mediation, ab, "U5")

@@ -157,6 +157,19 @@ def test_u5_a_unit_of_one_request_that_takes_too_long_in_a_unit_leaves_the_rest_
     assert check(stage.records) == []
 
 
+def test_u5_however_deep_a_unit_is_that_takes_too_long_the_rest_outside_is_left() -> None:
+    stage = Stage()
+    stage.open("ea", 1, "speaker", "neck")
+    stage.request("ea", say("After."))
+    deep = Group([Step(Group([Step(Group(chain(say("One.")), longest=1_000))]))])
+    stage.request("ea", deep, command("move-head", pan=1), unit=1)
+    stage.select()
+    stage.at(1_000).mediator.expire()
+    stage.select()
+    cancelled = [one["command"] for one in stage.phases("cancel")]
+    assert cancelled == ["move-head"], "not what follows the unit around all of them"
+
+
 @pytest.mark.parametrize(
     ("unit", "due"), [(Group(chain(say())), None), (Group(chain(say()), 900), 900)]
 )
