@@ -19,6 +19,7 @@ from typing import TypeVar
 from prima.errors import UsageError, did_you_mean
 from prima.language.distributions import MEASURED, RANGE, Distributions, Quantile, written
 from prima.language.values import read_value
+from prima.script.surrogates import SURROGATE
 from prima.sim.paths import ScenarioValue
 
 Read = TypeVar("Read")
@@ -87,7 +88,7 @@ class _Levels:
 
     def read(self, text: str) -> Factor:
         path, kind = self.target.path, self.kind
-        if re.search("[\ud800-\udfff]", text):  # bytes of the command line
+        if SURROGATE.search(text):  # bytes of the command line
             raise self.wrong("Its levels are not UTF-8. Write them anew.")
         pieces = [one.replace("\\|", "|") for one in SPLIT.split(text)]
         self.count(len(pieces))

@@ -78,9 +78,10 @@ def voicexml_problems(
     from prima.voicexml.upgrade import is_other_version
     from prima.voicexml.variables import check_variables
 
-    folder = Path(site.folder) if site else Path(path).parent
+    place = site.folder if site else dirname(path)
+    folder = Path(place)
     first = read_page(site.name(site.uri) if site else Path(path).name, path, data, site)
-    pages = Pages(first, site.folder if site else dirname(path), Folder(str(folder)).fetch)
+    pages = Pages(first, place, Folder(str(folder)).fetch)
 
     def script(page: Page, node: Node) -> str | None:
         try:

@@ -7,14 +7,12 @@ from prima.markup.vocabulary import Attribute, attribute
 
 USUAL_CONFIDENCE = 0.5
 """The default of the minimum confidence (VoiceXML 2.0, 6.3.2)."""
-_ASKING = TABLE_4_2["q-and-a"].arguments
 PROPERTIES = {
     item.name: item
     for item in (
         *(
             Attribute(name, one.kind, one.doc, low=one.low, high=one.high)
-            for name in ("timeout", "bargein")
-            for one in [_ASKING[name]]
+            for name, one in TABLE_4_2["q-and-a"].arguments.items()
         ),
         attribute(
             f"confidencelevel: number 0..1 = {USUAL_CONFIDENCE} | how sure the recogniser has to be"
