@@ -7,7 +7,7 @@ import re
 from typing import Any
 
 from prima.script.evaluation import ScriptError
-from prima.script.globals import GLOBALS, IDENTIFIER, STRANGE, WORD
+from prima.script.globals import GLOBALS, STRANGE, WORD
 from prima.script.hoisting import HIDDEN, Hoisted
 from prima.script.names import expression_names, script_names
 from prima.script.sandbox import DECLARE, GUARD, NAME, REFUSE, SAFE
@@ -71,18 +71,27 @@ PLACE = re.compile(rf"""{WORD}(?:\.{WORD}|\[(?:[\w$.+-]+|"[^"\\\]]*"|'[^'\\\]]*'
 """A variable, or a part of its value."""
 
 
+def check_variable(name: str) -> None:
+    """Refuse a text that names neither a variable nor a part of its value.
+
+    Raises:
+        ScriptError: it does not.
+    """
+    if PLACE.fullmatch(name) is None:
+        raise ScriptError(f'"{name[:80]}" names no variable')
+
+
 def assignment(name: str, code: str, scopes: tuple[str, ...]) -> str:
     """The body of an assignment that fails if the variable is undeclared."""
+    check_variable(name)
     scope, dot, rest = name.partition(".")
     where = [_short(scope) for scope in reversed(scopes)]
-    target = name
+    target = local = name
     if dot and scope in scopes:
-        where, target = [_short(scope)], f"{_short(scope)}.{rest}"
-    head = IDENTIFIER.match(rest if len(where) == 1 and dot else name)
-    if head is None or PLACE.fullmatch(name) is None:
-        raise ScriptError(f'"{name[:80]}" names no variable')
-    declared = " || ".join(f"{json.dumps(head[0])} in {scope}" for scope in where)
-    missing = json.dumps(f'the variable "{head[0]}" is not declared')
+        where, local, target = [_short(scope)], rest, f"{_short(scope)}.{rest}"
+    head = re.split(r"[.\[]", local, maxsplit=1)[0]
+    declared = " || ".join(f"{json.dumps(head)} in {scope}" for scope in where)
+    missing = json.dumps(f'the variable "{head}" is not declared')
     return f"if (!({declared})) throw new ReferenceError({missing}); {target} = (\n{code}\n)"
 
 

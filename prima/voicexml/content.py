@@ -11,6 +11,7 @@ from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, no_item, 
 from prima.markup.tree import Node
 from prima.messages import SERVICE, Json, Say
 from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
+from prima.script.wrapping import check_variable
 from prima.voicexml.access import host_of_page, may_read
 from prima.voicexml.dom import DOM, plain_tree
 from prima.voicexml.elements import INPUTS, branches
@@ -181,6 +182,7 @@ class Content(Speaker):
         found: dict[str, Json] = {}
         for name in names:
             try:
+                check_variable(name)
                 found[name] = self.engine.value(name, context.scopes(local))
             except ScriptError as error:
                 raise self.failure(error, node, "namelist") from None
@@ -207,8 +209,8 @@ class Content(Speaker):
     def go(self, node: Node, context: Context, local: Scope) -> Flow:
         """Leave for an item, a dialog or a document (5.3.7)."""
         item = self.word(node, "nextitem", context, local)
-        if item:
-            if all(one.get("name") != item for one in form_items(context)):
+        if item or {"nextitem", "expritem"} & node.attributes.keys():
+            if item not in {one.get("name") for one in form_items(context)} - {""}:
                 context.item = None  # it is handled in the dialog's scope
                 raise no_item(node, item)
             raise GoItem(item)

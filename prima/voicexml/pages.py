@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from urllib.parse import unquote, urlsplit
 
-from prima.errors import DocumentError, Problem, suggestion
+from prima.errors import DocumentError, Hint, Problem, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_FORM, UNDECLARED_VARIABLE
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
@@ -127,7 +127,7 @@ class Pages:
                 if other is None or target.asked:
                     continue
                 dialog = other.dialog(name)
-                if dialog is None and name and other is not page:
+                if dialog is None and other is not page:
                     yield _not_there(node, name, other)
                 elif dialog is not None and (node.key, dialog.tag) == ("subdialog", "form"):
                     yield from _untaken(node, dialog)
@@ -136,15 +136,22 @@ class Pages:
 NO_DIALOG = NO_SUCH_FORM.says(
     'There is no dialog "{name}" in {page}: this will be error.badfetch.', severity="warning"
 )
+NO_DIALOGS = NO_SUCH_FORM.says(
+    "{page} has no dialog: this will be error.badfetch.", "Name another document.", "warning"
+)
 NOT_TAKEN = UNDECLARED_VARIABLE.says(
     '{form} has no <var name="{name}"/>: this will be error.semantic.',
     "Declare it in the form.",
     "warning",
 )
 
+A_NAME = Hint("Write the name of a variable of that form.")
+
 
 def _not_there(node: Node, name: str, page: Page) -> Problem:
     place = node.attribute_place(TARGETS[node.key][0])
+    if not name:
+        return NO_DIALOGS.at(place, page=page.uri)
     hint = suggestion(name, page.dialogs, *value_span(node, TARGETS[node.key][0], name))
     return NO_DIALOG.at(place, hint, name=name, page=page.uri)
 
@@ -153,9 +160,9 @@ def _untaken(node: Node, form: Node) -> Iterator[Problem]:
     names = {var.get("name") for var in form.all("var")}
     for param in node.all("param"):
         name = param.get("name")
-        if name and name not in names:
+        if "name" in param.attributes and name not in names:
             which = f'The form "{form.get("id")}"' if form.get("id") else "The form that is called"
-            hint = suggestion(name, names, *value_span(param, "name"))
+            hint = suggestion(name, names, *value_span(param, "name")) if name else A_NAME
             yield NOT_TAKEN.at(param.attribute_place("name"), hint, form=which, name=name)
 
 

@@ -173,10 +173,15 @@ def test_a_file_is_guessed_only_where_it_is_near(tmp_path: Path, name: str, mean
         ('<block><goto next="second.vxml#cal"/></block>',
          'no-such-form There is no dialog "cal" in second.vxml: this will be error.badfetch.'
          ' Did you mean "call"?'),
+        ('<subdialog name="s" src="second.vxml"><param name="" expr="1"/></subdialog>',
+         "Write the name of a variable of that form."),
+        ('<block><goto next="empty.vxml"/></block>',
+         "no-such-form empty.vxml has no dialog: this will be error.badfetch."),
     ],
 )  # fmt: skip
 def test_what_another_document_lacks_is_told(tmp_path: Path, content: str, says: str) -> None:
-    (one,) = told(tmp_path, f"<form>{content}</form>", second=CALLED)
+    empty = VXML.format("", "")
+    (one,) = told(tmp_path, f"<form>{content}</form>", second=CALLED, empty=empty)
     assert one.startswith("main.vxml") and says in one
 
 

@@ -332,6 +332,22 @@ def test_an_attributes_expression_without_a_value_is_error_semantic(content: str
 
 
 @pytest.mark.parametrize(
+    ("content", "event"),
+    [
+        ('<clear namelist="9"/>', "error.semantic"),
+        ('<submit next="service:keep" namelist="9"/>', "error.semantic"),
+        ('<submit next="service:keep" namelist="a+a"/>', "error.semantic"),
+        ('<goto nextitem=""/>', 'error.badfetch there is no form item ""'),
+        ('<goto next=" "/>', "error.badfetch the URI is missing"),
+    ],
+)
+def test_names_and_uris_that_are_none_are_events(content: str, event: str) -> None:
+    logged = """<catch><log><value expr="_event + ' ' + _message"/></log><exit/></catch>"""
+    (log,) = run(f"<var name='a'/>{logged}<form><block>{content}</block></form>").logs()
+    assert re.sub(r"app.vxml:\d+:\d+: ", "", log).startswith(event)
+
+
+@pytest.mark.parametrize(
     "item",
     [
         '<transfer name="t" destexpr="void 0"/>',
@@ -360,6 +376,12 @@ def test_an_items_expression_without_a_value_is_error_semantic(item: str) -> Non
         ("<form><block><assign name='' expr='1'/></block></form>", ['"" names no variable']),
         ("<var name='a'/><form><block><assign name='a + 1' expr='1'/></block></form>", ['"a + 1" names no variable']),
         ("<var name='a'/><form><block><assign name='a[0].b' expr='1'/></block></form>", []),
+        ("<var name='a'/><form><block><clear namelist='a 9'/></block></form>", ['"9" names no variable']),
+        ("<var name='a'/><form><block><exit namelist='a+a'/></block></form>", ['"a+a" names no variable']),
+        ("<form><block><goto next=' '/></block></form>", ["next is empty"]),
+        ("<form><block><script src=''/></block></form>", ["src is empty"]),
+        ("<form><block><audio src=''/></block></form>", []),
+        ("<form><block><goto nextitem=''/></block></form>", ['This form has no item ""']),
         ("<menu><choice dtmf='1 x' event='e'>a</choice></menu>", ['dtmf "1 x"']),
         ("<menu><choice dtmf='1 2*#A' event='e.f-g_1'>a</choice></menu>", []),
         ("<form><field name='f'><option dtmf='one'>a</option></field></form>", ['dtmf "one"']),
@@ -372,7 +394,7 @@ def test_an_items_expression_without_a_value_is_error_semantic(item: str) -> Non
         ("<catch event='error. a.b'/><catch event='.'/><catch event=''/><catch/>", []),
     ],
 )  # fmt: skip
-def test_names_keys_and_events_that_are_none_are_warned_of(body: str, told: list[str]) -> None:
+def test_names_keys_uris_and_events_that_are_none_are_warned_of(body: str, told: list[str]) -> None:
     problems = read_page("a.vxml", "a.vxml", vxml(body).encode()).warnings()
     assert all(one.severity == "warning" for one in problems)
     assert [one.message[: len(start)] for one, start in zip(problems, told, strict=True)] == told

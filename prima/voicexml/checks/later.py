@@ -22,7 +22,12 @@ from prima.voicexml.arranging import UNIT, items_in, parts_of
 from prima.voicexml.checks.attributes import bad_value, fits, instead_of
 from prima.voicexml.checks.failing import check_failing
 from prima.voicexml.checks.guests import command_problems
-from prima.voicexml.checks.names import check_assigned, check_name, check_script_names
+from prima.voicexml.checks.names import (
+    check_assigned,
+    check_listed,
+    check_name,
+    check_script_names,
+)
 from prima.voicexml.elements import ITEMS, handler_number
 from prima.voicexml.vocabulary import (
     EXPRESSIONS,
@@ -53,6 +58,9 @@ LATER_VALUES = {
 """Impossible keys, events that nothing throws or takes, and speech that no voice can produce."""
 NO_EFFECT = MISSING_ATTRIBUTE.says(
     "<{tag}> without an attribute changes nothing.", "Add one, or remove the element.", "warning"
+)
+NO_URI = BAD_VALUE.says(
+    "{name} is empty: this will be error.badfetch.", "Write a URI.", severity="warning"
 )
 NO_DIALOG = NO_SUCH_FORM.says(
     'There is no dialog "{name}" here: this will be error.badfetch.', severity="warning"
@@ -106,6 +114,8 @@ def _check_node(node: Node, lang: str) -> Iterator[Problem]:
         yield from _property_problems(node)
     if node.key == "assign":
         yield from (*no_step(node), *check_assigned(node))
+    if node.key != "filled":  # its names are checked elsewhere
+        yield from check_listed(node)
     if node.key == "script" and node.own_text.strip():
         yield from check_script_names(node)
 
@@ -114,6 +124,8 @@ def _targets(node: Node, dialogs: set[str]) -> Iterator[Problem]:
     for attribute in ("next", "src"):
         target = node.get(attribute)
         name = parted(target)[1]
+        if attribute in node.attributes and not target.strip() and node.key != "audio":
+            yield NO_URI.at(node.attribute_place(attribute), name=attribute)
         if target.startswith("#") and node.key != "grammar" and name not in dialogs:
             hint = suggestion(name, dialogs, *value_span(node, attribute, target[1:]))
             yield NO_DIALOG.at(node.attribute_place(attribute), hint, name=name)

@@ -85,3 +85,10 @@ def check_assigned(node: Node) -> Iterator[Problem]:
         yield READ_ONLY.at(node.attribute_place("name"), name=name)
     elif "name" in node.attributes and PLACE.fullmatch(name) is None:
         yield NO_VARIABLE.at(node.attribute_place("name"), name=name)
+
+
+def check_listed(node: Node) -> Iterator[Problem]:
+    """Names in a list of variables that none can have."""
+    for name in node.get("namelist").split():
+        if PLACE.fullmatch(name) is None:
+            yield NO_VARIABLE.at(node.attribute_place("namelist"), name=name)
