@@ -65,6 +65,19 @@ class Transcript:
         """The rows of the table."""
         return rows_of(self.name, self.run().entries) if self.made is None else self.made
 
+    def row(self, number: int) -> Row:
+        """A row of the table by its number.
+
+        Raises:
+            UsageError: there is no such row.
+        """
+        rows = self.rows()
+        if 0 <= number < len(rows):
+            return rows[number]
+        have = f"the rows are 0 to {len(rows) - 1}" if rows else "the transcript has none"
+        message = f"{self.name}: there is no row {number}; {have}. {self.cut or self.early}"
+        raise UsageError(message.rstrip())
+
     def run(self) -> Run:
         """The run as folded from its records, once.
 

@@ -127,13 +127,6 @@ def explain_row(transcript: Transcript, number: int) -> str:
     from prima.transcript.why import explained
 
     check_transcripts(transcript)
-    rows = transcript.rows()
-    if not rows:
-        message = f"{transcript.name}: the transcript has no rows."
-        raise UsageError(f"{message} {transcript.cut or transcript.early}".rstrip())
     if type(number) is not int:
         raise UsageError(f"number={number!r:.80}: write the number of a row.")
-    if not 0 <= number < len(rows):
-        message = f"There is no row {number}; the rows are 0 to {len(rows) - 1}."
-        raise UsageError(f"{message} {transcript.cut or transcript.early}".rstrip())
-    return "\n".join(explained(transcript.run(), rows[number]))
+    return "\n".join(explained(transcript.run(), transcript.row(number)))

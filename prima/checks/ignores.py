@@ -24,6 +24,7 @@ from prima.errors.diagnoses.validation import (
     NO_ENTRIES,
     NO_FILES,
     NO_REASON,
+    NOT_READ,
     NOT_TOML,
     UNKNOWN_CODE,
     UNKNOWN_KEY,
@@ -31,7 +32,7 @@ from prima.errors.diagnoses.validation import (
     UNUSED_IGNORE,
 )
 from prima.markup.encodings import decode
-from prima.markup.toml import MOST_CHARACTERS, parse_toml
+from prima.markup.toml import MOST_CHARACTERS, NotToml, parse_toml
 from prima.markup.tree import MARKUP, Source
 
 SETTINGS = "prima.toml"
@@ -312,10 +313,13 @@ def read_settings(file: str) -> IgnoreSettings:
     """Read a ``prima.toml``."""
     settings = IgnoreSettings(file)
     try:
-        with open(file, encoding="utf-8") as stream:
-            tree = parse_toml(text := stream.read(MOST_CHARACTERS + 1))
-    except (OSError, ValueError) as error:
-        settings.problems.append(NOT_TOML.at(Place(file), error=error))
+        with open(file, "rb") as stream:
+            text, tree = parse_toml(file, stream.read(4 * MOST_CHARACTERS + 1))
+    except OSError as error:
+        settings.problems.append(NOT_READ.at(Place(file), error=error.strerror or error))
+        return settings
+    except NotToml as error:
+        settings.problems.append(NOT_TOML.at(error.place, error=error.reason))
         return settings
     entries = tree.get("ignore", [])
     unknown = sorted(tree.keys() - {"ignore"})

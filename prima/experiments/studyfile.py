@@ -12,7 +12,6 @@ answer = ["Yes.", "No.", ""]
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any, Literal
@@ -23,8 +22,7 @@ from prima.errors import UsageError, did_you_mean
 from prima.experiments.sweep import SweepQuestion
 from prima.language.values import read_value
 from prima.loading.files import read_bytes
-from prima.markup.encodings import byte_place
-from prima.markup.toml import parse_toml
+from prima.markup.toml import NotToml, parse_toml
 
 MOST_BYTES = 1_000_000
 """Maximum size of a study file; more values go into a separate file (``empirical``)."""
@@ -112,9 +110,9 @@ def read_study(path: str) -> SweepQuestion:
     Raises:
         UsageError: it cannot be read, or is invalid; the line is named if known.
     """
-    text = _read(path)
+    text, tree = _read(path)
     try:
-        study = Study.model_validate(_parsed(path, text))
+        study = Study.model_validate(tree)
         patience = None if study.patience is None else int(read_value("duration", study.patience))
     except ValidationError as error:
         raise _wrong(path, text, error) from None
@@ -142,24 +140,14 @@ def read_study(path: str) -> SweepQuestion:
     )
 
 
-def _read(path: str) -> str:
+def _read(path: str) -> tuple[str, dict[str, Any]]:
     data = read_bytes(path, MOST_BYTES + 1)
     if len(data) > MOST_BYTES:
         raise UsageError(f"{path}: larger than {MOST_BYTES:,} bytes.")
     try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        place = byte_place(path, "utf-8-sig", error)
-        raise UsageError(f"{place}: not TOML: it is not UTF-8.") from None
-
-
-def _parsed(path: str, text: str) -> dict[str, Any]:
-    try:
-        return parse_toml(text)
-    except ValueError as error:
-        match = re.fullmatch(r"(.*) \(at line (\d+), column (\d+)\)", str(error), re.DOTALL)
-        where = f":{match[2]}:{match[3]}" if match else ""
-        raise UsageError(f"{path}{where}: not TOML: {match[1] if match else error}.") from None
+        return parse_toml(path, data)
+    except NotToml as error:
+        raise UsageError(str(error)) from None
 
 
 def levels_text(given: Level | Sequence[Level]) -> str:

@@ -180,7 +180,7 @@ def tree(transcript: Transcript, row: int | None = None, to: str = "svg") -> str
     """
     from prima.graph import run
 
-    until = NEVER if row is None else _time(transcript, row)
+    until = NEVER if row is None else transcript.row(row).time
     graph = run.trees(transcript.run(), until)
     graph.description = _describe(graph)
     return _shown(graph, to, transcript.name)
@@ -200,16 +200,6 @@ def streams(transcript: Transcript, to: str = "svg") -> str:
         raise UsageError(f"{transcript.name}: {message} Write --to json or mermaid.")
     made = {"dot": text.dot_streams, "mermaid": text.mermaid_streams, "json": text.data_streams}
     return made.get(to, gantt.draw)(history)
-
-
-def _time(transcript: Transcript, row: int) -> float:
-    """The time of a row, in seconds."""
-    rows = transcript.rows()
-    if not rows:
-        raise UsageError(f"{transcript.name}: the transcript has no rows.")
-    if not 0 <= row < len(rows):
-        raise UsageError(f"There is no row {row}; the rows are 0 to {len(rows) - 1}.")
-    return rows[row].time
 
 
 def _describe(graph: Graph) -> str:

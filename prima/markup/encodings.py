@@ -114,5 +114,10 @@ def blank(text: str) -> str:
 
 def byte_place(file: str, encoding: str, error: UnicodeDecodeError) -> Place:
     """The place of the byte that is invalid in a file's encoding; columns count characters."""
-    before = with_line_feeds(error.object[: error.start].decode(encoding, errors="ignore"))
-    return Place(file, before.count("\n") + 1, len(before) - before.rfind("\n"))
+    before = error.object[: error.start].decode(encoding, errors="ignore")
+    return end_place(file, with_line_feeds(before))
+
+
+def end_place(file: str, text: str) -> Place:
+    """The place after a file's text, or its beginning, with line feeds."""
+    return Place(file, text.count("\n") + 1, len(text) - text.rfind("\n"))

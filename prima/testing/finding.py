@@ -12,7 +12,7 @@ from prima.errors import DocumentError, UsageError, did_you_mean
 from prima.loading.files import read_file
 from prima.markup.reader import parse
 from prima.markup.sniff import root_of
-from prima.markup.toml import parse_toml
+from prima.markup.toml import NotToml, parse_toml
 from prima.testing.golden import golden_of
 
 SCENARIO = re.compile(rb"<(?:[\w.-]+:)?scenario\s[^<]*urn:prima:scenario:")
@@ -103,9 +103,9 @@ def _patterns(file: Path) -> list[str]:
     """
     shown = os.path.relpath(file)
     try:
-        tools = parse_toml(read_file(file).decode()).get("tool", {})
-    except ValueError as error:
-        raise UsageError(f"{shown}: cannot be read: {error}.") from None
+        tools = parse_toml(shown, read_file(file))[1].get("tool", {})
+    except NotToml as error:
+        raise UsageError(str(error)) from None
     settings = tools.get("prima", {}) if isinstance(tools, dict) else tools
     if not isinstance(settings, dict):
         raise UsageError(f"{shown}: tool.prima must be a table: write [tool.prima].")

@@ -87,7 +87,7 @@ USAGES: list[Any] = [
     (["explain", "undeclard-variable"], 2, 'Did you mean "undeclared-variable"?'),
     (["explain", "good.jsonl"], 2, "Say which row"),
     (["explain", "good.jsonl", "99"], 2, "the rows are 0 to 3"),
-    (["explain", "good.jsonl", "9" * 30], 2, "There is no row"),
+    (["explain", "good.jsonl", "9" * 30], 2, "good.jsonl: there is no row"),
     *(([*words, "."], 2, ".: cannot be read: it is a folder. Name a transcript in it.")
       for words in (["show"], ["replay"], ["diff", "."], ["export", "--to", "csv"])),
     (["explain", ".", "1"], 2, ".: cannot be read: it is a folder. Name a transcript in it."),

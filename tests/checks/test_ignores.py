@@ -169,7 +169,7 @@ def test_beside_an_error_nothing_is_said_to_be_ignored_in_vain(tmp_path: Path) -
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("[[ignore]\n", "This is not TOML"),
+        ("[[ignore]\n", "This is not TOML: Expected"),
         ("[ignor]\n", 'Unknown setting "ignor". Write [[ignore]]'),
         ("ignore = 3\n", "ignore holds no entries. Write [[ignore]]"),
         ('[[ignore]]\ncode = "no-noinput"\n', 'Nothing says why "no-noinput" is ignored.'),
@@ -184,6 +184,24 @@ def test_settings_that_are_wrong_are_told(tmp_path: Path, text: str, says: str) 
     (tmp_path / "prima.toml").write_text(text)
     (problem,) = api.validate([path])
     assert problem.code == "bad-ignore" and says in f"{problem.message} {problem.remedy}"
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (b"ignore = 3\nx = \n", ":2:5: This is not TOML: Invalid value. Correct it."),
+        (b"\xef\xbb\xbf[[ignore]]\r\n# caf\xe9", ":2:6: This is not TOML: it is not UTF-8."),
+        (b"x = [", ":1:6: This is not TOML: "),
+        (b"\n" + b"a." * 101 + b"a = 1", ":2:1: This is not TOML: it has a key of more than 100"),
+    ],
+)
+def test_settings_that_cannot_be_read_are_told_with_their_place(
+    tmp_path: Path, content: bytes, says: str
+) -> None:
+    path = write(tmp_path, "<block><exit/></block>")
+    (tmp_path / "prima.toml").write_bytes(content)
+    (problem,) = api.validate([path])
+    assert says in f"{problem.place}: {problem.message} {problem.remedy}"
 
 
 # Scenarios, editors, the command line -------------------------------------------------------

@@ -42,7 +42,7 @@ WRONG = [
     (["app.xml", "--what", "streams"], "--what streams needs a transcript"),
     (["app.xml", "--row", "3"], "--row needs a transcript"),
     (["t.jsonl", "--what", "states"], "has no states"),
-    (["t.jsonl", "--row", "9999"], "There is no row 9999; the rows are 0 to"),
+    (["t.jsonl", "--row", "9999"], "t.jsonl: there is no row 9999; the rows are 0 to"),
     (["t.jsonl", "--what", "streams", "--row", "1"], "--row works only with --what tree"),
     (["app.xml", "-o", "app.xml", "--to", "dot"], "the picture is made from this file"),
     (["app.xml", "-o", "no/where.svg"], "cannot be written"),

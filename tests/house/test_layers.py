@@ -61,7 +61,7 @@ INSIDE = {
     "markup": [
         {"collecting", "limits", "sniff", "uris", "vocabulary", "tree"},
         {"edits", "encodings", "endtags", "hints", "spans"},
-        {"wellformed"},
+        {"toml", "wellformed"},
         {"build", "check", "roots"},
         {"reader"},
         {"__init__"},

@@ -191,7 +191,7 @@ def test_a_project_says_what_is_no_test(workshop: Path) -> None:
         ('ingore = ["a"]', r'has no "ingore"\. Did you mean "ignore"\?'),
         ('ignore = "drafts"', r'write ignore = \["drafts"\]'),
         ("ignore = [1]", r"must be a list of paths"),
-        ("ignore = [", r"pyproject\.toml: cannot be read"),
+        ("ignore = [", r"pyproject\.toml:3:1: not TOML: Invalid value"),
     ],
 )
 def test_wrong_settings_of_a_project_are_told(workshop: Path, settings: str, told: str) -> None:

@@ -94,7 +94,7 @@ def test_a_row_that_was_cut_off_is_told_so(folder: Path) -> None:
     cut(folder, letters=30)
     done = prima("explain", "t.jsonl", "30", cwd=folder)
     assert done.returncode == 2 and done.stdout == ""
-    assert "There is no row 30; the rows are 0 to 20. t.jsonl:151:" in done.stderr
+    assert "t.jsonl: there is no row 30; the rows are 0 to 20. t.jsonl:151:" in done.stderr
 
 
 def test_a_cut_run_is_explained_as_the_whole_one(folder: Path) -> None:

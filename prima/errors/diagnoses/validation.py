@@ -17,7 +17,8 @@ NO_REASON = BAD_IGNORE.says('Nothing says why "{code}" is ignored.', "Say it. {f
 UNKNOWN_CODE = BAD_IGNORE.says('There is no code "{code}".', "{form}")
 NO_CODE = BAD_IGNORE.says("Nothing says which code is ignored.", "{form}")
 NO_COLON = BAD_IGNORE.says('"{word}" needs a colon.', "{form}")
-NOT_TOML = BAD_IGNORE.says("This is not TOML: {error}.", severity="error")
+NOT_READ = BAD_IGNORE.says("The settings cannot be read: {error}.", severity="error")
+NOT_TOML = BAD_IGNORE.says("This is not TOML: {error}.", "Correct it.", "error")
 UNKNOWN_SETTING = BAD_IGNORE.says(
     'Unknown setting "{name}".', "Write [[ignore]], with code, reason and files.", "error"
 )
