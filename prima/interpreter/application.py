@@ -89,13 +89,15 @@ class Interpreter(States):
         self._tick(now)
         if self.over:
             return
+        fiber = self.waiting.get(notice.run)
+        asker = fiber.frame if fiber is not None else None
         if notice.what == "unit-timeout":
             self.guard(self.handling.unit_timeout, notice)
         elif notice.what in ("ended", "interrupted", "expired"):
             kind = "end" if notice.what == "ended" else notice.what
-            self.guard(self.handling.command_event, notice, kind)
+            self.guard(self.handling.command_event, notice, kind, asker)
         else:
-            fiber = self.waiting.pop(notice.run, None)
+            self.waiting.pop(notice.run, None)
             if fiber is not None and fiber.waiting == notice.run:
                 at = fiber.frame.item or fiber.frame.form
                 self.guard(self.count_wait, fiber.began, at.node)
@@ -105,7 +107,8 @@ class Interpreter(States):
                 self.guard(self._resume, fiber, notice)
                 self.cause = None
             if notice.what == "cancelled":
-                self.guard(self.handling.command_event, notice, notice.event.partition(".")[0])
+                name = notice.event.partition(".")[0]
+                self.guard(self.handling.command_event, notice, name, asker)
 
     def sensed(self, now: int, values: Data) -> list[str]:
         """Note new sensor values; gives the events whose conditions turned true (C6)."""
@@ -198,13 +201,13 @@ class Interpreter(States):
         item = fiber.frame.item if fiber is not None else None
         return (fiber.frame.form, item) if fiber and isinstance(item, Field) else None
 
-    def expire(self, now: int) -> list[tuple[str, Data]]:
-        """Raise the application's own delayed events that are due."""
-        if not self.timers:
-            return []
-        due = [timer for timer in self.timers if timer.due <= now]
-        self.keep_timers(timer for timer in self.timers if timer.due > now)
-        return [(timer.event, timer.data) for timer in sorted(due, key=lambda timer: timer.due)]
+    def expire(self, now: int) -> tuple[str, Data] | None:
+        """Take the first of the application's own delayed events that are due."""
+        first = min(self.timers, key=lambda timer: timer.due, default=None)
+        if first is None or first.due > now:
+            return None
+        self.keep_timers(timer for timer in self.timers if timer is not first)
+        return first.event, first.data
 
     def request(self, steps: list[Step], fiber: Fiber) -> int:
         """Ask the mediator for Commands; the first one after an event is a reaction (C5)."""

@@ -110,7 +110,8 @@ class Executor(Evaluator):
     def throw(self, act: Throw, fiber: Fiber) -> NoReturn:
         """Throw an event (VoiceXML 5.2.1)."""
         name = self.event_name(act, fiber)
-        message = shown(self.plain(act.message, fiber) or "")
+        said = self.plain(act.message, fiber)
+        message = "" if said is None else shown(said)
         raise Thrown(name, message, source(act.node))
 
     def event_name(self, act: Throw, fiber: Fiber) -> str:

@@ -48,49 +48,60 @@ class Handling:
         """Run the handler of an event thrown in content, in the same piece of content."""
         event = thrown.event
         self.count_event(frame, item, event.name)
-        candidates = self._candidates(frame, fiber, item, event.name)
+        inside = offers(fiber.commands, event.name) if fiber.commands else []
+        candidates = inside + self.takers(frame, item, event.name)
+        fiber.commands = ()
         fiber.local = None  # what the failed content has declared may have filled the memory
         if candidates:
             fiber.local = self.event_scope(event)
-        handler = self._select(frame, fiber, item, candidates)
-        if handler is None:
-            if event.name in REPROMPTED:
-                frame.silent = ""
-                return
-            if event.name.startswith(("cancel.", "end.", "expired.")):
-                return
+        handler = None
+        try:
+            handler = self._select(frame, fiber, item, candidates)
+            if handler is not None:
+                if handler.reactive is not None:  # otherwise a throw keeps its own (C5)
+                    self.allow_reaction(handler, event)
+                yield from self._handler_content(fiber, handler)
+        except (Thrown, ScriptError) as error:
+            at = frame.form.node if handler is None else handler.node
+            self.owner.count_step(at)
+            if depth > MAX_DEPTH:
+                self.owner.give_up(at, "its handlers throw without end")
+            again = thrown_of(error)
+        else:
+            if handler is None:
+                self._unhandled(frame, thrown)
+            return
+        yield from self.handle_thrown(frame, fiber, item, again, depth + 1)
+
+    @staticmethod
+    def _unhandled(frame: Frame, thrown: Thrown) -> None:
+        """An event without a handler ends the application, or lets a field ask again (5.2.5)."""
+        if thrown.name not in REPROMPTED:
             thrown.sought = True
             raise thrown
-        fiber.commands = ()
-        if handler.reactive is not None:  # otherwise a throw keeps its own (C5)
-            self.allow_reaction(handler, event)
-        self.owner.note(handler.node)
-        try:
-            yield from self.owner.execute.run(handler.content, fiber)
-            return
-        except (Thrown, ScriptError) as error:
-            self.owner.count_step(handler.node)
-            if depth > MAX_DEPTH:
-                self.owner.give_up(handler.node, "its handlers throw without end")
-            again = thrown_of(error)
-        yield from self.handle_thrown(frame, fiber, item, again, depth + 1)
+        frame.silent = ""
 
     def dispatch(self, event: Event, frame: Frame, place: str = "") -> None:
         """Handle an event from outside alongside the state's content (O4)."""
-        item = frame.item
-        self.count_event(frame, item, event.name)
-        candidates = self.takers(frame, item, event.name)
-        if candidates:
-            fiber = Fiber(frame, local=self.event_scope(event))
-            handler = self._select(frame, fiber, item, candidates)
-            if handler is not None:
-                self.allow_reaction(handler, event)
-                self._launch(fiber, handler)
-                return
-        if event.name.startswith("error."):
+        taken = self._take(event, frame, self.takers(frame, frame.item, event.name))
+        if not taken and event.name.startswith("error."):
             unhandled = Thrown(event.name, str(event.data.get("message", "")), place)
             unhandled.sought = True
             raise unhandled
+
+    def _take(self, event: Event, frame: Frame, candidates: Taking) -> bool:
+        """Let one of some handlers take an event, if it may."""
+        item = frame.item
+        self.count_event(frame, item, event.name)
+        if not candidates:
+            return False
+        fiber = Fiber(frame, local=self.event_scope(event))
+        handler = self._select(frame, fiber, item, candidates)
+        if handler is None:
+            return False
+        self.allow_reaction(handler, event)
+        self._launch(fiber, handler)
+        return True
 
     def _launch(self, fiber: Fiber, handler: Handler) -> None:
         frame = fiber.frame
@@ -99,7 +110,7 @@ class Handling:
             return
         self._bound_fibers(frame, handler)
         self._enter_unit(fiber, handler)
-        self._go_along(fiber, self._handler_content(fiber, handler))
+        self._go_along(fiber, self._recovering(fiber, handler))
 
     def _bound_fibers(self, frame: Frame, handler: Handler) -> None:
         if len(frame.fibers) >= MAX_FIBERS:
@@ -141,35 +152,36 @@ class Handling:
         self._go_along(fiber, self.handle_thrown(frame, fiber, frame.item, thrown, 0))
 
     def _handler_content(self, fiber: Fiber, handler: Handler) -> Content:
-        frame = fiber.frame
         self.owner.note(handler.node)
+        yield from self.owner.execute.run(handler.content, fiber)
+
+    def _recovering(self, fiber: Fiber, handler: Handler) -> Content:
+        """A handler's content; an event thrown in it is handled in the same fiber."""
+        frame = fiber.frame
         try:
-            yield from self.owner.execute.run(handler.content, fiber)
+            yield from self._handler_content(fiber, handler)
             return
         except (Thrown, ScriptError) as error:
             thrown = thrown_of(error)
         yield from self.handle_thrown(frame, fiber, frame.item, thrown, 0)
 
-    def command_event(self, notice: Notice, kind: str) -> None:
+    def command_event(self, notice: Notice, kind: str, asker: Frame | None) -> None:
         """Handle the end or cancellation of a Command, by handlers in it or in scope.
 
-        A unit around Commands has no Command of its own; its fate has the name ``iu``.
+        Those in it run in the state that asked for it, which may have called the active one. A
+        unit around Commands has no Command of its own; its fate has the name ``iu``.
         """
         frame, command = self.owner.frame, notice.command
         if frame is None:
             return
         name = f"{kind}.{command.asked if command is not None else 'iu'}"
         event = Event(name, 0, dict(notice.data), reactive=False)
-        fiber = Fiber(frame, commands=(command.hook if command is not None else None) or ())
-        candidates = self._candidates(frame, fiber, frame.item, name)
-        if not candidates:
-            return
-        fiber.local = self.event_scope(event)
-        self.count_event(frame, frame.item, name)
-        handler = self._select(frame, fiber, frame.item, candidates)
-        if handler is not None:
-            self.allow_reaction(handler, event)
-            self._launch(fiber, handler)
+        inside = offers(command.hook, name) if command is not None and command.hook else []
+        outside = self.takers(frame, frame.item, name)
+        if asker is None or asker is frame:
+            self._take(event, frame, inside + outside)
+        elif not (inside and self._take(event, asker, inside)):
+            self._take(event, frame, outside)
         self.owner.cause = None
 
     def unit_timeout(self, notice: Notice) -> None:
@@ -214,10 +226,10 @@ class Handling:
 
     def _in_scope(self, frame: Frame, item: Item | None, event: str) -> Taking:
         """Handlers that take an event, from the item, its unit, the form and the document."""
-        found = list(item.handlers) if item is not None else []
-        for _, unit in reversed(frame.units):
-            if unit is not item:
-                found += unit.handlers
+        found: list[Handler] = []
+        if item is not None:
+            units = [unit for _, unit in reversed(frame.units) if unit is not item]
+            found += [one for scope in (item, *units) for one in scope.handlers]
         found += [*frame.form.handlers, *self.owner.document.handlers]
         self.owner.count_looked_at(frame.form.node, found)
         return offers(found, event)
@@ -231,11 +243,6 @@ class Handling:
             found = self._in_scope(frame, item, event)
             takers.keep(key, found)
         return found
-
-    def _candidates(self, frame: Frame, fiber: Fiber, item: Item | None, event: str) -> Taking:
-        """Handlers inside the Command whose event is being handled, and those in scope."""
-        inside = offers(fiber.commands, event) if fiber.commands else []
-        return inside + self.takers(frame, item, event)
 
     def _select(
         self, frame: Frame, fiber: Fiber, item: Item | None, candidates: Taking

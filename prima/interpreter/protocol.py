@@ -83,8 +83,8 @@ class App(Bounds[Evaluator], ABC):
         """How a run's question interprets what the user said; None if it takes none of it."""
 
     @abstractmethod
-    def expire(self, now: int) -> list[tuple[str, Data]]:
-        """Raise the application's own events that are due."""
+    def expire(self, now: int) -> tuple[str, Data] | None:
+        """Take the first of the application's own events that are due; None if there is none."""
 
     def stop(self) -> None:
         """The application is taken out of the robot."""

@@ -108,7 +108,8 @@ class States(Owner):
             raise
         except StopIteration:
             self._drop(fiber)
-            self.go_on(fiber.frame)
+            if not fiber.main:  # the form's own content has looked for items itself
+                self.go_on(fiber.frame)
         except Abandoned:
             self._drop(fiber)
             fiber.frame.stalled = fiber.frame.stalled or fiber.main

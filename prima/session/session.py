@@ -321,12 +321,16 @@ class Session:
         if not self._wiring.due or min(self._wiring.due.values()) > now:
             return
         for app in self._wiring.in_order():
-            due: list[tuple[str, Data]] = []
-            with self._apps.contained(app):
-                due = app.expire(now)
-            for name, data in due:
-                self._wiring.own_event(app, name, dict(data), reactive=False)
+            while due := self._due(app, now):
+                self._wiring.own_event(app, due[0], dict(due[1]), reactive=False)
             self._wiring.act(app)
+
+    def _due(self, app: AnyApp, now: int) -> tuple[str, Data] | None:
+        """The next event of an application's own that is due: one may leave the state of others."""
+        due = None
+        with self._apps.contained(app):
+            due = app.expire(now)
+        return due
 
 
 def place_data(value: ApplicationLoaded | ApplicationUnloaded) -> dict[str, Json] | None:

@@ -186,12 +186,11 @@ class VoiceInterpreter(App[AnyEngine]):
         self._catch_up()
         return True
 
-    def expire(self, now: int) -> list[tuple[str, Data]]:
+    def expire(self, now: int) -> None:
         """End a fetch or call that takes too long (6.1.1, 2.3.7): no events are ever delayed."""
         self._tick(now)
         if self.waits.late is not None and self.deadline is not None and now >= self.deadline:
             self.replied(now, self.waits.late)
-        return []
 
     def leave_states(self) -> None:
         """O3: give up what is requested and awaited."""
