@@ -14,7 +14,7 @@ from functools import partial
 from prima.grammar.answers import Answers
 from prima.interpreter.acts import SendOut
 from prima.interpreter.content import Executor
-from prima.interpreter.elements import Document, Field, Form, Link, Watch
+from prima.interpreter.elements import Document, Field, Form, Link, Unit, Watch
 from prima.interpreter.form import Algorithm, confidence_level
 from prima.interpreter.frame import Fiber, Frame, GoForm
 from prima.interpreter.handling import Handling
@@ -213,8 +213,8 @@ class Interpreter(States):
         """Ask the mediator for Commands; the first one after an event is a reaction (C5)."""
         number = next(self.runs)
         frame = fiber.frame
-        fresh = self.fresh[1] if self.fresh and self.fresh[0] == self.cause else None
-        asked = Request(number, steps, frame.state, self.take_cause(), fiber.unit, fresh=fresh)
+        fresh, cause = self.fresh_for(), self.take_cause()
+        asked = Request(number, steps, frame.state, cause, fiber.unit, fresh=fresh)
         asked.hold = frame.form.hold
         if frame.item is not None and frame.item.hold is not None:
             asked.hold = frame.item.hold
@@ -246,7 +246,8 @@ class Interpreter(States):
     @staticmethod
     def connects(frame: Frame) -> bool:
         """Whether the robot has to face the user before the state's next word (X4)."""
-        asks = isinstance(frame.item, Field) and frame.item.connect
+        item = frame.item.items[0] if isinstance(frame.item, Unit) else frame.item
+        asks = isinstance(item, Field) and item.connect
         return asks or (frame.form.connect and not frame.connected)
 
     def delay(self, act: SendOut, data: Data, milliseconds: int, fiber: Fiber) -> None:

@@ -251,7 +251,7 @@ class Algorithm:
 
     def _span(self, frame: Frame, fiber: Fiber, unit: Unit) -> Content:
         """Run a unit around form items: opened here, concluded however it is left (U5)."""
-        number = next(self.owner.units)
+        number, fresh = next(self.owner.units), self.owner.fresh_for()
         self.owner.actions.append(
             OpenUnit(
                 number,
@@ -262,6 +262,7 @@ class Algorithm:
                 source(unit.node),
                 self.owner.connects(frame),
                 unit.types,
+                fresh,
             )
         )
         frame.connected = frame.asked = True

@@ -99,6 +99,10 @@ class Owner(App[Evaluating]):
     reported: dict[str, int]
     """The number of the latest report, by the first part of a sensor's name."""
 
+    def fresh_for(self) -> int | None:
+        """How long (ms) a reaction to the current cause is worth starting (X8)."""
+        return self.fresh[1] if self.fresh and self.fresh[0] == self.cause else None
+
     # Its requests:
 
     @abstractmethod

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from prima.invariants.extensions import moved
+from prima.invariants.extensions import forget_place, moved
 from prima.invariants.late import (
     answered_early,
     comes_too_late,
@@ -91,6 +91,7 @@ def note_fail(memory: Memory, record: Record) -> None:
             inner.silent = inner.silent or inner is ab or inner.inside(ab)
         return  # a unit out of time ends when its running Command has
     _loop_over(memory, ab)
+    forget_place(ab)
     if not ab.inserted:  # the AB that it was inserted for goes on without it
         memory.failed.append(ab)
         _ends_loops(memory, ab)
@@ -138,6 +139,7 @@ def _cancelled(memory: Memory, ab: AB, record: Record) -> None:
     if was == RUNNING:
         _loop_over(memory, ab)
     late = reaction_of(memory, ab) if rule == "X8" else None
+    forget_place(ab)
     waited = [one for one in ab.tree.members.values() if ab.name in one.parents]
     memory.remove(ab, ended=was == RUNNING)  # what ran has ended, even if cut short
     if rule == "X8":

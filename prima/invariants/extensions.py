@@ -69,7 +69,7 @@ def _takes_place(memory: Memory, ab: AB, before: AB) -> None:
 
 def _restores(memory: Memory, ab: AB, record: Record) -> None:
     """X1: only state that a suspended stream relies on is restored."""
-    if not ab.tree.suspended:
+    if not ab.tree.moved_away:
         memory.report(11, "X1", f"{ab.name} is put in, but {ab.tree.name} was not suspended")
     if record["command"] not in (*RESTORING, "move-head"):
         memory.report(11, "X1", f"{ab.name} restores nothing: it is {record['command']}")
@@ -83,37 +83,43 @@ def _says_so(memory: Memory, ab: AB, before: AB, record: Record) -> None:
     tree = ab.tree
     if not tree.words_due or record.get("text") != tree.words or ab.command != "speak":
         memory.report(11, "X9", f"{ab.name} is put in, but {tree.name} has not to say it")
-    if before.urgent:
+    if before.begins_now:
         memory.report(11, "X9", f"{ab.name} is put in before {before.shown}, which is wanted now")
 
 
 def words_said(memory: Memory, ab: AB) -> None:
     """X9: a stream that resumes has said its words, if others have spoken meanwhile."""
-    goes_on = not (ab.inserted or ab.urgent) and ab.cause is None
+    goes_on = not (ab.inserted or ab.begins_now) and ab.cause is None
     if "x9" in memory.extensions and goes_on and ab.tree.words_due and ab.tree.words:
         memory.report(16, "X9", f"{ab.shown} resumes {ab.tree.name}, which has not said so")
 
 
-def note_words(memory: Memory, ab: AB) -> None:
-    """X9: after a start: note which streams' pauses it speaks into."""
+def note_resumed(memory: Memory, ab: AB, response: bool, now: bool) -> None:
+    """X1, X9: after a start: note which streams' pauses it speaks into, and what resumes.
+
+    A ``response`` (X7) resumes nothing, and what begins ``now`` relies on no state.
+    """
     if ab.says:
         for tree in memory.trees.values():
             if tree.app != ab.app and tree.suspended and tree.spoken:
                 tree.words_due = True
-    if ab.inserted in ("", "X9") and not ab.tree.suspended:
+    if response or ab.tree.suspended:
+        return
+    if ab.inserted in ("", "X9"):
         ab.tree.words_due = False
+    ab.tree.moved_away = ab.tree.moved_away and now
 
 
 def stands_right(memory: Memory, ab: AB) -> None:
     """X1: a suspended stream resumes where the robot was for it.
 
-    What is wanted now does not wait for a way back that has been inserted already (O2).
+    What is wanted now waits for no way back (O2).
     """
     place, robot = ab.tree.place, memory.robot
     if (
-        not ab.tree.suspended
+        not ab.tree.moved_away
         or ab.inserted
-        or (ab.urgent and ab.tree.put_first())
+        or ab.begins_now
         or ab.command in GOING
         or "x1" not in memory.extensions
     ):
@@ -139,6 +145,12 @@ def moved(memory: Memory, ab: AB, record: Record) -> None:
         ab.tree.place = None
     elif ab.command in GOING and not ab.inserted and record["outcome"] != "again":
         ab.tree.place = memory.robot
+
+
+def forget_place(ab: AB) -> None:
+    """X1: where a motion that is cut short has brought the robot for its stream is unknown."""
+    if ab.starts and ab.command in GOING[:-1] and not ab.inserted:
+        ab.tree.place = None
 
 
 def _connects(memory: Memory, ab: AB, before: AB, record: Record) -> None:

@@ -130,7 +130,8 @@ def give_floor(memory: Memory, tree: Tree, rule: str) -> None:
     memory.floor.append(tree)
     for other in memory.trees.values():
         if other.app != tree.app and other.started >= 0 and not other.suspended:
-            other.suspended, other.rank = True, memory.place + 1
+            other.suspended = other.moved_away = True
+            other.rank = memory.place + 1
             memory.suspended_by[other.name] = tree.name
 
 

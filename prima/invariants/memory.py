@@ -203,7 +203,7 @@ class Memory:
     def join_first(self, ab: AB) -> None:
         """X1, X9: ABs of a stream wait for the inserted one, except those with ``now`` (O2)."""
         ways = ab.tree.put_first()
-        if ways and not (ab.inserted or ab.urgent or ab.unit):
+        if ways and not (ab.inserted or ab.begins_now or ab.unit):
             ab.parents |= {way.name for way in ways}
             ab.phase, ab.joined_at = LINKED, self.now
             self.waiting.pop(ab.name)

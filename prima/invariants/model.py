@@ -88,6 +88,11 @@ class AB:
     said: tuple[str, str, int] | None = None
     """Why it waits, because of what, and since when, by its latest ``hold``."""
 
+    @property
+    def begins_now(self) -> bool:
+        """O2: whether it waits for nothing of its own application; what resumes does."""
+        return self.urgent and not self.starts
+
     def inside(self, other: AB) -> bool:
         """Whether this is part of the unit ``other``, at any depth."""
         unit = self.unit
@@ -157,6 +162,8 @@ class Tree:
     """Whether another application has kept one of its ABs waiting since it was suspended."""
     rank: int = 0
     """The index of the start that suspended it: the latest goes first (S2d)."""
+    moved_away: bool = False
+    """Whether the robot may have been moved since one of its ABs relied on its place (X1)."""
     words: str = ""
     """The words to say when it resumes, by its latest request (X9)."""
     words_due: bool = False

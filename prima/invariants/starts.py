@@ -6,7 +6,7 @@ from prima.invariants.channel import channel_kept
 from prima.invariants.extensions import (
     channel_connected,
     close_trees,
-    note_words,
+    note_resumed,
     stands_right,
     starts_again,
     words_said,
@@ -43,7 +43,8 @@ def _start_outside(memory: Memory, ab: AB, record: Record) -> None:
     if memory.prima and ab.phase == WAITING:
         allowed(memory, ab, shown)
         decided_rightly(memory, ab, shown)
-    if not third_turn(memory, ab):
+    response, now = third_turn(memory, ab), ab.begins_now
+    if not response:
         channel_connected(memory, ab)
         stands_right(memory, ab)
         words_said(memory, ab)
@@ -58,7 +59,7 @@ def _start_outside(memory: Memory, ab: AB, record: Record) -> None:
         return
     if reaction is not None or not beside:
         take_floor(memory, ab, reaction)
-    note_words(memory, ab)
+    note_resumed(memory, ab, response, now)
     check_floor(memory)
 
 

@@ -41,6 +41,8 @@ class OpenUnit:
     connect: bool = False
     types: tuple[str, ...] = ()
     """Commands in it: those that the robot's profile adds have devices of their own."""
+    fresh: int | None = None
+    """For how long (ms) a reaction is worth starting (X8)."""
 
 
 @dataclass(slots=True)

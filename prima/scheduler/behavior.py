@@ -46,6 +46,8 @@ class Stream:
     place: int = 0
     """When the stream was suspended, as a counter: the greatest was suspended last (S2d). One
     that resumes keeps its place until the selection is over; 0 for others."""
+    moved_away: bool = False
+    """Whether the robot may have been moved since one of its ABs relied on its state (X1)."""
     effects: Effects = field(default_factory=Effects)
     """How its Commands have changed the robot's state (X1)."""
     hold: int | None = None

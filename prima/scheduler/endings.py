@@ -61,6 +61,13 @@ def _note_effects(mediation: Mediation, ab: Behavior, data: Data, ending: bool) 
         ab.stream.effects.add(ab.type, ab.command, data, mediation.robot)
 
 
+def forget_effects(ab: Behavior) -> None:
+    """X1: nothing relies on the effects of a Command that is cut short or fails."""
+    begun = ab.state is RUNNING or ab.loop or ab.restarting
+    if begun and ab.type is not None and ab.inserted != "X1":
+        ab.stream.effects.forget(ab.type.effects)
+
+
 def _finish(mediation: Mediation, ab: Behavior, data: Data, cause: int | None = None) -> None:
     """Remove an AB that has ended and notify its application, which may react to ``cause``."""
     run = ab.run
@@ -158,6 +165,7 @@ def delete(mediation: Mediation, ab: Behavior, rule: str) -> None:
     if ab.state is RUNNING and ab.command is not None:
         mediation.order("abort", ab)
         note_rolling(mediation, ab)
+    forget_effects(ab)
     mediation.recorder.behavior("cancel", ab, rule=rule, outcome=ab.state)
     remove(mediation, ab)
 

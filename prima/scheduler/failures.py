@@ -7,7 +7,14 @@ from typing import Final
 from prima.messages import Command, Notice
 from prima.messages.times import earliest
 from prima.scheduler.behavior import RUNNING, Behavior
-from prima.scheduler.endings import close_unit, delete, delete_rest, note_rolling, remove
+from prima.scheduler.endings import (
+    close_unit,
+    delete,
+    delete_rest,
+    forget_effects,
+    note_rolling,
+    remove,
+)
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.memory import WorkingMemory
 from prima.scheduler.streams import let_go
@@ -30,6 +37,7 @@ def e1(mediation: Mediation, ab: Behavior, event: str, reason: str, inbound: boo
         inbound=inbound or None,
     )
     note_rolling(mediation, ab)
+    forget_effects(ab)
     command = ab.command
     ab = _unit_that_fails(mediation, ab, event, reason)
     remove(mediation, ab)

@@ -47,13 +47,14 @@ def _give_up(mediation: Mediation, root: Behavior, whole: bool) -> None:
         if not kept or mediation.memory.conflict(ab) is not None:
             lost.append(ab)
     reaction = root.reaction
+    told = [one for ab in lost for one in (ab, *ab.inner.values())]
     for ab in reversed(lost):
         delete(mediation, ab, "X8")
     for ab in [child for one in lost for child in one.children]:
         if ab.state is WAITING:
             ab.reaction, ab.stale = reaction, mediation.now + 1
             ab.freed = None  # nothing has ended before it (S2c)
-    _tell(mediation, lost)
+    _tell(mediation, told)
 
 
 def followers(root: Behavior) -> list[Behavior]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from prima.messages import Command
+from prima.messages import Command, Step
 from prima.scheduler.admission import link
 from prima.scheduler.behavior import Behavior, Stream
 from prima.scheduler.mediation import Mediation
@@ -24,12 +24,20 @@ def x1(mediation: Mediation, ab: Behavior) -> bool:
 
     If the way back was itself broken, what has been undone of it is done again.
     """
-    if not ab.stream.suspended:
+    if not ab.stream.moved_away or wanted_now(ab):
         return False
     coming = [one for one in ab.stream.members.values() if one.inserted == "X1"]
-    own = [sets(one.type, one.command) for one in (*ab.meant(), *coming)]
+    own = [_sets(mediation, Step(one.what)) for one in (*ab.meant(), *coming)]
     made = ab.stream.effects.missing(frozenset().union(*own), mediation.robot)
     return insert(mediation, ab, made, "X1")
+
+
+def _sets(mediation: Mediation, step: Step) -> frozenset[str]:
+    """The effects of a Command, or of those with which a unit begins."""
+    if isinstance(step.what, Command):
+        return sets(mediation.table.get(step.what.type), step.what)
+    first = [_sets(mediation, one) for one in step.what.steps if not one.after]
+    return frozenset().union(*first)
 
 
 def x4(mediation: Mediation, ab: Behavior) -> bool:
@@ -55,14 +63,21 @@ def x9(mediation: Mediation, ab: Behavior) -> bool:
     return insert(mediation, ab, [replace(words)], "X9")
 
 
-def note_words(mediation: Mediation, ab: Behavior) -> None:
-    """X9: a starting AB speaks into the pause of every suspended topic, or resumes one."""
+def note_resumed(mediation: Mediation, ab: Behavior, response: bool) -> None:
+    """X1, X9: a starting AB speaks into the pause of every suspended topic, or resumes one.
+
+    A ``response`` to an answer leaves to what follows it how the topic resumes (X7), and a Command
+    wanted ``now`` leaves to it the robot's state.
+    """
     if ab.says:
         for stream in mediation.memory.streams.values():
             if stream.app is not ab.app and stream.suspended and stream.spoken:
                 stream.words_due = True
-    if ab.inserted in ("", "X9") and not ab.stream.suspended:
+    if response or ab.stream.suspended:
+        return
+    if ab.inserted in ("", "X9"):
         ab.stream.words_due = False  # also for what was said while the words waited
+    ab.stream.moved_away = ab.stream.moved_away and wanted_now(ab)
 
 
 def insert(mediation: Mediation, ab: Behavior, commands: list[Command], rule: str) -> bool:
@@ -80,6 +95,8 @@ def insert(mediation: Mediation, ab: Behavior, commands: list[Command], rule: st
         if before is None:
             made.parent, made.reaction, made.freed = ab.parent, ab.reaction, ab.freed
             made.stale, ab.reaction, ab.stale = ab.stale, None, None
+            if rule != "X1":  # which needs no speaker
+                made.wait = ab.wait
         else:
             link(before, made)
         mediation.memory.add(made)
@@ -111,8 +128,8 @@ def join_first(mediation: Mediation) -> None:
 
 
 def wanted_now(ab: Behavior) -> bool:
-    """O2: whether an AB waits for nothing of its own application."""
-    return ab.what.now
+    """O2: whether an AB waits for nothing of its own application; what resumes does."""
+    return ab.what.now and not (ab.loop or ab.restarting)
 
 
 def first_of(stream: Stream) -> Behavior | None:

@@ -27,12 +27,20 @@ def u3(mediation: Mediation, app: Application, asked: Request) -> None:
         most = mediation.longest_turn
         check_number(asked.steps, sum(one.app is app for one in mediation.memory.waiting.values()))
         check_steps(asked.steps, app, mediation.table, unit.devices if unit else None, most)
-        if asked.words is not None and asked.words.type in mediation.table:
-            check_command(asked.words, app, mediation.table, most)
+        _check_words(mediation, app, asked)
     except CommandRefused as refused:
         e3(mediation, app, asked, refused)
     else:
         _take_in(mediation, app, asked, unit)
+
+
+def _check_words(mediation: Mediation, app: Application, asked: Request) -> None:
+    """X9: a robot that speaks must be able to say the words with which a topic resumes."""
+    words, table = asked.words, mediation.table
+    if words is None or "x9" not in mediation.policy.extensions:
+        return
+    if words.type in table and not table[words.type].substitute:
+        check_command(words, app, table, mediation.longest_turn)
 
 
 def _take_in(mediation: Mediation, app: Application, asked: Request, unit: Behavior | None) -> None:
@@ -48,11 +56,12 @@ def _take_in(mediation: Mediation, app: Application, asked: Request, unit: Behav
     stream.words = asked.words if "x9" in mediation.policy.extensions else None
     run, now = AwaitedRun(asked.run, len(asked.steps)), mediation.now
     made = mediation.maker.chain(app, stream, asked.steps, now, asked.state, run, unit)
+    if asked.connect and unit is None:
+        _connect(made)
     for ab in made:
         if not ab.waits_for:
             _root(mediation, ab, parent, reaction)
-            ab.connect = asked.connect and unit is None
-            x8(mediation, ab, asked)
+            x8(mediation, ab, asked.fresh)
         if unit is not None and unit.inside is not None:
             unit.inside.members[ab.name] = unit.inside.latest = ab
         mediation.memory.add(ab)
@@ -61,10 +70,20 @@ def _take_in(mediation: Mediation, app: Application, asked: Request, unit: Behav
         app.latest = made[-1]
 
 
-def x8(mediation: Mediation, ab: Behavior, asked: Request) -> None:
+def _connect(made: list[Behavior]) -> None:
+    """X4: mark the first words of a tree: those that no other of it precedes."""
+    followed: set[str] = set()
+    for ab in made:
+        follows = not followed.isdisjoint(ab.waits_for)
+        ab.connect = ab.says and not follows
+        if ab.says or follows:
+            followed.add(ab.name)
+
+
+def x8(mediation: Mediation, ab: Behavior, fresh: int | None) -> None:
     """X8: the latest time at which a reaction is still worth starting."""
-    if asked.fresh is not None and ab.reaction is not None and "x8" in mediation.policy.extensions:
-        ab.stale = mediation.now + asked.fresh
+    if fresh is not None and ab.reaction is not None and "x8" in mediation.policy.extensions:
+        ab.stale = mediation.now + fresh
 
 
 def e3(mediation: Mediation, app: Application, asked: Request, refused: CommandRefused) -> None:
@@ -111,6 +130,7 @@ def u5(mediation: Mediation, app: Application, asked: OpenUnit) -> None:
     app.units[asked.unit] = app.latest = unit
     _root(mediation, unit, parent, asked.cause)
     unit.connect = asked.connect
+    x8(mediation, unit, asked.fresh)
     mediation.memory.add(unit)
     mediation.recorder.request(unit)
 

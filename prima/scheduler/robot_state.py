@@ -68,6 +68,17 @@ class Effects:
         if "head" in effects:
             self.head = head_of(command)
 
+    def forget(self, effects: frozenset[str]) -> None:
+        """Take in that a Command with some effects was cut short: what it has changed is unknown."""
+        if "follow" in effects:
+            return  # each of its loops has been taken in
+        if "position" in effects:
+            self.position = None
+        if {"position", "direction", "human"} & effects:
+            self.heading, self.human = None, False
+        if "head" in effects:
+            self.head = None
+
     def missing(self, own: frozenset[str], body: RobotState) -> list[Command]:
         """The Commands that restore the state that a Command with the effects ``own`` needs."""
         made = [] if {"position", "follow"} & own else self._missing_pose(own, body)

@@ -87,7 +87,8 @@ def suspend_others(mediation: Mediation, stream: Stream) -> None:
     mediation.suspensions += 1
     for other in begun:
         if not other.suspended:
-            other.suspended, other.place = True, mediation.suspensions
+            other.suspended = other.moved_away = True
+            other.place = mediation.suspensions
             mediation.recorder.stream("suspend", other, "C2", by=stream.name)
 
 

@@ -101,17 +101,38 @@ def test_x4_what_the_same_stream_keeps_after_the_turn_is_held_anew() -> None:
 
 
 def test_x4_what_is_put_in_ranks_where_that_ranks_which_it_was_put_in_for() -> None:
-    stage = Stage("prima+x4")
+    lead = CommandType("lead", "Lead", "", frozenset({"locomotion"}), leaves=True, text="required")
+    stage = Stage("prima+x4", table={**TABLE_4_2, "lead": lead})
     stage.request("fa", command("turn", angle=5))
     stage.select()
-    branches = [Step(move()), Step(command("turn", angle=10))]
-    stage.request("fa", steps=branches, cause=EVENT, connect=True)
+    stage.request("fa", command("lead", "This way."), cause=EVENT, connect=True)
+    stage.request("fa", command("turn-and-speak", "Here.", angle=9), cause=EVENT, connect=True)
     assert stage.select() == []
-    # The second branch has the higher priority, so that the robot turns for it first.
+    # The second reaction has the higher priority, so that the robot turns for it first.
     assert [r["before"] for r in stage.phases("request") if r.get("inserted")] == ["fa#3", "fa#2"]
     stage.at(500).end("fa#1")
     assert stage.select() == ["fa#5"]
-    assert stage.rule("fa#5") == "S2f", "the first branch was requested first"
+    assert stage.rule("fa#5") == "S2f", "the first reaction was requested first"
+
+
+def test_x4_the_robot_turns_to_the_user_once_before_the_first_word() -> None:
+    """It turned before what comes before that word, and before a branch without words, too."""
+    stage = Stage("prima+x4")
+    stage.request("fa", command("turn", angle=150), say("One."), say("Two."), connect=True)
+    assert stage.select() == ["fa#1"]
+    stage.at(500).end("fa#1")
+    assert stage.select() == ["fa#4"] and inserted(stage) == [("X4", "face-human")]
+    stage.at(900).end("fa#4")
+    assert stage.select() == ["fa#2"]
+    stage.at(1500).end("fa#2")
+    assert stage.select() == ["fa#3"]
+    branches = [Step(say("First.")), Step(command("gesture", name="bow"))]
+    stage.at(2000).end("fa#3")
+    stage.request("fa", steps=branches, connect=True)
+    assert stage.select() == ["fa#7", "fa#6"], "the gesture says nothing"
+    stage.at(2500).end("fa#7")
+    assert stage.select() == ["fa#5"]
+    assert len(inserted(stage)) == 2 and check(stage.records, "prima+x4") == []
 
 
 DANCE = CommandType(
