@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from prima.invariants import check
-from prima.language.commands import TABLE_4_2
+from prima.language.commands import TABLE_4_2, CommandType
 from prima.messages import Command, Group, OpenUnit
 from tests.helpers.robot import Bench, document
 from tests.helpers.stage import Stage, ask, chain, command, inserted, move, restartable, say
@@ -17,27 +18,31 @@ EVENT = 7
 STOP = Command("stop-moving", now=True)
 
 
-def cut_by_stopping(stage: Stage) -> None:
+Then = Callable[[], object]
+
+
+def cut_by_stopping(stage: Stage, then: Then) -> None:
     stage.request("ea", STOP)
     assert stage.select() == ["ea#3"]
-    stage.at(1200).end("ea#3", x=3.0, y=0.0, heading=0.0)
+    stage.at(1200).end("ea#3", then=then, x=3.0, y=0.0, heading=0.0)
 
 
-def left(stage: Stage) -> None:
+def left(stage: Stage, then: Then) -> None:
     """It is left between two loops."""
     stage.leave("ea")
+    then()
 
 
-def failed(stage: Stage) -> None:
+def failed(stage: Stage, then: Then) -> None:
     stage.mediator.failed("ea#2.2", "locomotion", "broken")
-    stage.settle()
+    stage.settle(then)
 
 
 @pytest.mark.parametrize("how", [cut_by_stopping, left, failed])
 def test_x1_nobody_goes_back_to_where_a_move_before_the_last_had_ended(
-    how: Callable[[Stage], None],
+    how: Callable[[Stage, Then], None],
 ) -> None:
-    stage = Stage("prima+x1", refuses=True)
+    stage = Stage("prima+x1")
     stage.request("ea", move(), move("hall"))
     stage.select()
     stage.at(500).end("ea#1.1", x=1.0, y=0.0, heading=0.0)
@@ -45,8 +50,7 @@ def test_x1_nobody_goes_back_to_where_a_move_before_the_last_had_ended(
     stage.at(1000).end("ea#2.1", goal=False, x=3.0, y=0.0, heading=0.0)
     if how is not left:
         assert stage.select() == ["ea#2.2"]
-    how(stage)
-    stage.request("ea", say("One."), say("Two."), state=2)
+    how(stage, lambda: stage.request("ea", say("One."), say("Two."), state=2))
     (first,) = stage.select()
     stage.at(1300).request("fa", say("Oh!"), cause=EVENT)
     stage.select()
@@ -70,15 +74,16 @@ def moved_away(policy: str, *then: Command) -> Stage:
 
 
 def test_x1_a_command_with_now_waits_for_no_way_back() -> None:
-    """O2. What follows in the stream does."""
-    stage = moved_away("prima+x1", command("point-by-hand", angle=30))
-    stage.request("ea", Command("move-head", {"pan": 20}, now=True))
+    """O2. What follows it does."""
+    stage = moved_away("prima+x1", command("gesture", name="bow"))
+    stage.request("ea", Command("point-by-hand", {"angle": 30}, now=True))
+    stage.request("ea", say("Two."))
     assert stage.select() == ["ea#4"] and inserted(stage) == []
     stage.at(5000).end("ea#2")
     stage.end("ea#4")
-    assert stage.select() == ["ea#5.1"] and inserted(stage) == [("X1", "set-position")]
-    stage.at(6000).end("ea#5.1", x=1.0, y=0.0, heading=0.0)
-    assert stage.select() == ["ea#3"]
+    assert stage.select() == ["ea#6.1"] and inserted(stage) == [("X1", "set-position")]
+    stage.at(6000).end("ea#6.1", x=1.0, y=0.0, heading=0.0)
+    assert stage.select() == ["ea#5"]
     assert check(stage.records, "prima+x1") == []
 
 
@@ -141,15 +146,22 @@ def test_x9_the_third_turn_does_not_resume_the_topic(policy: str, said: list[str
 
 
 def test_x9_a_loop_that_began_now_resumes_in_words() -> None:
-    stage = Stage("prima+x9")
-    stage.request("ea", say("Come."), words=say("Again:"))
-    stage.select()
-    stage.at(500).end("ea#1", then=lambda: None)
+    words = say("Again:")
     lead = Command("topological-move", {"to": "room"}, now=True)
-    stage.request("ea", lead, words=say("Again:"))
+    stage = Stage("prima+x9")
+    stage.request("ea", say("Come."), words=words)
     stage.select()
-    stage.at(600).request("ea", say("This way."), words=say("Again:"))
-    assert "X9" not in [rule for rule, _ in inserted(stage)]
+    stage.at(500).end("ea#1", then=lambda: stage.request("ea", lead, words=words))
+    assert stage.select() == ["ea#2.1"]
+    stage.at(600).request("fa", say("Oh!"), cause=EVENT)
+    assert stage.select() == ["fa#1"]
+    stage.at(1000).end("ea#2.1", goal=False)
+    assert stage.select() == []
+    stage.at(2000).end("fa#1")
+    assert stage.select() == ["ea#3"] and inserted(stage) == [("X9", "speak")]
+    stage.at(3000).end("ea#3")
+    assert stage.select() == ["ea#2.2"]
+    assert check(stage.records, "prima+x9") == []
 
 
 @pytest.mark.parametrize("policy", ["prima", "prima+x9"])
@@ -159,10 +171,11 @@ def test_x9_words_are_looked_at_only_where_they_are_said(policy: str) -> None:
     assert stage.select() == (["ea#1"] if policy == "prima" else [])
 
 
-def test_x9_a_robot_that_cannot_speak_resumes_without_words() -> None:
-    table = {name: row for name, row in TABLE_4_2.items() if name != "speak"}
-    stage = Stage("prima+x9", table=table, refuses=True)
-    stage.request("ea", command("turn", angle=9), words=say("Again:"))
+def test_x9_a_robot_that_shows_what_it_would_say_resumes_without_words() -> None:
+    show = CommandType("show", "Show", "", frozenset({"screen"}), text="required")
+    table = {**TABLE_4_2, "speak": replace(TABLE_4_2["speak"], substitute="show"), "show": show}
+    stage = Stage("prima+x6+x9", table=table)
+    stage.request("ea", say("Hello."), words=say("Again:"))
     assert stage.select() == ["ea#1"]
 
 
