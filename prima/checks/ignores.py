@@ -306,9 +306,6 @@ def comments(text: str) -> Iterator[tuple[int, str, int]]:
     yield from ((begin, comment, begin) for begin, _, comment in waiting)
 
 
-# Settings -----------------------------------------------------------------------------------
-
-
 def read_settings(file: str) -> IgnoreSettings:
     """Read a ``prima.toml``."""
     settings = IgnoreSettings(file)
@@ -322,8 +319,7 @@ def read_settings(file: str) -> IgnoreSettings:
         settings.problems.append(NOT_TOML.at(error.place, error=error.reason))
         return settings
     entries = tree.get("ignore", [])
-    unknown = sorted(tree.keys() - {"ignore"})
-    if unknown:
+    if unknown := sorted(tree.keys() - {"ignore"}):
         settings.problems.append(UNKNOWN_SETTING.at(Place(file), name=unknown[0]))
     elif not isinstance(entries, list):
         settings.problems.append(NO_ENTRIES.at(Place(file)))
