@@ -13,6 +13,7 @@ from prima.interpreter.checks.calls import check_calls
 from prima.interpreter.checks.code import check_code
 from prima.interpreter.checks.commands import check_branches, check_texts, check_units
 from prima.interpreter.checks.comparisons import check_comparisons
+from prima.interpreter.checks.contents import check_contents
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.checks.hints import check_hints
 from prima.interpreter.checks.questions import check_first_prompts, check_leaving, check_silence
@@ -33,6 +34,7 @@ CHECKS: tuple[Callable[[Facts], Iterator[Problem]], ...] = (
     check_reachable,
     check_items,
     check_code,
+    check_contents,
     check_comparisons,
     check_calls,
     check_texts,

@@ -137,7 +137,7 @@ def all_code(facts: Facts) -> Iterator[Code]:
         known = facts.known_in(form)
         yield from _outside(form, known, known)
         for item in items:
-            for one in _of_item(item):
+            for one in of_item(item):
                 yield one, known, False
     for kind, held in HELD.items():
         for holder, act in facts.acts.of(kind):
@@ -165,7 +165,7 @@ def _conditions(conditional: Iterable[Handler | Prompt]) -> Iterator[Expression]
     return (one.cond for one in conditional if one.cond is not None)
 
 
-def _of_item(item: Item) -> Iterator[Expression]:
+def of_item(item: Item) -> Iterator[Expression]:
     """Code of a form item outside of content."""
     yield from _conditions(item.handlers)
     held: list[object] = [item.expr, item.cond]

@@ -1,0 +1,81 @@
+"""Variables that content declares: a run and validation agree on where they end."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.helpers.robot import Bench, read
+
+ENDS = "<block><exit/></block>"
+
+
+def told(body: str) -> list[tuple[int, str]]:
+    """The warnings about variables of other content: their columns, and the names."""
+    problems = read(body)[1]
+    assert [one for one in problems if one.severity == "error"] == []
+    about = [one for one in problems if "is declared in other content" in one.message]
+    return [(one.place.column, one.message.split('"')[1]) for one in about]
+
+
+def fails(body: str) -> bool:
+    """Whether a run ends by an error, once everything that is said has ended and somebody touched."""
+    bench = Bench(body)
+    for _ in range(5):
+        for said in bench.saying():
+            bench.finish(said)
+        bench.event("touch")
+    return any("error.semantic" in one for one in bench.session.failures)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<block><var name="x" expr="1"/></block><block><log expr="§x"/></block>',
+        '<block><var name="x" expr="1"/></block><block><assign name="§x" expr="2"/></block>',
+        '<block><var name="x" expr="1"/></block><block cond="§x"><log>a</log></block>',
+        '<block><script>var x = 1</script></block><block><script>§x + 1</script></block>',
+        '<block><foreach item="x" array="[1]"><log expr="x"/></foreach></block><block><log expr="§x"/></block>',
+        '<block><var name="x" expr="1"/><speak>A<on event="end"><log expr="§x"/></on></speak></block>',
+        '<block><speak>A<on event="end"><var name="x" expr="1"/></on></speak><log expr="§x"/></block>',
+        '<on event="touch"><log expr="§x"/></on><block><var name="x" expr="1"/><speak>A</speak></block>',
+        '<block><var name="x" expr="1"/></block><block><speak>It is <value expr="§x"/>.</speak></block>',
+    ],
+)  # fmt: skip
+def test_what_other_content_declares_is_warned_of_and_fails(content: str) -> None:
+    body = f'<form id="m">{content}{ENDS}</form>'
+    plain = body.replace("§", "")
+    head = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="app">'
+    assert told(plain) == [(len(head) + body.index("§") + 1, "x")]
+    assert fails(plain.replace(ENDS, ""))
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<block><var name="x" expr="1"/><if cond="x"><log expr="x"/></if><assign name="x" expr="2"/></block>',
+        '<block><if cond="true"><var name="x" expr="1"/></if><log expr="x"/></block>',
+        '<block><foreach item="x" array="[1]"><speak>A<value expr="x"/></speak></foreach><log expr="x"/></block>',
+        '<var name="x" expr="0"/><block><var name="x" expr="1"/></block><block><log expr="x"/></block>',
+        '<block name="x"><var name="x" expr="1"/></block><block><log expr="x"/></block>',
+        '<block><speak>A<on event="end"><var name="x" expr="1"/><log expr="x"/></on></speak></block>',
+        '<block><script>function x() { return 1; }</script><log expr="x()"/></block>',
+        '<block><var name="x" expr="1"/></block><block><log expr="[1].map(x => x).length"/></block>',
+        '<block><var name="x" expr="1"/></block><block><var name="x" expr="2"/><log expr="x"/></block>',
+    ],
+)  # fmt: skip
+def test_what_content_sees_is_not_warned_of(content: str) -> None:
+    assert told(f'<form id="m">{content}{ENDS}</form>') == []
+    assert not fails(f'<form id="m">{content}</form>')
+
+
+def test_a_handler_of_the_document_sees_no_content_of_forms() -> None:
+    on = '<on event="touch"><log expr="x"/></on>'
+    assert told(f'<form id="m"><block><var name="x" expr="1"/></block>{ENDS}</form>{on}') != []
+    assert told(f'<form id="m"><var name="x" expr="1"/>{ENDS}</form>{on}') == []
+
+
+def test_a_param_is_no_variable_of_content() -> None:
+    body = """<form id="a"><subdialog name="s" src="#b"><param name="x" expr="1"/></subdialog>
+        <block><exit/></block></form>
+      <form id="b"><block><var name="x" expr="2"/></block><block><log expr="x"/><return/></block></form>"""
+    assert told(body) == []
