@@ -31,8 +31,8 @@ DRIFT = 0.11
 """How far (m) it may drift off its line until it is."""
 ALIGNED = 1.5
 """The robot counts as turned in a direction within this many degrees."""
-REACTING_S = 0.2
-"""How long the robot stays off its way after a dance has stopped moving it (X5)."""
+REACTING_S = 0.3
+"""How long the robot goes on away from its way after a dance has stopped moving it (X5)."""
 AFTERMATH_MS = 1000
 """How long after moving the body a dance accounts for where the robot is (X5)."""
 

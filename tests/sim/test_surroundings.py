@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -248,6 +249,23 @@ def test_x5_a_dance_on_the_way_strays_no_further_than_its_bound(
         for run in (apart, together)
     ]
     assert arrives[1] < arrives[0]
+
+
+@pytest.mark.parametrize("stray", [0.3, 0.6])
+@pytest.mark.parametrize(
+    "steps",
+    [
+        '<step for="1s" turn-speed="180"/><step for="1500ms" speed="2"/>',
+        '<step for="3s" speed="-2"/>',
+    ],
+)
+def test_x5_a_fast_dance_strays_no_further_either(tmp_path: Path, steps: str, stray: float) -> None:
+    """Turned aside, or driven backwards, the robot goes on for a while once the dance stops."""
+    more = ARM + re.sub("<step.*/>", steps, DANCE.format(stray=stray), flags=re.DOTALL)
+    happens = '<when at="3s"><event name="tune"/></when>'
+    run = play(tmp_path, DANCER, MOVER, more=more, happens=happens, policy="prima+x5")
+    [dance] = [r for r in run.records if r["phase"] == "end" and r.get("command") == "dance"]
+    assert 0 < dance["data"]["strayed"] <= stray
 
 
 def test_a_dance_alone_moves_the_body_as_its_steps_say(tmp_path: Path) -> None:
