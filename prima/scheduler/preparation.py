@@ -63,11 +63,11 @@ def x9(mediation: Mediation, ab: Behavior) -> bool:
     return insert(mediation, ab, [replace(words)], "X9")
 
 
-def note_resumed(mediation: Mediation, ab: Behavior, response: bool) -> None:
+def note_resumed(mediation: Mediation, ab: Behavior, response: bool, begins: bool) -> None:
     """X1, X9: a starting AB speaks into the pause of every suspended topic, or resumes one.
 
-    A ``response`` to an answer leaves to what follows it how the topic resumes (X7), and a Command
-    wanted ``now`` leaves to it the robot's state.
+    A ``response`` to an answer leaves to what follows it how the topic resumes (X7), and what
+    ``begins`` now leaves to it the robot's state (O2).
     """
     if ab.says:
         for stream in mediation.memory.streams.values():
@@ -77,7 +77,7 @@ def note_resumed(mediation: Mediation, ab: Behavior, response: bool) -> None:
         return
     if ab.inserted in ("", "X9"):
         ab.stream.words_due = False  # also for what was said while the words waited
-    ab.stream.moved_away = ab.stream.moved_away and wanted_now(ab)
+    ab.stream.moved_away = ab.stream.moved_away and begins
 
 
 def insert(mediation: Mediation, ab: Behavior, commands: list[Command], rule: str) -> bool:

@@ -8,7 +8,7 @@ from prima.scheduler.behavior import WAITING, Behavior, Wait
 from prima.scheduler.interruption import Held, x2
 from prima.scheduler.mediation import Mediation
 from prima.scheduler.policy import Ranked
-from prima.scheduler.preparation import join_first, note_resumed, prepare
+from prima.scheduler.preparation import join_first, note_resumed, prepare, wanted_now
 from prima.scheduler.rules import Rank, Refusal
 from prima.scheduler.starvation import count_waits, e4, note_waits
 from prima.scheduler.streams import f1, note_turns, resume
@@ -139,11 +139,12 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     why = _admitted_by(mediation, ab, composed)
     reaction, ab.reaction, ab.stale = ab.reaction, None, None
     ab.reacted = goes_before(ab, reaction, memory)
-    aside, response = rules.aside(ab, memory), rules.third_turn(ab, memory)
+    aside = rules.aside(ab, memory)
+    response, begins = rules.third_turn(ab, memory), wanted_now(ab)
     beside = composed or aside or not rules.f3(ab, memory)
     run(mediation, ab, not aside)
     changed = f1(mediation, ab, reaction, beside)
-    note_resumed(mediation, ab, response)
+    note_resumed(mediation, ab, response, begins)
     losers = _outdone(mediation, rivals, ab, lower, held)
     rule = policy.decided(rank, losers[0][0]) if losers else why
     mediation.recorder.decision(ab, rule, [loser.id for _, loser in losers])
