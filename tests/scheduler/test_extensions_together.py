@@ -237,10 +237,20 @@ def test_x4_who_has_waited_for_the_speaker_waits_no_longer_for_the_turn() -> Non
     assert stage.select() == ["ea#2"] and inserted(stage) == [("X4", "face-human")]
 
 
-@pytest.mark.parametrize("unit", [True, False])
-def test_x1_what_begins_with_a_turn_of_its_own_needs_no_turn_back(unit: bool) -> None:
-    turns = chain(command("set-direction", heading=90), say("There."))
-    own = [Group(turns)] if unit else [step.what for step in turns]
+TURN = command("set-direction", heading=90)
+
+
+@pytest.mark.parametrize(
+    ("own", "back"),
+    [
+        ([TURN, say("There.")], []),
+        ([Group(chain(TURN, say("There.")))], []),
+        ([Group(chain(say("Here."), TURN))], [("X1", "set-direction")]),
+    ],
+)
+def test_x1_what_begins_with_a_turn_of_its_own_needs_no_turn_back(
+    own: list[Command | Group], back: list[tuple[str, str]]
+) -> None:
     stage = Stage("prima+x1")
     stage.request("ea", command("set-direction", heading=0), say("One."), *own)
     stage.select()
@@ -250,7 +260,8 @@ def test_x1_what_begins_with_a_turn_of_its_own_needs_no_turn_back(unit: bool) ->
     stage.select()
     stage.at(1000).end("fa#1", x=0.0, y=0.0, heading=180.0)
     stage.at(2000).end("ea#2")
-    assert stage.select()[0] == "ea#3" and inserted(stage) == []
+    assert stage.select()[0] == ("ea#4" if back else "ea#3")
+    assert inserted(stage) == back
 
 
 def test_x9_what_was_interrupted_though_wanted_now_resumes_in_words() -> None:
