@@ -9,7 +9,6 @@ LOCK := $(BIN)/uv pip compile --universal --generate-hashes --upgrade --quiet \
   --custom-compile-command "make lock"
 # Tests wait for half of their time: for processes, for real time in live runs.
 WORKERS ?= $(shell expr 2 \* $$(getconf _NPROCESSORS_ONLN))
-PARTIES := $(wildcard tests/parties/test_*.py tests/parties/*/test_*.py)
 # Without those for robots (naoqi, rosbridge), which tests/parties installs.
 EXTRAS := dev experiments cluster export editor bench reachy
 
@@ -28,11 +27,11 @@ demo: $(VENV)/.runtime
 test: $(VENV)/.dev
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
-# Drivers against the second parties of tests/parties, and the oldest libraries, each in an environment of its own. They mostly
-# wait, so each file has a worker.
+# Drivers against the second parties of tests/parties, and the oldest libraries, each in an environment of its own. More
+# workers would be hardly faster, and on a slow machine the parties answer too late.
 test-live: $(VENV)/.dev
 	$(BIN)/python -m tools.environments
-	$(BIN)/python -m pytest -n $(words $(PARTIES)) --dist loadfile tests/parties
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile tests/parties
 
 check: $(VENV)/.dev
 	$(BIN)/ruff format --check .
