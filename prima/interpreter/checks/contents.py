@@ -24,7 +24,7 @@ from prima.interpreter.checks.code import HELD, of_item
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.checks.variables import place_in
 from prima.interpreter.elements import Form
-from prima.script.names import expression_names, script_names
+from prima.script.names import Names, expression_names, script_names
 
 OF_OTHER_CONTENT = UNDECLARED_VARIABLE.says(
     'The variable "{name}" is declared in other content, and ends with it: this will be'
@@ -116,9 +116,7 @@ def _used(piece: Piece, others: set[str]) -> Iterator[Problem]:
     yield from _in_expressions(piece.expressions(), others)
     for act in piece.acts:
         if isinstance(act, Script):
-            for name, start in script_names(act.code.code).free.items():
-                if name in others:
-                    yield OF_OTHER_CONTENT.at(place_in(act.code, start), _remedy(name), name=name)
+            yield from _in_code(act.code, script_names(act.code.code), others)
         elif isinstance(act, Assign) and (name := act.name.partition(".")[0]) in others:
             place = act.node.attribute_place("name")
             yield OF_OTHER_CONTENT.at(place, _remedy(name), name=name)
@@ -126,9 +124,13 @@ def _used(piece: Piece, others: set[str]) -> Iterator[Problem]:
 
 def _in_expressions(expressions: Iterable[Expression], others: set[str]) -> Iterator[Problem]:
     for expr in expressions if others else ():
-        for name, start in expression_names(expr.code).free.items():
-            if name in others:
-                yield OF_OTHER_CONTENT.at(place_in(expr, start), _remedy(name), name=name)
+        yield from _in_code(expr, expression_names(expr.code), others)
+
+
+def _in_code(code: Expression, names: Names, others: set[str]) -> Iterator[Problem]:
+    for name, start in names.free.items():
+        if name in others:
+            yield OF_OTHER_CONTENT.at(place_in(code, start), _remedy(name), name=name)
 
 
 def _remedy(name: str) -> Hint:
