@@ -163,6 +163,8 @@ FAMILIES: dict[str, Family] = {
     "units": _inside("form block", lambda i, n: f"<iu><speak>Number {i}.</speak></iu>\n"),
     "units around items": _inside("form", lambda i, n: f"<iu><block><speak>Number {i}.</speak></block></iu>\n"),
     "blocks": _inside("form", lambda i, n: f"<block><speak>Number {i}.</speak></block>\n"),
+    "variables of blocks": _inside("form", lambda i, n: f'<block><var name="v{i}" expr="1"/><log expr="v{i}"/></block>\n'),
+    "variables of other blocks": _inside("form", lambda i, n: f'<block><var name="v{i}" expr="1"/><log expr="v{max(i - 1, 0)}"/></block>\n'),
     "fields": _inside("form", lambda i, n: f'<field name="a{i}" type="boolean"><prompt>Is it {i}?</prompt></field>\n'),
     "options": _inside("form field", lambda i, n: f"<option>number {i}</option>\n", "" ),
     "items of a grammar": _inside("form field grammar one-of", lambda i, n: f"<item>number {i}</item>\n"),

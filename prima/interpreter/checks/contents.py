@@ -21,9 +21,10 @@ from prima.interpreter.acts import (
     run_commands,
 )
 from prima.interpreter.checks.code import HELD, of_item
-from prima.interpreter.checks.facts import Facts
+from prima.interpreter.checks.facts import Facts, name_of
 from prima.interpreter.checks.variables import place_in
 from prima.interpreter.elements import Form
+from prima.script.known import Known, NameScope
 from prima.script.names import Names, expression_names, script_names
 
 OF_OTHER_CONTENT = UNDECLARED_VARIABLE.says(
@@ -34,15 +35,28 @@ OF_OTHER_CONTENT = UNDECLARED_VARIABLE.says(
 
 
 @dataclass(slots=True)
+class Others:
+    """The variables that only content declares, of all content that some code might mean."""
+
+    declared: Known
+    """Those of content."""
+    outside: Known
+    """Those that no content declares, which hide them."""
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.declared and name not in self.outside
+
+
+@dataclass(slots=True)
 class Piece:
     """A piece of content: a block's, a filled's or a handler's, without handlers in its Commands."""
 
     form: Form | None
     acts: list[Act]
 
-    def declared(self) -> set[str]:
+    def declared(self) -> NameScope:
         """The names that it declares."""
-        names: set[str] = set()
+        names = NameScope()
         for act in self.acts:
             if isinstance(act, Declare):
                 names.add(act.name)
@@ -66,22 +80,28 @@ def check_contents(facts: Facts) -> Iterator[Problem]:
     pieces = [
         piece for form, content, _ in facts.document.contents() for piece in _pieces(form, content)
     ]
-    declared: defaultdict[str | None, set[str]] = defaultdict(set)
+    others = _others(facts, pieces)
     for piece in pieces:
-        declared[piece.form.id if piece.form else None] |= piece.declared()
-    everywhere = set().union(*declared.values())
-    for piece in pieces:
-        if piece.form is not None:
-            others = declared[piece.form.id] | declared[None]
-            outside = facts.outside_content(piece.form)
-        else:
-            others = everywhere
-            outside = set().union(*(facts.outside_content(form) for form, _ in facts.forms))
-        yield from _used(piece, others - outside - piece.declared())
+        yield from _used(piece, others[name_of(piece.form)])
     for form, items in facts.forms:
-        others = (declared[form.id] | declared[None]) - facts.outside_content(form)
         for item in items:
-            yield from _in_expressions(of_item(item), others)
+            yield from _in_expressions(of_item(item), others[form.id], NameScope())
+
+
+def _others(facts: Facts, pieces: list[Piece]) -> dict[str | None, Others]:
+    """By form: the variables of its content and of the document's. None: those of all content."""
+    declared: defaultdict[str | None, NameScope] = defaultdict(NameScope)
+    for piece in pieces:
+        declared[name_of(piece.form)].update(piece.declared())
+    found: dict[str | None, Others] = {}
+    every, outside = NameScope(declared[None]), NameScope(facts.shared)
+    for form, _ in facts.forms:
+        own = facts.outside_content(form)
+        found[form.id] = Others(Known(declared[form.id], declared[None]), Known(facts.shared, own))
+        every |= declared[form.id]
+        outside |= own
+    found[None] = Others(Known(every), Known(outside))
+    return found
 
 
 def _pieces(form: Form | None, content: Sequence[Act]) -> Iterator[Piece]:
@@ -109,27 +129,30 @@ def _pieces(form: Form | None, content: Sequence[Act]) -> Iterator[Piece]:
         yield from _pieces(form, one)
 
 
-def _used(piece: Piece, others: set[str]) -> Iterator[Problem]:
+def _used(piece: Piece, others: Others) -> Iterator[Problem]:
     """The names of other content that a piece uses or assigns."""
-    if not others:
-        return
-    yield from _in_expressions(piece.expressions(), others)
+    own = piece.declared()
+    yield from _in_expressions(piece.expressions(), others, own)
     for act in piece.acts:
         if isinstance(act, Script):
-            yield from _in_code(act.code, script_names(act.code.code), others)
-        elif isinstance(act, Assign) and (name := act.name.partition(".")[0]) in others:
-            place = act.node.attribute_place("name")
-            yield OF_OTHER_CONTENT.at(place, _remedy(name), name=name)
+            yield from _in_code(act.code, script_names(act.code.code), others, own)
+        elif isinstance(act, Assign):
+            name = act.name.partition(".")[0]
+            if name in others and name not in own:
+                place = act.node.attribute_place("name")
+                yield OF_OTHER_CONTENT.at(place, _remedy(name), name=name)
 
 
-def _in_expressions(expressions: Iterable[Expression], others: set[str]) -> Iterator[Problem]:
-    for expr in expressions if others else ():
-        yield from _in_code(expr, expression_names(expr.code), others)
+def _in_expressions(
+    expressions: Iterable[Expression], others: Others, own: NameScope
+) -> Iterator[Problem]:
+    for expr in expressions:
+        yield from _in_code(expr, expression_names(expr.code), others, own)
 
 
-def _in_code(code: Expression, names: Names, others: set[str]) -> Iterator[Problem]:
+def _in_code(code: Expression, names: Names, others: Others, own: NameScope) -> Iterator[Problem]:
     for name, start in names.free.items():
-        if name in others:
+        if name in others and name not in own:
             yield OF_OTHER_CONTENT.at(place_in(code, start), _remedy(name), name=name)
 
 

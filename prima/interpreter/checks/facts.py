@@ -95,12 +95,13 @@ class Facts:
     def _own(self, form: Form | None) -> NameScope:
         return self._declared.setdefault(name_of(form), NameScope())
 
-    def outside_content(self, form: Form) -> set[str]:
-        """The variables visible to a form's content that no content declares."""
-        own = setup_names(form.setup)
+    def outside_content(self, form: Form) -> NameScope:
+        """The variables of a form that no content declares."""
+        own = NameScope(setup_names(form.setup))
         for item in all_items(form.items):
             own |= {item.name, f"{item.name}$"}
-        return own | self.shared | self._given.get(form.id, set())
+        own |= self._given.get(form.id, set())
+        return own
 
     @cached_property
     def _every(self) -> Known:
