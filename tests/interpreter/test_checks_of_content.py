@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from prima.interpreter.checks.facts import Facts
+from prima.interpreter.elements import Form
+from prima.script.known import NameScope
 from tests.helpers.robot import Bench, read
 
 ENDS = "<block><exit/></block>"
@@ -79,3 +82,19 @@ def test_a_param_is_no_variable_of_content() -> None:
         <block><exit/></block></form>
       <form id="b"><block><var name="x" expr="2"/></block><block><log expr="x"/><return/></block></form>"""
     assert told(body) == []
+
+
+def test_what_a_form_knows_is_gathered_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Gathered anew for each piece of content, a large form took minutes."""
+    gathered: list[str] = []
+    gather = Facts.outside_content
+
+    def counted(facts: Facts, form: Form) -> NameScope:
+        gathered.append(form.id)
+        return gather(facts, form)
+
+    monkeypatch.setattr(Facts, "outside_content", counted)
+    block = '<block><var name="x" expr="1"/><log expr="x"/></block>'
+    on = '<on event="e"><var name="y" expr="1"/></on>'
+    read(f'<form id="a">{20 * block}</form><form id="b">{20 * block}</form>{20 * on}')
+    assert gathered == ["a", "b"]
