@@ -40,7 +40,7 @@ class Prima:
     def __init__(self, text: str) -> None:
         from prima.interpreter.reader import read_document
         from prima.language.commands import TABLE_4_2
-        from prima.messages import ApplicationLoaded
+        from prima.messages import ApplicationLoaded, Occurred
         from prima.scheduler.policy import policy_named
         from prima.session import Session
 
@@ -48,13 +48,12 @@ class Prima:
         assert not problems, problems
         self.session = Session([document], policy_named("prima"), TABLE_4_2)
         self.session.step(0, [ApplicationLoaded("ring")])
+        self.occurred = Occurred
         self.now = 0
 
     def tick(self, times: int) -> None:
         """Take events in, one at an instant."""
-        from prima.messages import Occurred
-
-        event = [Occurred("tick")]
+        event = [self.occurred("tick")]
         for now in range(self.now + 1, self.now + times + 1):
             self.session.step(now, event)
         self.now += times
@@ -81,18 +80,18 @@ class Alone:
 
     def __init__(self, document: Document) -> None:
         from prima.interpreter.application import Interpreter
+        from prima.messages import Event
         from prima.script.isolated import Engines
 
+        self.made = Event
         self.app = Interpreter(document, None, Engines("none"))
         self.app.start(0)
         self.now = 0
 
     def tick(self, times: int) -> None:
         """Take events in, one at an instant."""
-        from prima.messages import Event
-
         for now in range(self.now + 1, self.now + times + 1):
-            self.app.event(now, Event("tick", now))
+            self.app.event(now, self.made("tick", now))
         self.now += times
         self.app.visits.clear()
 

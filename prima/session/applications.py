@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeAlias, TypeVar
 
 from prima.interpreter.application import Interpreter
 from prima.interpreter.bounds import ElementVisit
@@ -23,21 +22,8 @@ AnyDocument: TypeAlias = "Document | VoiceDocument"
 AnyApp: TypeAlias = App[Any]
 
 
-@dataclass(slots=True)
-class Contained:
-    """A context in which an error in an application's interpreter ends that application alone."""
-
-    apps: Applications
-    app: AnyApp
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(self, _: object, error: BaseException | None, trace: object) -> bool:
-        if isinstance(error, Exception):
-            self.apps.fail(self.app, error)
-            return True
-        return False
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 class Applications:
@@ -132,9 +118,15 @@ class Applications:
         app = self.there(name)
         return [app] if app is not None and not app.over else []
 
-    def contained(self, app: AnyApp) -> Contained:
-        """Contain the errors of an application (E2)."""
-        return Contained(self, app)
+    def guard(
+        self, app: AnyApp, act: Callable[P, T], *given: P.args, **named: P.kwargs
+    ) -> T | None:
+        """Let an application's interpreter do something; an error ends that application alone (E2)."""
+        try:
+            return act(*given, **named)
+        except Exception as error:
+            self.fail(app, error)
+            return None
 
     def fail(self, app: AnyApp, error: Exception) -> None:
         """End an application with an error."""

@@ -92,13 +92,12 @@ class Hearing:
             return True
         if question.run is None or question.silent:  # nobody would learn how it has ended
             return False
-        app, link = self.wiring.apps.named[question.app.name], None
+        app = self.wiring.apps.named[question.app.name]
         if (filled := self._filled(question, value)) is not None:
             self.refused.pop(app.name, None)
             self._conclude(question.id, filled)
             return True
-        with self.wiring.apps.contained(app):
-            link = app.listens_to(value.hypotheses)
+        link = self.wiring.apps.guard(app, app.listens_to, value.hypotheses)
         if app.over:  # what it listens for took too long, and its question has ended with it
             self.wiring.act(app)
             return True
@@ -113,8 +112,8 @@ class Hearing:
         answer = None
         if question.run is not None:
             app = self.wiring.apps.named[question.app.name]
-            with self.wiring.apps.contained(app):
-                answer = app.answer(question.run.number, value.hypotheses)
+            run = question.run.number
+            answer = self.wiring.apps.guard(app, app.answer, run, value.hypotheses)
         return value.filled(answer) if answer is not None else None
 
     def _refuse(self, question: Behavior, value: Heard) -> None:
@@ -156,21 +155,19 @@ class Hearing:
         if app.over:
             self.unheard = value.text
             return
-        question, link = self.wiring.mediator.coming_question(app.name), None
+        question = self.wiring.mediator.coming_question(app.name)
         if question is not None and (filled := self._filled(question, value)) is not None:
             self._answer_early(question, filled, "X10")
             return
+        now, serial, guard = self.wiring.recorder.now, self.wiring.serial, self.wiring.apps.guard
         data: dict[str, Json] = {"text": value.text}
-        with self.wiring.apps.contained(app):
-            link = app.listens_to(value.hypotheses)
-            if link is not None:
-                app.follow(
-                    self.wiring.recorder.now, link, Event("speech", self.wiring.serial, data)
-                )
-            elif app.takes("late"):
-                app.event(self.wiring.recorder.now, Event("late", self.wiring.serial, data))
-            else:
-                self.unheard = value.text
+        link = guard(app, app.listens_to, value.hypotheses)
+        if link is not None:
+            guard(app, app.follow, now, link, Event("speech", serial, data))
+        elif not app.over and guard(app, app.takes, "late"):
+            guard(app, app.event, now, Event("late", serial, data))
+        else:
+            self.unheard = value.text
         self.wiring.act(app)
 
     def _offer(self, value: Heard) -> bool:
@@ -207,11 +204,11 @@ class Hearing:
             if ab.command is None or ab.silent:
                 continue
             during: Command | None = ab.command
-            taken = False
-            with self.wiring.apps.contained(app):
-                if ab.state is WAITING:  # between two prompts: the first has just ended
-                    during = app.before(ab.command) if ab.freed == now else None
-                taken = during is not None and app.breaks_in(now, during, value, value.hypotheses)
+            if ab.state is WAITING:  # between two prompts: the first has just ended
+                during = wiring.apps.guard(app, app.before, ab.command) if ab.freed == now else None
+            taken = during is not None and wiring.apps.guard(
+                app, app.breaks_in, now, during, value, value.hypotheses
+            )
             if taken or app.over:
                 self.wiring.act(app)
             if taken:
@@ -225,11 +222,10 @@ class Hearing:
         for app in self.wiring.in_order():
             if question is not None and app.kind != "fa" and app.name != question.app.name:
                 continue
-            with self.wiring.apps.contained(app):
-                link = app.listens_to(value.hypotheses)
-                if link is not None:
-                    taken = True
-                    app.follow(self.wiring.recorder.now, link, event)
+            link = self.wiring.apps.guard(app, app.listens_to, value.hypotheses)
+            if link is not None:
+                taken = True
+                self.wiring.apps.guard(app, app.follow, self.wiring.recorder.now, link, event)
             self.wiring.act(app)
         return taken
 

@@ -220,8 +220,7 @@ class Session:
         name = "emergency.stop" if value.pressed else "emergency.release"
         event = Event(name, self._wiring.serial, {}, reactive=True, shared=True)
         for app in self._wiring.in_order():
-            with self._apps.contained(app):
-                app.event(self.recorder.now, event)
+            self._apps.guard(app, app.event, self.recorder.now, event)
             self._wiring.act(app)
         self._wiring.settle()
 
@@ -237,8 +236,7 @@ class Session:
         app.sensors.update(self._sensors)
         app.connection = value.connection
         self.mediator.load(name, app.kind, self._apps.documents[name].lang, self._apps.order[name])
-        with self._apps.contained(app):
-            app.start(self.recorder.now)
+        self._apps.guard(app, app.start, self.recorder.now)
         self._wiring.act(app)
         if self._sensors:  # a condition that it watches may already be true
             self._look(app, {})
@@ -248,8 +246,7 @@ class Session:
         self._record("unload", "environment", app=value.app, data=place_data(value))
         app = self._apps.there(value.app)
         if app is not None:
-            with self._apps.contained(app):
-                app.stop()
+            self._apps.guard(app, app.stop)
             self._wiring.act(app)
 
     def _occurred(self, value: Occurred) -> None:
@@ -270,8 +267,7 @@ class Session:
             self.mediator.senses_user()
         event = Event(name, serial, data, True, shared=app is None)
         for one in self._wiring.in_order() if app is None else self._apps.alone(app):
-            with self._apps.contained(one):
-                one.event(self.recorder.now, event)
+            self._apps.guard(one, one.event, self.recorder.now, event)
             self._wiring.act(one)
 
     def listening(self) -> list[Answers]:
@@ -294,8 +290,7 @@ class Session:
             )
         app = self._apps.there(value.app)
         if app is not None:
-            with self._apps.contained(app):
-                app.replied(self.recorder.now, value)
+            self._apps.guard(app, app.replied, self.recorder.now, value)
             self._wiring.act(app)
             self._wiring.settle()
 
@@ -307,10 +302,7 @@ class Session:
 
     def _look(self, app: AnyApp, values: Data) -> None:
         """C6: give an application sensor values; raise the events of conditions that turn true."""
-        raised: list[str] = []
-        with self._apps.contained(app):
-            raised = app.sensed(self.recorder.now, values)
-        for name in raised:
+        for name in self._apps.guard(app, app.sensed, self.recorder.now, values) or []:
             self._wiring.own_event(app, name, {}, reactive=True)
         self._wiring.act(app)
 
@@ -321,16 +313,10 @@ class Session:
         if not self._wiring.due or min(self._wiring.due.values()) > now:
             return
         for app in self._wiring.in_order():
-            while due := self._due(app, now):
+            # One event at a time: its handler may leave the state of others.
+            while due := self._apps.guard(app, app.expire, now):
                 self._wiring.own_event(app, due[0], dict(due[1]), reactive=False)
             self._wiring.act(app)
-
-    def _due(self, app: AnyApp, now: int) -> tuple[str, Data] | None:
-        """The next event of an application's own that is due: one may leave the state of others."""
-        due = None
-        with self._apps.contained(app):
-            due = app.expire(now)
-        return due
 
 
 def place_data(value: ApplicationLoaded | ApplicationUnloaded) -> dict[str, Json] | None:

@@ -80,8 +80,7 @@ class Wiring:
             return
         self.mediator.open_window(delivery)
         for notice in delivery.notices:
-            with self.apps.contained(app):
-                app.notice(self.recorder.now, notice)
+            self.apps.guard(app, app.notice, self.recorder.now, notice)
             self.act(app)
         self.mediator.close_window(delivery)
 
@@ -89,9 +88,8 @@ class Wiring:
         """Keep the streams that wait suspended or have resumed and whose application handles it."""
         for name, stream in self.mediator.drain_turns():
             app = self.apps.named[stream.app.name]
-            with self.apps.contained(app):
-                if app.takes(name):
-                    self.turns.append((name, stream))
+            if self.apps.guard(app, app.takes, name):
+                self.turns.append((name, stream))
             if app.over and app.actions:
                 self.act(app)
 
@@ -105,8 +103,8 @@ class Wiring:
             app = self.apps.named[stream.app.name]
             delivery = Delivery(app.name, stream if stream.open else None, [])
             self.mediator.open_window(delivery)
-            with self.apps.contained(app):
-                app.event(self.recorder.now, Event(name, 0, {}, reactive=False, shared=True))
+            event = Event(name, 0, {}, reactive=False, shared=True)
+            self.apps.guard(app, app.event, self.recorder.now, event)
             self.act(app)
             self.mediator.close_window(delivery)
 
@@ -118,8 +116,8 @@ class Wiring:
     def handle_own(self, app: AnyApp, name: str, data: dict[str, Json], reactive: bool) -> None:
         """Let the application handle its own event; its actions are left to the caller."""
         serial = self.record_own(app, name, data, "environment")
-        with self.apps.contained(app):
-            app.event(self.recorder.now, Event(name, serial, data, reactive))
+        event = Event(name, serial, data, reactive)
+        self.apps.guard(app, app.event, self.recorder.now, event)
 
     def record_own(self, app: AnyApp, name: str, data: Data, actor: str) -> int:
         """Record an event defined by one application alone; returns its serial number."""
@@ -172,8 +170,7 @@ class Wiring:
             case Promote():
                 self._promoted = self.record_own(app, action.event, {}, "robot")
             case GoOn():
-                with self.apps.contained(app):
-                    app.go_on_entering(action.state)
+                self.apps.guard(app, app.go_on_entering, action.state)
             case Quit():
                 self._quit(app, action)
 

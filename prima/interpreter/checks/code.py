@@ -141,8 +141,9 @@ def all_code(facts: Facts) -> Iterator[Code]:
                 yield one, known, False
     for kind, held in HELD.items():
         for holder, act in facts.acts.of(kind):
-            codes = [one for one in held(act) if isinstance(one, Expression)]
-            yield from [(one, facts.known_in(holder), False) for one in codes]
+            for code in held(act):
+                if isinstance(code, Expression):
+                    yield code, facts.known_in(holder), False
     for holder, script in facts.acts.of(Script):
         yield script.code, facts.known_in(holder), True
 

@@ -59,9 +59,9 @@ def check_comparisons(facts: Facts) -> Iterator[Problem]:
 def _compared(facts: Facts) -> Iterator[tuple[Expression, int, Field, str]]:
     """Each comparison of a field's variable with a text, and where the text begins."""
     conditions = _conditions(facts)
-    changed = _changed(facts) if any(conditions.values()) else set()
+    changed = _changed(facts) if conditions else set()
     for form, items in facts.forms:
-        if conditions[form.id]:
+        if form.id in conditions:
             fields = {
                 item.name: item
                 for item in items
@@ -77,14 +77,16 @@ def _compared(facts: Facts) -> Iterator[tuple[Expression, int, Field, str]]:
 
 def _conditions(facts: Facts) -> dict[str, list[Expression]]:
     """The conditions that may compare a text, by forms."""
-    found = {form.id: [item.cond for item in items] for form, items in facts.forms}
-    for form, act in facts.acts.of(If):
-        if form is not None:
-            found[form.id] += [cond for cond, _ in act.branches]
-    return {
-        form: [one for one in each if one is not None and _compares(one.code)]
-        for form, each in found.items()
-    }
+    found: dict[str, list[Expression]] = {}
+    for form, items in facts.forms:
+        for item in items:
+            if item.cond is not None and _compares(item.cond.code):
+                found.setdefault(form.id, []).append(item.cond)
+    for holder, act in facts.acts.of(If):
+        for cond, _ in act.branches:
+            if holder is not None and cond is not None and _compares(cond.code):
+                found.setdefault(holder.id, []).append(cond)
+    return found
 
 
 def _compares(code: str) -> bool:
