@@ -141,11 +141,14 @@ def all_code(facts: Facts) -> Iterator[Code]:
                 yield one, known, False
     for kind, held in HELD.items():
         for holder, act in facts.acts.of(kind):
-            for code in held(act):
-                if isinstance(code, Expression):
-                    yield code, facts.known_in(holder), False
+            for code in _expressions(held(act)):
+                yield code, facts.known_in(holder), False
     for holder, script in facts.acts.of(Script):
         yield script.code, facts.known_in(holder), True
+
+
+def _expressions(held: Iterable[object]) -> Iterator[Expression]:
+    return (one for one in held if isinstance(one, Expression))
 
 
 def _outside(holder: Document | Form, known: Known, later: Known) -> Iterator[Code]:
