@@ -141,13 +141,14 @@ def all_code(facts: Facts) -> Iterator[Code]:
                 yield one, known, False
     for kind, held in HELD.items():
         for holder, act in facts.acts.of(kind):
-            for code in _expressions(held(act)):
+            for code in expressions(held(act)):
                 yield code, facts.known_in(holder), False
     for holder, script in facts.acts.of(Script):
         yield script.code, facts.known_in(holder), True
 
 
-def _expressions(held: Iterable[object]) -> Iterator[Expression]:
+def expressions(held: Iterable[object]) -> Iterator[Expression]:
+    """The expressions among some values."""
     return (one for one in held if isinstance(one, Expression))
 
 
@@ -178,7 +179,7 @@ def of_item(item: Item) -> Iterator[Expression]:
         held += [part for prompt in item.prompts for part in prompt.text]
     elif isinstance(item, Subdialog):
         held += [value for _, value in item.params]
-    yield from (one for one in held if isinstance(one, Expression))
+    yield from expressions(held)
 
 
 # Checks by an engine

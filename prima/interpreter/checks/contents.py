@@ -20,7 +20,7 @@ from prima.interpreter.acts import (
     Script,
     run_commands,
 )
-from prima.interpreter.checks.code import HELD, of_item
+from prima.interpreter.checks.code import HELD, expressions, of_item
 from prima.interpreter.checks.facts import Facts, name_of
 from prima.interpreter.checks.variables import place_in
 from prima.interpreter.elements import Form
@@ -69,8 +69,8 @@ class Piece:
     def expressions(self) -> Iterator[Expression]:
         """Its code, scripts aside."""
         for act in self.acts:
-            held = HELD[type(act)](act) if type(act) in HELD else ()
-            yield from (one for one in held if isinstance(one, Expression))
+            if type(act) in HELD:
+                yield from expressions(HELD[type(act)](act))
 
 
 def check_contents(facts: Facts) -> Iterator[Problem]:
