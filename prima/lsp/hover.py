@@ -22,7 +22,6 @@ from prima.lsp.workspace import Workspace
 from prima.markup.vocabulary import Attribute, Element, attributes_by_name
 
 NAMED = re.compile(r"\b([A-Z][0-9])\b")
-WORD = re.compile(r"[\w$.\-]+")
 MOST_LETTERS = 200
 """Maximum length of a line of a document that is shown."""
 

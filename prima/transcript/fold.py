@@ -26,8 +26,6 @@ from prima.transcript.spans import (
 
 ASKED = frozenset({"request", "interrupt", "hold", "resume", "starve"})
 """Phases of records that explain the time of an AB."""
-OVER = frozenset({"end", "cancel", "fail", "interrupt"})
-"""Phases of records that end an AB, or a loop of one."""
 
 
 class Fold:

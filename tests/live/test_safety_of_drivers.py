@@ -23,12 +23,13 @@ from prima.live.drivers.rosbridge import RosbridgeDriver
 from prima.live.drivers.sim import SimDriver
 from prima.live.drivers.speech import SpeechDriver
 from prima.live.drivers.speech.segments import Segments
-from prima.live.drivers.speech.sound import RATE, Pipes
+from prima.live.drivers.speech.sound import RATE
 from prima.live.ros import CANCELED, Outcome, RosUse, Sent
 from prima.live.visit import LiveSettings, begin
 from prima.messages import Command, Emergency, Record
 from prima.sim.map import Map
 from tests.live.fake_reachy import FakeReachy, fake_reachy
+from tests.parties.speech.user import Pipes
 
 LONG_S = 20
 LONG = "This takes much longer than anybody wants to wait for it. " * 5

@@ -33,11 +33,12 @@ from prima.live.drivers.speech import SpeechDriver, SpokenPiece, heard, pieces, 
 from prima.live.drivers.speech.jsgf import jsgf, spelt
 from prima.live.drivers.speech.nearest import hypotheses, likeness
 from prima.live.drivers.speech.segments import BEFORE_S, Segments
-from prima.live.drivers.speech.sound import CHUNK, CHUNK_S, Pipes, beep, seconds
+from prima.live.drivers.speech.sound import CHUNK, CHUNK_S, beep, seconds
 from prima.live.drivers.speech.sounds import arpabet
 from prima.live.recordings import Recordings
 from prima.messages import Command, Cue, Heard, Hypothesis
 from prima.sim.map import read_world
+from tests.parties.speech.user import Pipes
 
 ROOT = Path(__file__).parents[2]
 ROBOT = ROOT / "documents" / "robots" / "speech.xml"

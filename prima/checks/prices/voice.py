@@ -40,7 +40,6 @@ from prima.voicexml.recorder import BEEP_MS
 from prima.voicexml.sketch import FETCHING, Sketch
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
-SPEAKER = frozenset({"speaker"})
 TIMEOUT_MS = 5000
 LISTENING_MS = 600_000
 """How long a question during a call listens at most, before it is repeated."""

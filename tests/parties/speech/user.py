@@ -7,13 +7,15 @@ what it lets them do while the robot does something, as far as that needs no leg
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from pathlib import Path
+from time import monotonic
 
 from prima.devices.goals import SAY, Begin
 from prima.grammar.answers import Answers
 from prima.grammar.text import fold
 from prima.live.drivers.speech import SpeechDriver
-from prima.live.drivers.speech.sound import CHUNK, CHUNK_S, Pipes
+from prima.live.drivers.speech.sound import CHUNK, CHUNK_S, Hear, seconds
 from prima.live.drivers.speech.voices import Voices
 from prima.messages import Data, Occurred, Record
 from prima.sim.happenings import When
@@ -24,6 +26,41 @@ PAUSE_S = 1.0
 """How long the user thinks before they answer."""
 PATIENCE_S = 2.0
 """The longest that the user, who does not walk, waits for anything else."""
+
+
+class Pipes:
+    """A loudspeaker and a microphone in memory."""
+
+    def __init__(self) -> None:
+        self.played: Hear = lambda _: None
+        """Called with each chunk that the robot plays, when it is played."""
+        self.heard = 0
+        self._hear: Hear = lambda _: None
+        self._left = b""
+
+    def open(self, hear: Hear, lost: Callable[[str], None]) -> None:
+        """Begin to listen."""
+        self._hear = hear
+
+    def put(self, sound: bytes) -> None:
+        """Let the microphone hear a sound."""
+        sound = self._left + sound
+        for start in range(0, len(sound) - CHUNK + 1, CHUNK):
+            self._hear(sound[start : start + CHUNK])
+        self._left = sound[len(sound) // CHUNK * CHUNK :]
+
+    async def play(self, sound: bytes) -> None:
+        """Play a sound in real time."""
+        began, self.heard = monotonic(), 0
+        for start in range(0, len(sound), CHUNK):
+            self.played(sound[start : start + CHUNK])
+            ends = began + seconds(sound[: start + CHUNK])
+            await asyncio.sleep(max(ends - monotonic(), 0))
+            self.heard = min(start + CHUNK, len(sound))
+
+    def close(self) -> None:
+        """Hear nothing more."""
+        self._hear = lambda _: None
 
 
 class HeardDriver(SpeechDriver):

@@ -1,4 +1,4 @@
-"""Sound in and out: 16-bit mono at 16 kHz, by a sound card or by two pipes in memory."""
+"""Sound in and out: 16-bit mono at 16 kHz, by a sound card."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from array import array
 from collections.abc import Callable
 from contextlib import suppress
 from threading import Lock
-from time import monotonic
 from typing import Any, Protocol
 
 from prima.live.driver import Unreachable, Unusable
@@ -56,41 +55,6 @@ class Sound(Protocol):
 
     def close(self) -> None:
         """Give back the devices."""
-
-
-class Pipes:
-    """A loudspeaker and a microphone in memory, for synthetic users."""
-
-    def __init__(self) -> None:
-        self.played: Hear = lambda _: None
-        """Called with each chunk that the robot plays, when it is played."""
-        self.heard = 0
-        self._hear: Hear = lambda _: None
-        self._left = b""
-
-    def open(self, hear: Hear, lost: Callable[[str], None]) -> None:
-        """Begin to listen."""
-        self._hear = hear
-
-    def put(self, sound: bytes) -> None:
-        """Let the microphone hear a sound."""
-        sound = self._left + sound
-        for start in range(0, len(sound) - CHUNK + 1, CHUNK):
-            self._hear(sound[start : start + CHUNK])
-        self._left = sound[len(sound) // CHUNK * CHUNK :]
-
-    async def play(self, sound: bytes) -> None:
-        """Play a sound in real time."""
-        began, self.heard = monotonic(), 0
-        for start in range(0, len(sound), CHUNK):
-            self.played(sound[start : start + CHUNK])
-            ends = began + seconds(sound[: start + CHUNK])
-            await asyncio.sleep(max(ends - monotonic(), 0))
-            self.heard = min(start + CHUNK, len(sound))
-
-    def close(self) -> None:
-        """Hear nothing more."""
-        self._hear = lambda _: None
 
 
 class SoundCard:
