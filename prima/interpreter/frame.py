@@ -74,6 +74,8 @@ class Fiber:
 
     content: Content | None = None
     unit: int | None = None
+    commands: Sequence[Handler] = ()
+    """Handlers inside the Command whose event is being handled."""
     waiting: int | None = None
     began = 0
     """When it started to wait (ms)."""
@@ -83,14 +85,11 @@ class Fiber:
         frame: Frame,
         main: bool = False,
         local: Scope = None,
-        commands: Sequence[Handler] = (),
     ) -> None:
         self.frame = frame
         self.main = main
         self.local = local
         """The innermost scope, created on first use."""
-        self.commands = commands
-        """Handlers inside the Command whose event is being handled."""
 
 
 class GoForm(Transfer):
