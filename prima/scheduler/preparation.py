@@ -13,10 +13,13 @@ from prima.scheduler.rules import third_turn
 
 
 def prepare(mediation: Mediation, ab: Behavior) -> bool:
-    """X1, X4, X9: insert what has to come first; whether anything was inserted."""
+    """X1, X4, X9: insert what has to come first; whether anything was inserted.
+
+    The words of X9 are words, too: the user is faced before them.
+    """
     if third_turn(ab, mediation.memory):
         return False
-    return x1(mediation, ab) or (not ab.inserted and (x9(mediation, ab) or x4(mediation, ab)))
+    return x1(mediation, ab) or (not ab.inserted and (x4(mediation, ab) or x9(mediation, ab)))
 
 
 def x1(mediation: Mediation, ab: Behavior) -> bool:

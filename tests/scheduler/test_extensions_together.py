@@ -276,3 +276,26 @@ def test_x9_what_was_interrupted_though_wanted_now_resumes_in_words() -> None:
     assert stage.select() == ["fa#1"]
     stage.at(1000).end("fa#1")
     assert stage.select() == ["ea#3"] and inserted(stage) == [("X9", "speak")]
+
+
+def test_x4_the_user_is_faced_before_the_words_with_which_a_topic_resumes() -> None:
+    stage = Stage("prima+x4+x9")
+    stage.request("ea", say("One."), words=say("Again:"))
+    assert stage.select() == ["ea#1"]
+
+    def goes_on() -> None:
+        stage.request("ea", say("Two."), words=say("Again:"), connect=True)
+
+    stage.at(500).request("fa", say("Oh!"), cause=EVENT)
+    assert stage.select() == []
+    stage.at(600).end("ea#1", then=goes_on)
+    assert stage.select() == ["fa#1"]
+    stage.at(1000).end("fa#1")
+    started = []
+    for time in (1001, 2000, 3000):
+        (one,) = stage.select()
+        started.append(one)
+        stage.at(time).end(one)
+    assert inserted(stage) == [("X4", "face-human"), ("X9", "speak")]
+    assert started == ["ea#3", "ea#4", "ea#2"]
+    assert check(stage.records, "prima+x4+x9") == []
