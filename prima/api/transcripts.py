@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from prima.errors import MissingFile, UsageError
+from prima.errors import UsageError
 from prima.messages import Record
 
 if TYPE_CHECKING:
@@ -201,18 +201,12 @@ def skim(path: str | Path) -> Transcript:
 
 def records_of(path: str | Path, cut: list[str] | None) -> Iterator[Record]:
     """A transcript's records one by one; see :func:`read`."""
-    from prima.loading.files import at_once, check_folder, check_name
+    from prima.loading.files import at_once, check_folder, check_name, readable
     from prima.transcript.lines import MAX_LINE, read_lines
 
     check_name(path)
-    try:
+    with readable(path):
         check_folder(path, "Name a transcript in it.")
         with open(path, encoding="utf-8-sig", errors="surrogateescape", opener=at_once) as stream:
             lines = iter(lambda: stream.readline(MAX_LINE + 2), "")
             yield from read_lines(str(path), lines, cut)
-    except FileNotFoundError:
-        raise MissingFile(path) from None
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
-    except ValueError:
-        raise UsageError(f"{path!r} is not a file's name.") from None

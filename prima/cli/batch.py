@@ -17,7 +17,7 @@ from prima.errors.visible import visible
 from prima.experiments.batch import run_batch
 from prima.experiments.plan import BatchPlan, BatchRow, Options
 from prima.experiments.rows import format_counts, format_head, format_row, row_data
-from prima.loading.files import at_once, check_folder
+from prima.loading.files import at_once, check_folder, readable
 from prima.pool.processes import warm_up
 
 MOST_LISTED = 50_000_000
@@ -33,12 +33,9 @@ def listed(name: str) -> list[str]:
         UsageError: it cannot be read, or is empty.
     """
     check_folder(name, "To run the scenarios in it, leave out --from.")
-    try:
-        given, opener = (0, None) if name == "-" else (name, at_once)
-        with open(given, "rb", closefd=name != "-", opener=opener) as stream:
-            data = stream.read(MOST_LISTED + 1)
-    except (OSError, ValueError) as error:
-        raise UsageError(f"{name}: cannot be read: {getattr(error, 'strerror', error)}.") from None
+    given, opener = (0, None) if name == "-" else (name, at_once)
+    with readable(name), open(given, "rb", closefd=name != "-", opener=opener) as stream:
+        data = stream.read(MOST_LISTED + 1)
     if len(data) > MOST_LISTED or b"\0" in data or data.lstrip()[:1] == b"<":
         raise UsageError(f"{name}: not a list of scenarios: write one path per line.")
     lines = [line.strip() for line in data.removeprefix(codecs.BOM_UTF8).splitlines()]

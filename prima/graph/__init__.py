@@ -155,17 +155,9 @@ def states(path: str | Path) -> Graph:
 
 def _is_transcript(path: str | Path) -> bool:
     """Whether a file begins as a transcript does, and not as XML."""
-    from prima.loading.files import read_file
+    from prima.loading.files import read_bytes
 
-    try:
-        if not Path(path).is_file():
-            read_file(path)  # raises an error
-        with Path(path).open("rb") as stream:
-            begin = stream.read(200).removeprefix(b"\xef\xbb\xbf").lstrip()
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
-    except ValueError:
-        raise UsageError(f"{path!r} is not a file name.") from None
+    begin = read_bytes(path, 200).removeprefix(b"\xef\xbb\xbf").lstrip()
     if not begin:
         raise UsageError(f"{path}: the file is empty.")
     return begin[:1] == b"{"

@@ -182,24 +182,35 @@ def read_file(path: str | Path) -> bytes:
     return data
 
 
+@contextmanager
+def readable(path: str | Path) -> Iterator[None]:
+    """Turn the system's errors while a file is read into messages.
+
+    Raises:
+        UsageError: it cannot be read.
+    """
+    try:
+        yield
+    except FileNotFoundError:
+        raise MissingFile(path) from None
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror or error}.") from None
+    except ValueError:
+        raise UsageError(f"{path!r} is not a file's name.") from None
+
+
 def read_bytes(path: str | Path, most: int = -1) -> bytes:
     """Read a file on the disk, or its beginning.
 
     Raises:
         UsageError: it cannot be read.
     """
-    try:
+    with readable(path):
         check_folder(path, "Name a file in it.")
         if exists(path) and not isfile(path):
             raise UsageError(f"{path}: cannot be read: it is not a file.")
         with open(path, "rb") as stream:
             return stream.read(most)
-    except FileNotFoundError:
-        raise MissingFile(path) from None
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read: {error.strerror}.") from None
-    except ValueError:
-        raise UsageError(f"{path!r} is not a file's name.") from None
 
 
 def at_once(path: str, flags: int) -> int:

@@ -12,10 +12,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
-from prima.errors import MissingFile, UsageError, did_you_mean, one_of
+from prima.errors import UsageError, did_you_mean, one_of
 from prima.errors.visible import unharmed
 from prima.experiments.sweep import PLAN, ROWS
 from prima.experiments.table import FIXED, HEAD, Column, check_names, parquet_columns
+from prima.loading.files import readable
 
 DICTIONARY = "dictionary.json"
 SUFFIXES = (".csv", ".parquet")
@@ -79,18 +80,15 @@ def _cells(table: Path) -> tuple[dict[str, list[Any]], str]:
     """
     if table.exists() and not table.is_file():
         raise UsageError(f"{table}: cannot be read: it is not a file.")
-    try:
-        if table.suffix == ".parquet":
-            return parquet_columns(table, MOST_ROWS, MOST_COLUMNS, MOST_BYTES), ""
-        return _read_csv(table)
-    except FileNotFoundError:
-        raise MissingFile(table) from None
-    except OSError as error:
-        raise UsageError(f"{table}: cannot be read: {error.strerror or error}.") from None
-    except UnicodeDecodeError:
-        raise UsageError(f"{table}: not the table of a sweep: it is not UTF-8.") from None
-    except ValueError as error:
-        raise UsageError(f"{table}: not the table of a sweep: {error}.") from None
+    with readable(table):
+        try:
+            if table.suffix == ".parquet":
+                return parquet_columns(table, MOST_ROWS, MOST_COLUMNS, MOST_BYTES), ""
+            return _read_csv(table)
+        except UnicodeDecodeError:
+            raise UsageError(f"{table}: not the table of a sweep: it is not UTF-8.") from None
+        except ValueError as error:
+            raise UsageError(f"{table}: not the table of a sweep: {error}.") from None
 
 
 def _broken_off(sheet: Sheet) -> str:
@@ -130,10 +128,8 @@ def _table_in(path: Path) -> Path:
     Raises:
         UsageError: there is none, or more than one.
     """
-    try:
+    with readable(path):
         found = sorted(one for one in path.iterdir() if one.suffix in SUFFIXES)
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read: {error.strerror or error}.") from None
     found = [one for one in found if one.is_file() and one.name != ROWS]
     if not found:
         what = f"no table in this folder ({one_of(SUFFIXES)})"
