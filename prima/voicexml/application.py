@@ -42,8 +42,11 @@ class VoiceInterpreter(App[AnyEngine]):
 
     def takes(self, name: str) -> bool:
         """Whether a handler in scope takes an event of the robot."""
-        context, thrown = self._shared.context, thrown_of_event(Event(name, 0, shared=True))
-        return context is not None and self._machine.events.takes(context, thrown)
+        return self._is_taken(Event(name, 0, shared=True))
+
+    def _is_taken(self, event: Event) -> bool:
+        context = self._shared.context  # none any more while the last queue is played
+        return context is not None and self._machine.events.takes(context, thrown_of_event(event))
 
     def event(self, now: int, event: Event) -> None:
         """Deliver an event: one that a handler in scope takes ends the wait (5.2)."""
@@ -61,11 +64,9 @@ class VoiceInterpreter(App[AnyEngine]):
         return self.waits.leaving and not _hangs_up(event)
 
     def _happened(self, event: Event) -> None:
-        context = self._shared.context
-        if self.over or context is None or not (self.waits.run or self.waits.calling):
+        if self.over or not (self.waits.run or self.waits.calling):
             return
-        thrown = thrown_of_event(event)
-        if not _hangs_up(event) and not self._machine.events.takes(context, thrown):
+        if not _hangs_up(event) and not self._is_taken(event):
             return
         self.waits.cause = event.serial if event.reactive else None
         self._tell(event)

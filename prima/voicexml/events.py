@@ -79,11 +79,16 @@ class Events:
             context.counters = held
 
     def finish(self, context: Context) -> Flow:
-        """Play what is queued at an application's end (4.1.8); no events are handled any more."""
+        """Play what is queued at an application's end (4.1.8); no events are handled any more.
+
+        If the user hangs up meanwhile, there is nobody left to hear the rest (1.5.4).
+        """
         self.shared.context = None
         if self.shared.queue and not self.shared.gone:
             try:
                 yield from self.shared.play()
+            except HungUp as thrown:
+                self.shared.gone = thrown.name
             except Thrown as thrown:
                 yield from self.unhandled(context, thrown)
 

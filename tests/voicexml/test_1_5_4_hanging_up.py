@@ -25,6 +25,17 @@ def test_a_hangup_that_nothing_catches_ends_the_application(place: Path) -> None
     assert ended(made)[1] == "connection.disconnect.hangup"
 
 
+@pytest.mark.parametrize("end", ["", "<exit/>", '<throw event="error.odd"/>'])
+def test_a_hangup_during_the_last_prompts_leaves_the_rest_unsaid(place: Path, end: str) -> None:
+    app = f"""<catch event="connection.disconnect.hangup"><log>never</log></catch>
+    <form><block><prompt>Have a nice day.</prompt><prompt>Good bye.</prompt>{end}</block></form>"""
+    made = run(place, app, '<when at="500ms"><hang-up/></when>')
+    assert shown(made)[1:3] == ['"Have a nice day."', "hangs up"]
+    assert logs(made) == []
+    assert '"Good bye."' not in shown(made)
+    assert ended(made)[1].startswith("error.odd" if "throw" in end else "exit")
+
+
 def test_after_a_hangup_values_can_be_submitted(place: Path) -> None:
     app = f"""<var name="a" expr="1"/><catch event="connection.disconnect.hangup">One moment.
     <submit next="service:keep" namelist="a" fetchaudio="hold.wav"/></catch>
