@@ -7,7 +7,7 @@ from dataclasses import replace
 from prima.interpreter.transfers import Thrown
 from prima.language.values import milliseconds
 from prima.markup.tree import Node
-from prima.messages import BEEP, Command, Cue, Data, Event, Json
+from prima.messages import BEEP, Command, Cue, Data, Event, Hypothesis, Json
 from prima.voicexml.inputs import Inputs
 from prima.voicexml.items import Items
 from prima.voicexml.matching import KEYS
@@ -62,14 +62,20 @@ class RecordItems:
         """Fill a record with what was said.
 
         If only keys are pressed, nothing has been recorded: its variable stays as it is, and
-        the keys are found in ``application.lastresult$``.
+        the keys are found in ``application.lastresult$``. So it does if another element's grammar
+        takes the key at the end, which then goes to that element.
         """
         listens = "dtmf" in self.inputs.modes(context)
         said, key = divided(heard, listens and item.get("dtmfterm") != "false")
         if key and not heard.recognised:
             heard = replace(heard, utterance=key, interpretation=key, confidence=1.0, mode="dtmf")
+        elif listens and not heard.recognised:
+            said, heard = self._ended(context, heard)
         if key or heard.recognised:
             self.items.remember(context, heard)
+        if heard.owner is not item:
+            yield from self.items.process(context, heard)
+            return
         if not said:
             return
         more: dict[str, Json] = {"maxtime": bool(data.get("maxtime"))}
@@ -79,6 +85,14 @@ class RecordItems:
             more |= {"utterance": heard.utterance, "confidence": heard.confidence}
         self._fill(context, item, said, data, more)
         yield from self.items.run_filled(context, [item])
+
+    def _ended(self, context: Context, heard: TakenUtterance) -> tuple[str, TakenUtterance]:
+        """What was recorded until a key that a grammar takes, and that key; else all of it."""
+        said, key = divided(heard, ends=True)
+        taken = self.inputs.hear(context, [Hypothesis(key, 1.0)]) if said and key else None
+        if taken is None:
+            return heard.utterance.strip(), heard
+        return said, replace(taken, mark=heard.mark, marktime=heard.marktime)
 
     def broken_off(self, context: Context, item: Node, event: Event) -> None:
         """Keep what was recorded until the user hung up."""

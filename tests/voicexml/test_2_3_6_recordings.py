@@ -71,6 +71,32 @@ def test_a_grammar_for_keys_ends_a_recording_as_well(place: Path) -> None:
     assert logs(run(place, app, says("0", HELLO))) == [f"{HELLO},1608,{len(HELLO)},,false"]
 
 
+HASH = ZERO.replace(">0<", ">#<")
+
+
+def test_a_key_of_a_grammar_ends_what_is_being_recorded(place: Path) -> None:
+    app = f"""<form><record name="r" dtmfterm="false"><prompt>Speak.</prompt>{HASH}
+    <filled><log expr="[r, r$.termchar, application.lastresult$.utterance,
+    application.lastresult$.inputmode].join()"/></filled></record></form>"""
+    assert logs(run(place, app, says(HELLO + "#"))) == [f"{HELLO},,#,dtmf"]
+    assert logs(run(place, app.replace(">#<", ">*<"), says(HELLO + "*")))[0].endswith(",,*,dtmf")
+    kept = run(place, app.replace("application.lastresult$", "typeof r"), says(HELLO + "*"))
+    assert logs(kept)[0].startswith(f"{HELLO}*,,")
+
+
+@pytest.mark.parametrize(
+    ("term", "expected"), [("false", ["undefined #"]), ("true", [f"{HELLO} #", "filled"])]
+)
+def test_a_key_of_a_grammar_outside_ends_a_recording_unfilled(
+    place: Path, term: str, expected: list[str]
+) -> None:
+    app = f"""<link event="key">{HASH}</link><catch event="key"><log><value expr="r"/>
+    <value expr="application.lastresult$.utterance"/></log><exit/></catch>
+    <form><record name="r" modal="false" dtmfterm="{term}"><prompt>Speak.</prompt>
+    <filled><log expr="r + ' ' + r$.termchar"/><log>filled</log></filled></record></form>"""
+    assert logs(run(place, app, says(HELLO + "#"))) == expected
+
+
 def test_a_grammar_of_the_record_ends_it_with_what_was_said(place: Path) -> None:
     app = f"""<form><record name="r"><prompt>Speak.</prompt>{STOP}
     <filled><log expr="[r, r$.utterance, r$.confidence].join()"/></filled></record></form>"""
