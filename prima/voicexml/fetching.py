@@ -138,9 +138,9 @@ def _check_reach(where: str, uri: str, node: Node) -> None:
 
 
 def _setting(shared: SharedState, node: Node, name: str) -> str:
-    """A setting of a fetch: the element's attribute, or the property of that name (6.3.5)."""
-    own = node.get(name)
-    return own or (setting(shared.context, name) if shared.context is not None else "")
+    """A setting of a fetch: the element's attribute, even if empty, or the property (6.3.5)."""
+    wider = setting(shared.context, name) if shared.context is not None else ""
+    return node.get(name, wider)
 
 
 def _file(shared: SharedState, uri: str, node: Node) -> bytes:

@@ -176,7 +176,7 @@ class Sketch:
 
     def fetching(self, node: Node) -> Iterator[CommandRun]:
         """What may be played while an element's resource is fetched, or a call is made."""
-        fetched = node.get("fetchaudio") or self._played
+        fetched = node.get("fetchaudio", self._played)
         audio = fetched if node.tag != "transfer" else node.get("transferaudio")
         here = node.tag != "submit" and (node.get("next") or node.get("src")).startswith("#")
         if audio and not here:

@@ -6,7 +6,7 @@ import pytest
 
 from prima.voicexml.reading import read_page
 from tests.helpers.dialogs import GRAMMAR, PASS, YES, ask, asked, block, file, leaf, question, run
-from tests.helpers.voice import Call, vxml
+from tests.helpers.voice import Call, Online, vxml
 
 FETCH = 'fetchhint="safe" fetchtimeout="3s" maxage="0" maxstale="10"'
 
@@ -31,6 +31,14 @@ def test_fetching_attributes_are_accepted(body: str) -> None:  # 6.1
     )
     call.play()
     assert not call.ended.startswith("error")
+
+
+def test_an_element_can_do_without_the_fetch_audio_of_a_property() -> None:  # 6.1.1
+    sets = '<property name="fetchaudio" value="hold.wav"/>'
+    leads = block('One moment.<submit next="service:slow" fetchaudio=""/>')
+    slow = {"service:slow": None}
+    assert Online(slow, sets + leads).said() == []
+    assert Online(slow, sets + leads.replace(' fetchaudio=""', "")).said() == ["One moment."]
 
 
 def test_meta_and_metadata_change_nothing() -> None:  # 6.2
