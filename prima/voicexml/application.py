@@ -53,6 +53,9 @@ class VoiceInterpreter(App[AnyEngine]):
         self._tick(now)
         if self._is_deaf(event):
             self._missed.append((now, event))
+            if self.waits.run and _hangs_up(event):  # nobody hears the rest (1.5.4)
+                self.leave_states()
+                self._drive(Resume(event=event, outside=True))
         else:
             self._happened(event)
             self._catch_up()

@@ -187,10 +187,14 @@ class Waits:
     def pass_time(
         self, queued: Sequence[Queued], audio: Sequence[Queued]
     ) -> Generator[None, Resume, None]:
-        """Play what is queued, and then fetch audio until the answer is there (6.1.1)."""
+        """Play what is queued, and then fetch audio until the answer is there (6.1.1).
+
+        An event from outside ends it before: the user has hung up.
+        """
+        resume = Resume()
         for commands, self.patient in ((queued, True), (audio, False)):
-            if commands and self._answer is None:
-                yield from self.wait(commands)
+            if commands and self._answer is None and not resume.outside:
+                resume = yield from self.wait(commands)
         self.patient = False
 
     def fetched(self) -> Generator[None, Resume, Fetched]:

@@ -36,6 +36,23 @@ def test_a_hangup_during_the_last_prompts_leaves_the_rest_unsaid(place: Path, en
     assert ended(made)[1].startswith("error.odd" if "throw" in end else "exit")
 
 
+@pytest.mark.parametrize(
+    ("at", "heard"), [("500ms", ["Just a moment."]), ("4s", ["Just a moment.", "Wait.", "[a.wav]"])]
+)
+def test_a_hangup_during_a_fetch_ends_what_is_played(
+    place: Path, at: str, heard: list[str]
+) -> None:
+    app = f"""<catch event="connection.disconnect.hangup"><log>bye</log><exit/></catch>
+    <form><block><prompt>Just a moment.</prompt><prompt>Wait.</prompt>
+    <data src="service:slow" fetchaudio="a.wav"/><log>fetched</log></block>
+    <field name="f"><prompt>Well?</prompt>{STOP}</field></form>"""
+    script = f"""<service name="slow"><reply after="9s"/></service>
+    <when at="{at}"><hang-up/></when>"""
+    made = run(place, app, script)
+    assert [what.strip('"') for what in shown(made) if what.startswith('"')] == heard
+    assert (logs(made), ended(made)) == (["fetched", "bye"], (9.0, "exit"))
+
+
 def test_after_a_hangup_values_can_be_submitted(place: Path) -> None:
     app = f"""<var name="a" expr="1"/><catch event="connection.disconnect.hangup">One moment.
     <submit next="service:keep" namelist="a" fetchaudio="hold.wav"/></catch>
