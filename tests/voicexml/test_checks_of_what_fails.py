@@ -65,3 +65,22 @@ def test_the_message_says_what_to_write_instead(tmp_path: Path) -> None:
         '<transfer> always fails: "phone:12" cannot be called; write "tel:", "sip:" or "sips:".'
     )
     assert remedy == "At run time it is error.unsupported.uri: change it, or catch the event."
+
+
+RECORDED = '<property name="recordutterance" value="{}"/>'
+TYPE = '<property name="recordutterancetype" value="audio/mpeg"/>'
+ASKS = '<field name="f" type="digits">{}</field>'
+
+
+def test_a_format_in_which_no_answer_is_recorded_is_told(tmp_path: Path) -> None:  # 2.1, 7.2
+    recorded = RECORDED.format("true")
+    for form in (recorded + TYPE + ASKS.format(""), recorded + ASKS.format(TYPE)):
+        ((message, remedy),) = failing(tmp_path, form)
+        assert 'nothing is recorded as "audio/mpeg"' in message
+        assert "error.unsupported.format" in remedy
+
+
+def test_a_format_of_answers_may_be_unused_or_its_event_expected(tmp_path: Path) -> None:
+    assert failing(tmp_path, RECORDED.format("false") + TYPE + ASKS.format("")) == []
+    expects = ASKS.format('<catch event="error.unsupported.format"/>')
+    assert failing(tmp_path, RECORDED.format("true") + TYPE + expects) == []

@@ -34,6 +34,24 @@ def check_failing(root: Node) -> Iterator[Problem]:
         for node, place, why in _failures(item):
             if not any(_expects(one, why.event) for one in (root, dialog, item)):
                 yield ALWAYS_FAILS.at(place, tag=node.tag, why=why.message, event=why.event)
+    for node, place, why in _unrecorded_answers(root):
+        if not any(_expects(one, why.event) for one in (root, *root.walk())):
+            yield ALWAYS_FAILS.at(place, tag=node.tag, why=why.message, event=why.event)
+
+
+def _unrecorded_answers(root: Node) -> Iterator[tuple[Node, Place, Unsupported]]:
+    """Formats of answers that cannot be recorded, if the document has any recorded (2.1, 7.2)."""
+    properties = [one for one in root.walk() if one.key == "property"]
+    if not any(_sets(one, "recordutterance") == "true" for one in properties):
+        return
+    for one in properties:
+        if refused := unrecorded(_sets(one, "recordutterancetype")):
+            yield one, one.attribute_place("value"), refused
+
+
+def _sets(node: Node, name: str) -> str:
+    """The value that an element gives a property; empty if it is another's."""
+    return node.get("value") if node.get("name") == name else ""
 
 
 def _failures(item: Node) -> Iterator[tuple[Node, Place, Unsupported]]:
