@@ -39,14 +39,16 @@ class Content(Speaker):
     def run(self, node: Node, context: Context, local: Scope) -> Flow:
         """Run all that an element holds, in document order."""
         self.shared.app.note(node)
-        yield from self.run_all(node.content, context, local)
+        yield from self.run_all(node, node.content, context, local)
 
-    def run_all(self, content: Iterable[Node | str], context: Context, local: Scope) -> Flow:
-        """Run pieces of content; adjacent text and speech make one prompt (4.1.2)."""
+    def run_all(
+        self, holder: Node, content: Iterable[Node | str], context: Context, local: Scope
+    ) -> Flow:
+        """Run pieces of an element's content; adjacent text and speech make one prompt (4.1.2)."""
         speech = Speech(context.page.lang, "")
         for item in content:
             if isinstance(item, str) or item.tag in SPOKEN - {"prompt"}:
-                node = context.page.root if isinstance(item, str) else item
+                node = holder if isinstance(item, str) else item
                 if not speech.place or not speech.parts:
                     speech.place = source(node)
                 self.read(item, context, local, speech)
@@ -203,7 +205,7 @@ class Content(Speaker):
         """Run the first branch whose condition holds (5.3.4)."""
         for head, part in branches(node):
             if self.holds(head, context, local):
-                yield from self.run_all(part, context, local)
+                yield from self.run_all(head, part, context, local)
                 return
 
     def go(self, node: Node, context: Context, local: Scope) -> Flow:

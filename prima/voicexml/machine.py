@@ -314,7 +314,7 @@ class Machine:
             if isinstance(piece, str) or piece.tag != "prompt":
                 bare.append(piece)
                 continue
-            yield from self.content.run_all(bare, context, self.shared.local())
+            yield from self.content.run_all(item, bare, context, self.shared.local())
             bare = []
             self.content.utter(piece, context, self.shared.local())
-        yield from self.content.run_all(bare, context, self.shared.local())
+        yield from self.content.run_all(item, bare, context, self.shared.local())

@@ -313,3 +313,19 @@ def test_a_device_that_fails_is_told_with_line_and_column_and_recorded_with_its_
     assert call.logs() == ["app.vxml:2:23: broken"]
     requests = call.phases("request")
     assert next(one["source"] for one in requests if one["text"] == "Well?") == "app.vxml:2"
+
+
+def test_text_without_a_prompt_has_the_place_of_what_contains_it() -> None:
+    call = Call(
+        """<form>
+ <block>Hello.</block>
+ <block><if cond="true">
+  Good morning.</if></block>
+ <field name="f" type="boolean"><prompt>Well?</prompt><noinput>Say yes.<reprompt/></noinput></field>
+</form>"""
+    )
+    call.silent()
+    places = {one["text"]: one["source"] for one in call.phases("request")}
+    assert places["Hello."] == "app.vxml:2"
+    assert places["Good morning."] == "app.vxml:3"
+    assert places["Say yes."] == "app.vxml:5"
