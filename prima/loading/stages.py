@@ -12,6 +12,7 @@ from prima.errors import DocumentError, Problem, UsageError
 from prima.loading.applications import read_application
 from prima.loading.files import check_path, paths_of, read_file, texts_of
 from prima.loading.folders import documents_folder
+from prima.loading.kinds import is_voicexml
 from prima.loading.reading import STAGE, other_kind
 from prima.loading.scenarios import Loaded, load_whole, without_ignored
 from prima.loading.voicedocuments import mappings
@@ -103,17 +104,20 @@ def _scenario(world: str, robot: str, entrances: bool, inside: str) -> bytes:
 def _applications(given: list[tuple[str, str]], maps: Iterable[str]) -> str:
     """The applications of a scenario, by their kinds and paths, and where they are served.
 
+    Only VoiceXML is served; the folder of a site may hold applications in PRIMA's language too.
+
     Raises:
-        UsageError: a mapping is invalid, or no application is in its folder.
+        UsageError: a mapping is invalid, or no VoiceXML application is in its folder.
     """
     from html import escape
 
     from prima.voicexml.site import mapped
 
-    held = mappings(maps, [path for _, path in given])
+    voice = {path for _, path in given if is_voicexml(read_file(path))}
+    held = mappings(maps, voice)
     made = ""
     for kind, path in given:
-        site = mapped(path, held)
+        site = mapped(path, held) if path in voice else None
         served = f' uri="{escape(site[0])}" folder="{escape(site[1])}"' if site else ""
         made += f'<application src="{escape(path)}" kind="{kind}"{served}/>'
     return made

@@ -35,7 +35,7 @@ def mappings(maps: Iterable[str], paths: Iterable[str]) -> dict[str, str]:
     """Folders by the URIs at which they are served, from ``URI=FOLDER``.
 
     Raises:
-        UsageError: a mapping is invalid, or none of the applications is in its folder.
+        UsageError: a mapping is invalid, or none of the documents is in its folder.
     """
     from prima.voicexml.site import mapped, mapping_of
 
@@ -48,7 +48,7 @@ def mappings(maps: Iterable[str], paths: Iterable[str]) -> dict[str, str]:
             raise UsageError(f"--map {' '.join(error.args)}") from None
         held[uri] = folder
         if not any(mapped(path, {uri: folder}) for path in paths):
-            raise UsageError(f"--map {text}: no application is in the folder {folder}.")
+            raise UsageError(f"--map {text}: no VoiceXML application is in the folder {folder}.")
     return held
 
 

@@ -88,7 +88,7 @@ def test_a_copy_is_validated_as_if_it_was_fetched(tmp_path: Path) -> None:
     (site / "voice" / "there.vxml").unlink()
     (missing,) = api.validate([main], maps)
     assert missing.code == "no-such-file" and missing.place.file.endswith("next.vxml")
-    with pytest.raises(UsageError, match="no application is in the folder"):
+    with pytest.raises(UsageError, match="no VoiceXML application is in the folder"):
         api.validate([tmp_path / "outside.vxml"], maps)
 
 
@@ -235,7 +235,18 @@ def test_a_mapping_that_is_none_is_wrong_usage(tmp_path: Path, text: str) -> Non
 
 def test_a_mapping_of_no_application_is_wrong_usage(tmp_path: Path) -> None:
     site = copied(tmp_path, "there.vxml")
-    with pytest.raises(UsageError, match="no application is in the folder"):
+    with pytest.raises(UsageError, match="no VoiceXML application is in the folder"):
         api.stage(
             [], [str(site / "voice" / "main.vxml")], [], maps=["https://e.example/=elsewhere"]
         )
+
+
+def test_an_application_in_our_language_beside_the_copy_is_not_served(tmp_path: Path) -> None:
+    site = copied(tmp_path, "/app/voice/there.vxml")
+    fa = site / "follow.xml"
+    fa.write_text((loading.documents_folder() / "fa" / "follow.xml").read_text())
+    maps = [f"https://example.org/app/={site}/"]
+    staged = api.stage([fa], [str(site / "voice" / "main.vxml")], ["tea"], maps=maps)
+    assert logged(api.rehearse(staged)) == ["the shop", "there"]
+    with pytest.raises(UsageError, match="no VoiceXML application is in the folder"):
+        api.stage([fa], [], maps=maps)
