@@ -185,7 +185,7 @@ def _check_file(output: str, folder: str, loaded: Loaded) -> None:
         UsageError: it would.
     """
     if os.path.isdir(output):
-        hint = f"For a transcript in it, write {output}/."
+        hint = f'For a transcript in it, write "{output}/".'
         raise UsageError(f"{output}: cannot be written: Is a directory. {hint}")
     check_output(output, "run", *(os.path.join(folder, name) for name in loaded.files))
 

@@ -188,7 +188,8 @@ USAGES = [
     (["a", "-o", "nothing/runs"], "nothing/runs: cannot be written: Not a directory."),
     (["a", "-o", "runs.jsonl"], "runs.jsonl: several transcripts go into a folder: -o runs/."),
     (["a", "-o", ""], "it is empty; write a path."),
-    (["a/one.xml", "-o", "empty"], "Is a directory. For a transcript in it, write empty/."),
+    (["a/one.xml", "-o", "empty"], 'Is a directory. For a transcript in it, write "empty/".'),
+    (["a/one.xml", "-o", "."], 'Is a directory. For a transcript in it, write "./".'),
     (["a", "-o", "/proc/runs"], "/proc/runs: cannot be written: No such file or directory."),
     (["no/such/folder/", "-o", "runs/"], "no/such/folder: cannot be read: No such file"),
 ]
