@@ -150,8 +150,19 @@ def _levels(vary: Mapping[str, Level | Sequence[Level]]) -> dict[str, str]:
     """
     texts: object = vary
     with suppress(AttributeError, TypeError):
-        texts = {path: levels_text(levels) for path, levels in vary.items()}
+        texts = {path: _text(path, levels) for path, levels in vary.items()}
     return check_texts(texts, "vary")
+
+
+def _text(path: str, levels: Level | Sequence[Level]) -> str:
+    """The levels of one path; an empty list would read like the level that removes a value.
+
+    Raises:
+        UsageError: there are none.
+    """
+    if isinstance(levels, list | tuple) and not levels:
+        raise UsageError(f'{path}: there are no levels. Write some, as ["Yes.", "No."].')
+    return levels_text(levels)
 
 
 def _table(made: Sweep, output: str | Path | None, pool: Pool, resume: bool) -> pyarrow.Table:

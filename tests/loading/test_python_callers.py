@@ -233,6 +233,7 @@ def test_records_of_a_live_run_that_were_not_kept_are_named() -> None:
         (prima.run_live, {"scenario": SCENARIO, "speed": "9"}, "The speed is '9': write a number"),
         (prima.sweep, {"scenarios": SCENARIO, "vary": 5}, "vary=5: write a dict."),
         (prima.sweep, {"scenarios": SCENARIO, "vary": {5: "a"}}, "vary=5: write a text."),
+        (prima.sweep, {"scenarios": SCENARIO, "vary": {"answer": []}}, "answer: there are no"),
         (prima.sweep, {"scenarios": SCENARIO, "policies": [5]}, "policies=5: write a text."),
         (prima.sweep, {"scenarios": SCENARIO, "output": b"x"}, "output=b'x': write a path,"),
         (prima.sweep, {"scenarios": "a\0b"}, "'a\\x00b' is not a file's name."),
