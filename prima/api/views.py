@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager
+from io import TextIOBase
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
@@ -45,6 +46,8 @@ def export(
     check_text(to, "to")
     if not hasattr(output, "write"):
         check_name(output)
+    elif isinstance(output, TextIOBase):
+        raise UsageError('output takes bytes: open the file with mode "wb".')
     tags = checked(to, check_texts(languages or {}, "languages"))
     held = _in_memory(transcript)
     name = str(transcript) if held is None else held.name

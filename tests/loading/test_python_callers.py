@@ -221,6 +221,7 @@ def test_records_of_a_live_run_that_were_not_kept_are_named() -> None:
             {"to": "eaf", "output": "a.eaf", "languages": 5},
             "languages=5: write a dict.",
         ),
+        (prima.export, {"to": "csv", "output": io.StringIO()}, "output takes bytes: open the"),
         (prima.validate, {"paths": MUSEUM, "maps": b"x"}, "maps=b'x': write a text."),
         (prima.validate, {"paths": MUSEUM, "maps": 5}, "maps=5: write a text."),
         (prima.stage, {"fas": FOLLOW, "eas": [], "maps": [b"x"]}, "maps=b'x': write a text."),
