@@ -320,10 +320,12 @@ def _unable(nodes: list[Node], robot: Profile) -> Iterator[Problem]:
 
 
 def _nobody(nodes: list[Node]) -> Iterator[Problem]:
-    """A user who moves in a scenario without persons; one who only speaks may be on the phone."""
-    if any(node.tag == "person" for node in nodes):
+    """A user who moves where no person is anywhere; one who only speaks may be on the phone."""
+    persons = [one.attributes for one in nodes if one.tag == "person"]
+    if any("at" in one or "x" in one for one in persons):
         return
-    for node in [one for one in nodes if one.tag in ("walk", "look")][:1]:
-        message = f"Nobody is there: <{node.tag}> does nothing without a <person>."
+    lacks = ", as the <person> is nowhere" if persons else " without a <person>"
+    for node in [one for one in nodes if one.tag in ("walk", "look", "follow")][:1]:
+        message = f"Nobody is there: <{node.tag}> does nothing{lacks}."
         remedy = 'Write where they are at first, such as <person at="..."/>.'
         yield Problem(node.place, "warning", "missing-element", message, remedy)

@@ -71,6 +71,9 @@ def test_a_scenario_with_any_attribute_wrong_is_looked_at() -> None:
     [
         ("", '<walk to="aisle"/><look at="robot"/>', ["<walk> does nothing"]),
         ("", '<look at="robot"/>', ["<look> does nothing"]),
+        ("", "<follow/>", ["<follow> does nothing"]),
+        ("<person/>", "<follow/>", ["<follow> does nothing, as the <person> is nowhere."]),
+        ("<person/>", "<say>Hello.</say>", []),
         ("", "<say>Hello.</say>", []),
         ('<person at="aisle"/>', '<walk to="entrance"/>', []),
     ],
