@@ -135,15 +135,26 @@ def _files(out: Output) -> dict[str, bytes]:
     found = _read(out)
     for path in (out.path, *sorted(out.folder.rglob("*"))):
         if path.is_file() and not path.is_symlink():  # a sweep makes no links
-            found[path.relative_to(out.path.parent).as_posix()] = path.read_bytes()
+            found[_name(path, out)] = path.read_bytes()
     return found
+
+
+def _name(path: Path, out: Output) -> str:
+    """The name in an archive of the table or of a file beside it.
+
+    It is the path from this folder, as that of the documents is: the scenarios of orders name
+    these by relative paths. Of a table elsewhere only the names from its own folder are known.
+    """
+    here, table = Path.cwd(), Path(os.path.abspath(out.path))
+    from_here = table.is_relative_to(here)
+    return Path(os.path.abspath(path)).relative_to(here if from_here else table.parent).as_posix()
 
 
 def _metadata(files: dict[str, bytes], out: Output) -> str:
     """The description of the archive according to RO-Crate 1.1."""
-    table, transcripts = out.path.name, f"{out.folder.name}/orders/"
+    table, folder = _name(out.path, out), _name(out.folder, out)
     parts = [{"@id": name} for name in files]
-    made_of = [one for one in parts if not one["@id"].startswith(f"{out.folder.name}/")]
+    made_of = [one for one in parts if not one["@id"].startswith(f"{folder}/")]
     made_of = [one for one in made_of if one["@id"] != table]
     graph: list[dict[str, Json]] = [
         {
@@ -157,7 +168,7 @@ def _metadata(files: dict[str, bytes], out: Output) -> str:
             "@type": "Dataset",
             "name": f"A sweep of {', '.join(out.sweep.question.scenarios)}",
             "description": f"{len(out.sweep)} runs. Unpack it, and in its folder call:"
-            f" prima sweep {STUDY} -o {out.path.name}",
+            f" prima sweep {STUDY} -o {table}",
             "hasPart": parts,
             "mainEntity": {"@id": table},
             "mentions": {"@id": "#sweep"},
@@ -183,7 +194,9 @@ def _metadata(files: dict[str, bytes], out: Output) -> str:
         entry: dict[str, Json] = {"@id": name, "@type": "File", "contentSize": len(data)}
         entry |= {"encodingFormat": kind} if kind else {}
         entry |= (
-            {"description": "The transcript of an order"} if name.startswith(transcripts) else {}
+            {"description": "The transcript of an order"}
+            if name.startswith(f"{folder}/orders/")
+            else {}
         )
         graph.append(entry)
     context = f"{PROFILE}/context"

@@ -46,12 +46,34 @@ def test_a_bundle_gives_the_same_table_byte_for_byte(
     monkeypatch.chdir(tmp_path / "two")
     again = prima("sweep", "study.toml", "-o", "again/table.csv")
     assert again.returncode == 0, again.stderr
-    assert Path("again/table.csv").read_bytes() == files["table.csv"]
+    assert Path("again/table.csv").read_bytes() == files["out/table.csv"]
     for name, data in files.items():
-        if name.startswith("table/"):
-            assert Path("again", name).read_bytes() == data, name
-    orders = [name for name in files if name.startswith("table/orders/")]
+        if name.startswith("out/table/"):
+            assert Path("again", name.removeprefix("out/")).read_bytes() == data, name
+    orders = [name for name in files if name.startswith("out/table/orders/")]
     assert any(name.endswith(".jsonl") for name in orders)
+
+
+@pytest.mark.parametrize("table", ["table.csv", "out/table.csv", "./out/deep/table.csv"])
+def test_an_order_of_a_bundle_runs_as_it_did(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, table: str
+) -> None:
+    done = prima(*SWEEP, "-o", table, "--bundle", "table.zip")
+    assert done.returncode == 0, done.stderr
+    files = unpacked(folder / "table.zip", tmp_path / "two")
+    monkeypatch.chdir(tmp_path / "two")
+    [order, *_] = [one for one in files if "/orders/" in one and one.endswith(".xml")]
+    again = prima("run", order, "-o", "again.jsonl")
+    assert again.returncode == 0, again.stderr
+    assert Path("again.jsonl").read_bytes() == files[order.removesuffix("xml") + "jsonl"]
+
+
+def test_a_table_elsewhere_is_at_the_top_of_its_bundle(folder: Path, tmp_path: Path) -> None:
+    done = prima(*SWEEP, "-o", str(tmp_path / "table.csv"), "--bundle", "table.zip")
+    assert done.returncode == 0, done.stderr
+    assert {"table.csv", "table/dictionary.json"} <= unpacked(
+        Path("table.zip"), tmp_path / "two"
+    ).keys()
 
 
 def test_equal_sweeps_give_equal_bundles(folder: Path) -> None:
