@@ -45,7 +45,7 @@ class VoiceInterpreter(App[AnyEngine]):
         return self._is_taken(Event(name, 0, shared=True))
 
     def _is_taken(self, event: Event) -> bool:
-        context = self._shared.context  # none any more while the last queue is played
+        context = self._shared.context  # None while the last queue is played
         return context is not None and self._machine.events.takes(context, thrown_of_event(event))
 
     def event(self, now: int, event: Event) -> None:

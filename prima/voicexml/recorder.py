@@ -65,12 +65,7 @@ class RecordItems:
         the keys are found in ``application.lastresult$``. So it does if another element's grammar
         takes the key at the end, which then goes to that element.
         """
-        listens = "dtmf" in self.inputs.modes(context)
-        said, key = divided(heard, listens and item.get("dtmfterm") != "false")
-        if key and not heard.recognised:
-            heard = replace(heard, utterance=key, interpretation=key, confidence=1.0, mode="dtmf")
-        elif listens and not heard.recognised:
-            said, heard = self._ended(context, heard)
+        said, key, heard = self._heard(context, item, heard)
         if key or heard.recognised:
             self.items.remember(context, heard)
         if heard.owner is not item:
@@ -85,6 +80,21 @@ class RecordItems:
             more |= {"utterance": heard.utterance, "confidence": heard.confidence}
         self._fill(context, item, said, data, more)
         yield from self.items.run_filled(context, [item])
+
+    def _heard(
+        self, context: Context, item: Node, heard: TakenUtterance
+    ) -> tuple[str, str, TakenUtterance]:
+        """What was recorded, the key of ``dtmfterm`` that ended it, and what a grammar took."""
+        listens = "dtmf" in self.inputs.modes(context)
+        said, key = divided(heard, listens and item.get("dtmfterm") != "false")
+        if heard.recognised:
+            return said, key, heard
+        if key:
+            taken = replace(heard, utterance=key, interpretation=key, confidence=1.0, mode="dtmf")
+            return said, key, taken
+        if listens:
+            said, heard = self._ended(context, heard)
+        return said, "", heard
 
     def _ended(self, context: Context, heard: TakenUtterance) -> tuple[str, TakenUtterance]:
         """What was recorded until a key that a grammar takes, and that key; else all of it."""
