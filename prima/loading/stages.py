@@ -46,9 +46,11 @@ def stage(
 
     Raises:
         DocumentError: with the problems of all files, if any is an error.
-        UsageError: a file cannot be read, or two of the applications have one id.
+        UsageError: a file cannot be read, no application is named, or two have one id.
     """
     given = [*zip(repeat("fa"), paths_of(fas, "fas")), *zip(repeat("ea"), paths_of(eas, "eas"))]
+    if not given and not entrances:
+        raise UsageError("Name an application, in fas or eas.")
     for name, one in (("world", world), ("robot", robot)):
         check_path(one or "", name)
     for path in (*(path for _, path in given), *filter(None, (robot, world))):

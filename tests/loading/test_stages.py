@@ -33,3 +33,8 @@ def test_an_answer_without_words_is_silence() -> None:
 def test_an_answer_that_no_document_can_hold_is_told_as_such(text: str) -> None:
     with pytest.raises(UsageError, match="holds a control character, or is not UTF-8"):
         api.stage([], [EA], ["\n Yes.\t", text])
+
+
+def test_a_stage_without_applications_is_wrong_usage() -> None:
+    with pytest.raises(UsageError, match="Name an application, in fas or eas"):
+        api.stage([], [])
