@@ -234,8 +234,10 @@ class People:
                 script.lasts, script.report = longest, {"toolong": True}
         script.time = now + script.lasts + silence
 
-    def _timeline(self, text: str) -> voice.SpeechTimeline:
-        return voice.timeline(text, voice.language(text), self.robot.profile.voices, ())
+    @staticmethod
+    def _timeline(text: str) -> voice.SpeechTimeline:
+        """How a user says a text: at the usual rates, whatever the robot's own are."""
+        return voice.timeline(text, voice.language(text), {}, ())
 
     def _hang_up(self, now: int) -> Inbound:
         """Hang up, and say nothing more; a recording in progress is reported as far as it got."""

@@ -8,6 +8,7 @@ import pytest
 
 from prima import api
 from prima.errors import DocumentError
+from tests import ROOT
 from tests.helpers.rehearsing import rehearse, told, when
 
 
@@ -26,6 +27,16 @@ def test_pauses_last_as_long_as_they_say(tmp_path: Path) -> None:
         starts.append(start["time"])
     plain, broken, paused = starts
     assert (round(broken - plain, 3), round(paused - plain, 3)) == (0.8, 1.2)
+
+
+def test_a_user_speaks_as_fast_to_a_robot_that_speaks_slowly(tmp_path: Path) -> None:
+    body = '<form id="a"><block><pause time="30s"/><exit/></block></form>'
+    usual = rehearse(tmp_path, body, '<when at="1s"><say>はいそうです。</say></when>')
+    slow = tmp_path / "slow.xml"
+    robot = (ROOT / "documents" / "robots" / "papero.xml").read_text(encoding="utf-8")
+    slow.write_text(robot.replace('lang="ja" rate="8"', 'lang="ja" rate="2"'), encoding="utf-8")
+    other = api.rehearse(api.load_scenario(tmp_path / "scenario.xml", robot=str(slow)))
+    assert when(other, "はい") == when(usual, "はい") == pytest.approx(1 + 6 / 8 + 0.3, abs=0.001)
 
 
 def test_the_recogniser_of_a_scenario_may_be_unsure(tmp_path: Path) -> None:
