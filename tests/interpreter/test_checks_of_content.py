@@ -42,6 +42,12 @@ def fails(body: str) -> bool:
         '<block><speak>A<on event="end"><var name="x" expr="1"/></on></speak><log expr="§x"/></block>',
         '<on event="touch"><log expr="§x"/></on><block><var name="x" expr="1"/><speak>A</speak></block>',
         '<block><var name="x" expr="1"/></block><block><speak>It is <value expr="§x"/>.</speak></block>',
+        '<block><var name="x" expr="1"/></block><block><clear namelist="§x"/></block>',
+        '<block><var name="x" expr="1"/></block><block><return namelist="§x"/></block>',
+        '<block><var name="x" expr="1"/><speak>A</speak></block><on event="touch" cond="§x"/>',
+        '<block><var name="x" expr="1"/><speak>A<on event="end" cond="§x"/></speak></block>',
+        '<var name="y" expr="§x"/><block><var name="x" expr="1"/></block>',
+        '<script>var y = §x;</script><block><var name="x" expr="1"/></block>',
     ],
 )  # fmt: skip
 def test_what_other_content_declares_is_warned_of_and_fails(content: str) -> None:
@@ -64,6 +70,8 @@ def test_what_other_content_declares_is_warned_of_and_fails(content: str) -> Non
         '<block><script>function x() { return 1; }</script><log expr="x()"/></block>',
         '<block><var name="x" expr="1"/></block><block><log expr="[1].map(x => x).length"/></block>',
         '<block><var name="x" expr="1"/></block><block><var name="x" expr="2"/><log expr="x"/></block>',
+        '<block><var name="x" expr="1"/><clear namelist="x"/></block>',
+        '<block><speak>A<on event="end"><var name="x" expr="1"/><log expr="x"/></on></speak></block><on event="touch" cond="typeof x"/>',
     ],
 )  # fmt: skip
 def test_what_content_sees_is_not_warned_of(content: str) -> None:
@@ -73,6 +81,9 @@ def test_what_content_sees_is_not_warned_of(content: str) -> None:
 
 def test_a_handler_of_the_document_sees_no_content_of_forms() -> None:
     on = '<on event="touch"><log expr="x"/></on>'
+    assert told(f'<form id="m"><block><var name="x" expr="1"/></block>{ENDS}</form>{on}') != []
+    assert told(f'<form id="m"><var name="x" expr="1"/>{ENDS}</form>{on}') == []
+    on = '<on event="touch" cond="x"/>'
     assert told(f'<form id="m"><block><var name="x" expr="1"/></block>{ENDS}</form>{on}') != []
     assert told(f'<form id="m"><var name="x" expr="1"/>{ENDS}</form>{on}') == []
 

@@ -71,12 +71,18 @@ FUNCTION_CONDITION = ASSIGNING_CONDITION.says(
 )
 
 
-def _of_run(run: CommandRun) -> Iterator[object]:
+def of_requests(run: CommandRun) -> Iterator[object]:
+    """What the Commands of a run are requested with, without their handlers."""
     for command in run_commands(run.steps):
         yield from command.args.values()
         yield from command.text or ()
         yield from (value for _, value in command.extra)
-        yield from (handler.cond for handler in command.handlers)
+
+
+def _of_run(run: CommandRun) -> Iterator[object]:
+    yield from of_requests(run)
+    for command in run_commands(run.steps):
+        yield from conditions(command.handlers)
 
 
 HELD: Mapping[type[Act], Callable[[Any], Iterable[object]]] = {
@@ -132,10 +138,10 @@ Code = tuple[Expression, Known, bool]
 
 def all_code(facts: Facts) -> Iterator[Code]:
     """All code of a document, with the variables that it sees, and whether it is a script."""
-    yield from _outside(facts.document, Known(facts.shared), facts.known_in(None))
+    yield from outside(facts.document, Known(facts.shared), facts.known_in(None))
     for form, items in facts.forms:
         known = facts.known_in(form)
-        yield from _outside(form, known, known)
+        yield from outside(form, known, known)
         for item in items:
             for one in of_item(item):
                 yield one, known, False
@@ -152,7 +158,7 @@ def expressions(held: Iterable[object]) -> Iterator[Expression]:
     return (one for one in held if isinstance(one, Expression))
 
 
-def _outside(holder: Document | Form, known: Known, later: Known) -> Iterator[Code]:
+def outside(holder: Document | Form, known: Known, later: Known) -> Iterator[Code]:
     """Code of a document or form outside of content; ``later`` is visible to its handlers."""
     for act in holder.setup:
         if isinstance(act, Script):
@@ -161,21 +167,21 @@ def _outside(holder: Document | Form, known: Known, later: Known) -> Iterator[Co
             yield act.expr, known, False
     for watch in holder.watches:
         yield watch.when, known, False
-    for handler in holder.handlers:
-        if handler.cond is not None:
-            yield handler.cond, later, False
+    for cond in conditions(holder.handlers):
+        yield cond, later, False
 
 
-def _conditions(conditional: Iterable[Handler | Prompt]) -> Iterator[Expression]:
+def conditions(conditional: Iterable[Handler | Prompt]) -> Iterator[Expression]:
+    """The conditions of handlers or prompts."""
     return (one.cond for one in conditional if one.cond is not None)
 
 
 def of_item(item: Item) -> Iterator[Expression]:
     """Code of a form item outside of content."""
-    yield from _conditions(item.handlers)
+    yield from conditions(item.handlers)
     held: list[object] = [item.expr, item.cond]
     if isinstance(item, Field):
-        yield from _conditions(item.prompts)
+        yield from conditions(item.prompts)
         held += [part for prompt in item.prompts for part in prompt.text]
     elif isinstance(item, Subdialog):
         held += [value for _, value in item.params]

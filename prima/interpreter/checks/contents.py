@@ -12,18 +12,29 @@ from prima.interpreter.acts import (
     HOLDING,
     Act,
     Assign,
+    Clear,
     CommandRun,
+    CommandTemplate,
     Declare,
     Expression,
     Foreach,
     If,
+    Return,
     Script,
     run_commands,
 )
-from prima.interpreter.checks.code import HELD, expressions, of_item
+from prima.interpreter.checks.code import (
+    HELD,
+    conditions,
+    expressions,
+    of_item,
+    of_requests,
+    outside,
+)
 from prima.interpreter.checks.facts import Facts, name_of
 from prima.interpreter.checks.variables import place_in
 from prima.interpreter.elements import Form
+from prima.markup.tree import Node
 from prima.script.known import Known, NameScope
 from prima.script.names import Names, expression_names, script_names
 
@@ -53,6 +64,8 @@ class Piece:
 
     form: Form | None
     acts: list[Act]
+    conds: list[Expression]
+    """The conditions of the handlers in its Commands, which see none of its variables."""
 
     def declared(self) -> NameScope:
         """The names that it declares."""
@@ -67,9 +80,11 @@ class Piece:
         return names
 
     def expressions(self) -> Iterator[Expression]:
-        """Its code, scripts aside."""
+        """Its code, scripts and conditions of handlers aside."""
         for act in self.acts:
-            if type(act) in HELD:
+            if isinstance(act, CommandRun):
+                yield from expressions(of_requests(act))
+            elif type(act) in HELD:
                 yield from expressions(HELD[type(act)](act))
 
 
@@ -83,7 +98,13 @@ def check_contents(facts: Facts) -> Iterator[Problem]:
     others = _others(facts, pieces)
     for piece in pieces:
         yield from _used(piece, others[name_of(piece.form)])
+    # The variables and watches of the document are checked with those that it declares itself.
+    yield from _in_expressions(conditions(facts.document.handlers), others[None], NameScope())
     for form, items in facts.forms:
+        known = Known()  # the variables that it sees are checked elsewhere
+        for code, _, script in outside(form, known, known):
+            names = script_names(code.code) if script else expression_names(code.code)
+            yield from _in_code(code, names, others[form.id], NameScope())
         for item in items:
             yield from _in_expressions(of_item(item), others[form.id], NameScope())
 
@@ -107,7 +128,7 @@ def _others(facts: Facts, pieces: list[Piece]) -> dict[str | None, Others]:
 def _pieces(form: Form | None, content: Sequence[Act]) -> Iterator[Piece]:
     """Content as one piece, and the handlers inside its Commands as others."""
     found: list[Act] = []
-    inner: list[Sequence[Act]] = []
+    commands: list[CommandTemplate] = []
 
     def add(acts: Sequence[Act]) -> None:
         for act in acts:
@@ -120,27 +141,36 @@ def _pieces(form: Form | None, content: Sequence[Act]) -> Iterator[Piece]:
             elif isinstance(act, Foreach):
                 add(act.content)
             elif isinstance(act, CommandRun):
-                commands = run_commands(act.steps)
-                inner.extend(one.content for command in commands for one in command.handlers)
+                commands.extend(run_commands(act.steps))
 
     add(content)
-    yield Piece(form, found)
+    inner = [one for command in commands for one in command.handlers]
+    yield Piece(form, found, [*conditions(inner)])
     for one in inner:
-        yield from _pieces(form, one)
+        yield from _pieces(form, one.content)
 
 
 def _used(piece: Piece, others: Others) -> Iterator[Problem]:
-    """The names of other content that a piece uses or assigns."""
+    """The names of other content that a piece uses, assigns, clears or returns."""
     own = piece.declared()
     yield from _in_expressions(piece.expressions(), others, own)
+    yield from _in_expressions(piece.conds, others, NameScope())
     for act in piece.acts:
         if isinstance(act, Script):
             yield from _in_code(act.code, script_names(act.code.code), others, own)
         elif isinstance(act, Assign):
-            name = act.name.partition(".")[0]
-            if name in others and name not in own:
-                place = act.node.attribute_place("name")
-                yield OF_OTHER_CONTENT.at(place, _remedy(name), name=name)
+            yield from _named(act.node, "name", [act.name.partition(".")[0]], others, own)
+        elif isinstance(act, Clear | Return):
+            yield from _named(act.node, "namelist", act.names, others, own)
+
+
+def _named(
+    node: Node, attribute: str, names: Iterable[str], others: Others, own: NameScope
+) -> Iterator[Problem]:
+    """The names of other content that an attribute lists."""
+    for name in names:
+        if name in others and name not in own:
+            yield OF_OTHER_CONTENT.at(node.attribute_place(attribute), _remedy(name), name=name)
 
 
 def _in_expressions(
