@@ -109,3 +109,36 @@ def test_what_a_form_knows_is_gathered_once(monkeypatch: pytest.MonkeyPatch) -> 
     on = '<on event="e"><var name="y" expr="1"/></on>'
     read(f'<form id="a">{20 * block}</form><form id="b">{20 * block}</form>{20 * on}')
     assert gathered == ["a", "b"]
+
+
+@pytest.mark.parametrize(
+    ("scope", "body"),
+    [
+        ("dialog", '<block><var name="x" expr="1"/><assign name="dialog.x" expr="2"/></block>'),
+        ("document", '<var name="x"/><block><assign name="document.x" expr="2"/></block>'),
+        ("application", '<var name="x"/><block><assign name="application.x" expr="2"/></block>'),
+    ],
+)
+def test_an_assignment_to_a_scope_that_lacks_the_variable_is_warned_of_and_fails(
+    scope: str, body: str
+) -> None:
+    _, problems = read(f'<form id="m">{body}{ENDS}</form>')
+    (problem,) = problems
+    assert f'The scope "{scope}" declares no variable "x"' in problem.message
+    assert fails(f'<form id="m">{body}</form>')
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        '<var name="x"/><block><assign name="dialog.x" expr="2"/></block>',
+        '<block name="x"><assign name="dialog.x" expr="2"/></block>',
+        '<block><script>dialog.x = 1;</script><assign name="dialog.x" expr="2"/></block>'
+        '<block><var name="x"/></block>',
+        '<block><log expr="document.x = 1"/><assign name="document.x" expr="2"/></block>'
+        '<block><var name="x"/></block>',
+    ],
+)
+def test_an_assignment_to_a_scope_with_the_variable_is_not_warned_of(body: str) -> None:
+    assert read(f'<form id="m">{body}{ENDS}</form>')[1] == []
+    assert not fails(f'<form id="m">{body}</form>')

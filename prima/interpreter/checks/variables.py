@@ -17,7 +17,7 @@ from prima.interpreter.selection import beginnings
 from prima.markup.spans import Declarations, value_span
 from prima.markup.tree import Node
 from prima.script.globals import HANDLED, IDENTIFIER, RESERVED
-from prima.script.known import Known
+from prima.script.known import Known, NameScope
 from prima.script.names import Names, expression_names, script_names
 
 ELSEWHERE = {
@@ -56,6 +56,10 @@ ABSENT = {
 NOT_DECLARED = UNDECLARED_VARIABLE.says('The variable "{name}" is not declared.')
 NO_VARIABLE = UNDECLARED_VARIABLE.says(
     'No variable can be named "{name}": ECMAScript reserves this word.', "Choose another name."
+)
+NO_MEMBER = UNDECLARED_VARIABLE.says(
+    'The scope "{scope}" declares no variable "{name}": this will be error.semantic.',
+    severity="warning",
 )
 NOT_ASSIGNED = UNDECLARED_VARIABLE.says(
     '"{name}" cannot be assigned: a run tells it to the document.',
@@ -137,6 +141,7 @@ class Variables:
 
     def __init__(self, facts: Facts) -> None:
         self.facts = facts
+        self._dialogs: dict[str, NameScope] = {}
 
     def of_expression(self, expr: Expression, known: Known) -> Iterator[Problem]:
         """The undeclared names in an expression."""
@@ -202,12 +207,42 @@ class Variables:
                 at = at._replace(column=at.column + len(head) + 1) if name != head else at
                 meant = _meant(at, name, names.written())
                 yield self._undeclared(assign.node, at, name, meant)
+            elif name != head and not self._is_member(head, name, form):
+                remedy = Hint(f"Write the name alone, {name}, or declare it there.")
+                yield NO_MEMBER.at(
+                    assign.node.attribute_place("name"), remedy, scope=head, name=name
+                )
         listed: list[tuple[Form | None, Clear | Return]] = [
             *self.facts.acts.of(Clear),
             *self.facts.acts.of(Return),
         ]
         for form, listing in listed:
             yield from self._listed(listing, self.facts.known_in(form))
+
+    def _is_member(self, scope: str, name: str, form: Form | None) -> bool:
+        """Whether a scope has a variable; the document's content runs in forms of any kind."""
+        if (scope, name) in self._given_members or (scope == "dialog" and form is None):
+            return True
+        if scope == "document":
+            return name in self.facts.shared
+        return scope == "dialog" and form is not None and name in self._of_dialog(form)
+
+    def _of_dialog(self, form: Form) -> NameScope:
+        """The variables of a form, gathered once."""
+        if form.id not in self._dialogs:
+            self._dialogs[form.id] = self.facts.outside_content(form)
+        return self._dialogs[form.id]
+
+    @cached_property
+    def _given_members(self) -> set[tuple[str, str]]:
+        """The variables that code declares in a scope by its name: ``document.x = 1``."""
+        document = self.facts.document
+        names = chain(
+            (expression_names(one.code) for one in document.expressions),
+            map(script_names, document.scripts),
+        )
+        uses = chain.from_iterable(one.uses for one in names)
+        return {(use.holder, use.name) for use in uses if use.holder and use.declares}
 
     def hidden(self) -> Iterator[Problem]:
         """Items of a foreach that have the name of the variable with their array."""
