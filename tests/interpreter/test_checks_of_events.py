@@ -12,6 +12,7 @@ import pytest
 from prima.interpreter.reader import read_document
 from tests.helpers.bad_input import app
 from tests.helpers.here import prima
+from tests.helpers.robot import Bench, read
 
 
 def problems(folder: Path, text: str, code: str) -> list[dict[str, Any]]:
@@ -230,3 +231,37 @@ def test_help_that_nothing_raises_is_told(raises: str, told: int, tmp_path: Path
     """Other than in VoiceXML, where all applications may understand the word."""
     text = app(f'<form id="f"><block><exit/></block></form><help><exit/></help>{raises}')
     assert len(problems(tmp_path, text, "unknown-event")) == told
+
+
+OTHER = '<form id="b"><on event="gone"><exit/></on></form>'
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        '<form id="a"><block><throw event="gone"/></block></form>' + OTHER,
+        '<form id="a"><subdialog name="s" src="#c"><on event="gone"><exit/></on></subdialog></form>'
+        '<form id="c"><block><throw event="gone.far"/></block></form>',
+    ],
+)
+def test_an_event_that_only_other_forms_handle_ends_the_application(body: str) -> None:
+    (told,) = [one for one in read(body)[1] if one.code == "unheard-event"]
+    assert told.message.startswith("No handler of this form or of the document takes")
+    assert Bench(body).session.failures != []
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        '<form id="a"><block><throw event="gone"/></block></form><on event="gone"><exit/></on>',
+        '<form id="a"><block><throw event="gone.far"/></block><on event="gone"><exit/></on></form>',
+        '<form id="a"><block name="c"><throw event="gone"/></block><iu><block><exit/></block>'
+        '<on event="gone"><exit/></on></iu></form>',
+        '<form id="a"><subdialog name="s" src="#c"><on event="gone"><exit/></on></subdialog></form>'
+        '<form id="c"><block><return event="gone"/></block></form>',
+        '<form id="a"><block><throw event="help"/></block></form>'
+        '<form id="b"><help><exit/></help></form>',
+    ],
+)
+def test_an_event_that_may_reach_a_handler_is_not_warned_of(body: str) -> None:
+    assert [one for one in read(body + OTHER)[1] if one.code == "unheard-event"] == []

@@ -111,8 +111,8 @@ UNHEARD_EVENT = Diagnosis(
     "unheard-event",
     "Event without a handler",
     (
-        "An event is raised, and no handler takes it. It is lost; one that is thrown ends the "
-        "application."
+        "An event is raised, and no handler takes it, or a form throws one that only handlers of "
+        "other forms take. It is lost; one that is thrown ends the application."
     ),
     rule="VoiceXML 2.0, 5.2",
     severity="warning",
