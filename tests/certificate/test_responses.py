@@ -87,3 +87,20 @@ def test_a_response_is_found_where_a_subdialog_comes_back(content: str, calls: i
     document, _ = read_application("a.xml", (HEAD.format("fa", "a") + own + "</prima>").encode())
     (reaction,) = outline(document, PROFILE).reactions
     assert any("speaker" in one.devices for one in reaction.responds)
+
+
+@pytest.mark.parametrize(
+    "blocks",
+    [
+        '<block name="b"><if cond="session.time &gt; 9"><goto nextitem="b"/></if></block>',
+        '<block name="b"><goto nextitem="c"/></block><block name="c"><goto nextitem="b"/></block>',
+    ],
+)
+def test_blocks_that_go_to_each_other_have_a_certificate(tmp_path: Path, blocks: str) -> None:
+    """Each goto may lead to any item of the form: followed for ever, it was a RecursionError."""
+    own = (
+        f'<form id="f">{blocks}<block><speak>Yes?</speak></block>'
+        '<on event="touch"><goto nextitem="b"/></on></form>'
+    )
+    (delay,) = certified(tmp_path, block("<speak>Buy.</speak>"), own).delays
+    assert delay.event == "touch"

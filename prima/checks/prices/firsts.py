@@ -52,6 +52,8 @@ class Firsts:
         self._of_items = of_items
         self._step = step
         self._seen: set[int] = set()
+        self._free: set[int] = set()
+        """The forms all of whose items have been visited, as a goto may lead to each."""
         self._returns = False
         """Whether a subdialog may return without any, so that its caller goes on."""
         self._found: dict[int, Price] = {}
@@ -70,7 +72,8 @@ class Firsts:
         return list(self._found.values())
 
     def _begin(self) -> None:
-        self._seen, self._found, self.later, self._returns = set(), {}, [], False
+        self._seen, self._free, self._found, self.later = set(), set(), {}, []
+        self._returns = False
 
     def _add(self, price: Price) -> None:
         self._found.setdefault(price.node.index, price)
@@ -175,6 +178,9 @@ class Firsts:
     def _items(self, form: Form | None) -> None:
         """Add the first Commands of all items of a form, any of which may be gone to."""
         for one in [form] if form is not None else self._document.forms.values():
+            if one.node.index in self._free:
+                continue  # a block may go to another one, which goes back to it
+            self._free.add(one.node.index)
             for item in all_items(one.items):
                 self._visit(item, one)
 
