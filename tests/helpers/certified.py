@@ -231,7 +231,8 @@ def _starved(certificate: Certificate, run: Watched, rates: dict[str, float]) ->
     found = []
     for spell in run.of(certificate.fa):
         since = max([spell.asked, *(_over(run, name) for name in spell.parents)])
-        until = spell.started if spell.started is not None else spell.over or run.ends
+        ended = (at for at in (spell.started, spell.over) if at is not None)
+        until = next(ended, run.ends)
         if spell.cause is not None or since >= until:
             continue
         mine = [one for one in run.of(certificate.fa) if one is not spell]
