@@ -12,6 +12,7 @@ from prima.certificate import (
     format_certificate,
 )
 from prima.checks.prices import outline
+from prima.errors import UsageError
 from prima.loading import read_application
 from tests.helpers.certified import faults
 from tests.helpers.certifying import ASKS, FA, HEAD, PROFILE, block, certified, lasting, run, waited
@@ -104,3 +105,14 @@ def test_blocks_that_go_to_each_other_have_a_certificate(tmp_path: Path, blocks:
     )
     (delay,) = certified(tmp_path, block("<speak>Buy.</speak>"), own).delays
     assert delay.event == "touch"
+
+
+def test_a_chain_of_very_many_forms_is_not_followed(tmp_path: Path) -> None:
+    names = range(1000)
+    chain = "".join(
+        f'<form id="f{one}"><block><goto next="#f{one + 1}"/></block></form>' for one in names
+    )
+    own = f"""{chain}<form id="f1000"><block><speak>Yes?</speak></block></form>
+    <on event="touch"><goto next="#f0"/></on>"""
+    with pytest.raises(UsageError, match="too many forms lead to one another"):
+        certified(tmp_path, block("<speak>Buy.</speak>"), own)

@@ -122,10 +122,21 @@ class DialoguePrices(Times):
     def _begins(
         self, content: Sequence[Act], form: Form | None, name: str = ""
     ) -> tuple[list[Price], list[Price]]:
-        """The first Commands of content or of a named form, and those up to its response."""
+        """The first Commands of content or of a named form, and those up to its response.
+
+        Raises:
+            UsageError: too many forms lead to one another before the first Command.
+        """
         found = []
-        for firsts in (self.firsts, self.responses):
-            found.append(firsts.of_form(name) if name else firsts.of(content, form))
+        try:
+            for firsts in (self.firsts, self.responses):
+                found.append(firsts.of_form(name) if name else firsts.of(content, form))
+        except RecursionError:
+            file = self.document.node.place.file
+            raise UsageError(
+                f"{file}: too many {self.form_word}s lead to one another before anything is done."
+                " Go there more directly."
+            ) from None
         begins, until = found
         return begins, until if any(map(responds, until)) else []
 
