@@ -45,11 +45,6 @@ NOT_HANDLED = UNHEARD_EVENT.says(
 ENDS_APPLICATION = UNHEARD_EVENT.says(
     f"{NOT_HANDLED.message} It ends the application.", NOT_HANDLED.remedy
 )
-ELSEWHERE = UNHEARD_EVENT.says(
-    'No handler of this form or of the document takes the event "{name}". It ends the application.',
-    'Write <on event="{name}"> there; in a subdialog, <return event="{name}"/> gives it to the'
-    " caller.",
-)
 
 STANDARD = frozenset(
     [
@@ -203,22 +198,6 @@ def raised_by(document: Document, acts: Acts) -> Iterator[RaisedEvent]:
         yield RaisedEvent(watch.name, watch.node, "name", False)
 
 
-def _unheard_in_forms(document: Document, acts: Acts, heard: set[str]) -> Iterator[Throw]:
-    """Throws whose events only handlers of other forms take, none of an own scope: of the form's
-    items, the form and the document (VoiceXML 2.0, 5.2.4)."""
-    taken: dict[str, set[str]] = {}
-    shared = {name for handler in document.handlers for name in handler.events} | DEFAULTS
-    for form, act in acts.of(Throw):
-        if form is None or not isinstance(act.event, str):
-            continue
-        if form.id not in taken:
-            scopes = [form.handlers, *(item.handlers for item in all_items(form.items))]
-            taken[form.id] = {name for one in chain(*scopes) for name in one.events}
-        names = {*beginnings(act.event)}
-        if names & heard and not names & shared and not names & taken[form.id]:
-            yield act
-
-
 class KnownEvents:
     """The events of a document, gathered once."""
 
@@ -238,8 +217,6 @@ class KnownEvents:
         self.dynamic = _is_dynamic(acts)
         """Whether a service or an event is named by an expression."""
         self.services = {name for _, name in self.asked}
-        self._thrown = [*_unheard_in_forms(document, acts, self.heard)]
-        """Throws of events that only handlers of other forms take."""
         self._own = {one.name for one in self.raised}
         self._begun = {name for one in self._own for name in beginnings(one)}
         self._known = STANDARD_NAMES | self._begun
@@ -266,9 +243,6 @@ class KnownEvents:
         for handler, name, diagnosis in self._never_taken:
             if self._unraised(name) is None:
                 found.append(diagnosis.at(event_place(handler.node, name), name=name))
-        found += [
-            ELSEWHERE.at(act.node.attribute_place("event"), name=act.event) for act in self._thrown
-        ]
         found += [problem for one in self.raised if (problem := self._unheard(one, wanted))]
         return found
 

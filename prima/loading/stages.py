@@ -49,8 +49,6 @@ def stage(
         UsageError: a file cannot be read, no application is named, or two have one id.
     """
     given = [*zip(repeat("fa"), paths_of(fas, "fas")), *zip(repeat("ea"), paths_of(eas, "eas"))]
-    if not given and not entrances:
-        raise UsageError("Name an application, in fas or eas.")
     for name, one in (("world", world), ("robot", robot)):
         check_path(one or "", name)
     for path in (*(path for _, path in given), *filter(None, (robot, world))):
@@ -59,7 +57,7 @@ def stage(
     place = str(world or demo / "worlds" / "room.xml")
     body = str(robot or demo / "robots" / "papero.xml")
     there = _site(place)
-    taken_up = entrances and _offers(place, there, alone=not given)
+    taken_up = _offers(place, there, bool(given), entrances)
     inside = f"{_standing(there)}{_applications(given, maps)}{_answers(says)}"
     try:
         loaded = load_whole(Path(STAGE), _scenario(place, body, taken_up, inside))
@@ -72,15 +70,17 @@ def stage(
     return without_ignored(loaded)
 
 
-def _offers(place: str, there: Map, alone: bool) -> bool:
-    """Whether a world's areas offer applications.
+def _offers(place: str, there: Map, others: bool, entrances: bool) -> bool:
+    """Whether the applications that a world's areas offer are loaded, beside ``others``.
 
     Raises:
-        UsageError: they do not, and there are no others.
+        UsageError: they are not, and there are no others.
     """
-    if alone and not there.areas:
+    if not others and not entrances:
+        raise UsageError("Name an application, in fas or eas.")
+    if not others and not there.areas:
         raise UsageError(f"{place}: no <area> offers an application; name some by --fa and --ea.")
-    return bool(there.areas)
+    return entrances and bool(there.areas)
 
 
 def _problems(given: list[tuple[str, str]], loaded: Loaded) -> Iterator[Problem]:

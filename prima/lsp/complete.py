@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-from prima.interpreter.events import OWN
-from prima.interpreter.selection import takes
 from prima.language.commands import DEVICES, TABLE_4_2
-from prima.lsp.descriptions import EVENTS, SESSION, VOICEXML_EVENTS
+from prima.lsp.descriptions import EVENTS, VOICEXML_EVENTS
 from prima.lsp.hover import attribute_text, element_text
 from prima.lsp.meanings import DEFINES, EVENTS_OF, FILES, REFERS, ReferenceUse
 from prima.lsp.names import FoundName, dialect
 from prima.lsp.paths import name_for
 from prima.lsp.scan import Attr, ScannedTag, ScannedText
+from prima.lsp.scopes import given, reaches, visible
 from prima.lsp.snippets import opening, snippet
 from prima.lsp.tables import BY_NAMESPACE, children, is_code, roots, values
 from prima.lsp.workspace import Text, Workspace
 from prima.markup.vocabulary import attributes_by_name
-from prima.script.globals import HANDLED
-from prima.voicexml.arranging import UNIT
 
 MOST = 500
 """Maximum number of proposals."""
@@ -37,16 +34,6 @@ MEMBERS = {
     "session": ("connection",),
     "application": ("lastresult$",),
 }
-HANDLERS = ("on", "catch", "error", "help", "noinput", "nomatch")
-CONTENT = ("block", "filled", *HANDLERS)
-"""Elements with content that has variables of its own."""
-NO_ITEMS = ("var", "foreach", "said-foreach", "script", "data")
-"""Elements that declare variables and are no form items."""
-UNFIT = {
-    ("goto", "nextitem"): NO_ITEMS,
-    ("filled", "namelist"): (*NO_ITEMS, "block", "initial", UNIT),
-}
-"""Elements whose variables do not fit an attribute, by element and attribute."""
 SHADOWS = ("utterance", "confidence", "inputmode", "interpretation")
 
 
@@ -208,8 +195,7 @@ class _Completion:
             return
         if use.kinds == ("variable",):
             span = self._span(attr, use.how == "list")
-            unfit = UNFIT.get((tag.key, attr.name), ())
-            for name, detail in self._visible(tag, unfit).items():
+            for name, detail in visible(self.text.marks, tag, attr.name).items():
                 yield Proposal(name, "variable", *span, name, detail=detail)
             return
         if use.kinds == ("command",):
@@ -251,11 +237,9 @@ class _Completion:
         for mark in self.text.marks if own else ():
             if mark.kind == ("event",) and mark.start != attr.first:
                 known.setdefault(mark.name, "handled here")
-        span, command = self._span(attr, True), tag.parent if tag.key == "on" else None
+        span = self._span(attr, True)
         for name, doc in known.items():
-            if command is not None and command.key in TABLE_4_2 and not _reaches(command, name):
-                continue
-            if name != attr.value or not own:
+            if reaches(name, tag) and (name != attr.value or not own):
                 yield Proposal(name, "event", *span, name, doc=doc)
 
     def _occurring(self, tag: ScannedTag) -> dict[str, str]:
@@ -324,27 +308,6 @@ class _Completion:
 
     # Variables ------------------------------------------------------------------
 
-    def _visible(self, tag: ScannedTag, unfit: Sequence[str] = ()) -> dict[str, str]:
-        """Variables visible to an expression in an element, with their declarations, but not those
-        of some elements."""
-        form = tag.inside("form", "menu")
-        home, content = form.start if form else -1, _content_of(tag)
-        found: dict[str, str] = {}
-        for mark in self.text.marks:
-            if not (mark.defines and mark.kind == ("variable",) and mark.scope in (home, -1)):
-                continue
-            if mark.tag.key not in unfit and _content_of(mark.tag) in (None, content):
-                owner = form.get("id") if form and mark.scope == home else "the document"
-                found.setdefault(mark.name, f"<{mark.tag.name}> of {owner}")
-        return found
-
-    def _given(self, tag: ScannedTag) -> dict[str, str]:
-        """The predefined variables that there are in an element."""
-        absent = set() if tag.inside(*HANDLERS) else {*HANDLED}
-        if not any(one.key == "watch" for one in self.page.tags):
-            absent.add("sensor")
-        return {name: text for name, text in SESSION.items() if name not in absent}
-
     def _variables(self, tag: ScannedTag, before: str) -> Iterator[Proposal]:
         match = WORD_BEFORE.search(before[-200:])
         after = WORD_AFTER.match(self.page.text, self.offset)
@@ -353,9 +316,9 @@ class _Completion:
         of = match["of"] if match else None
         known: dict[str, str] = {}
         if of is None:
-            known = self._visible(tag) | self._given(tag)
+            known = visible(self.text.marks, tag) | given(self.page, tag)
         elif of in ("dialog", "document"):
-            known = self._visible(tag)
+            known = visible(self.text.marks, tag)
         elif of == "sensor":
             readings = self.workspace.known(self.path, ("reading",))
             known = {one.mark.name: self._where(one) for one in readings}
@@ -365,18 +328,6 @@ class _Completion:
             known = dict.fromkeys(SHADOWS, of)
         for name, detail in known.items():
             yield Proposal(name, "variable", start, end, name, detail=detail)
-
-
-def _reaches(command: ScannedTag, event: str) -> bool:
-    """Whether a handler in a Command may take an event: of the Command itself, but in a unit no
-    more than its errors."""
-    own = () if command.inside("iu") else OWN
-    return takes("error", event) or any(takes(event, f"{kind}.{command.key}") for kind in own)
-
-
-def _content_of(tag: ScannedTag) -> ScannedTag | None:
-    """The element whose content an element is in, if any: the variables of that are gone after it."""
-    return tag.parent.inside(*CONTENT) if tag.parent else None
 
 
 def _attribute(

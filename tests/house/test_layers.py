@@ -176,7 +176,7 @@ INSIDE = {
         {"scan"},
         {"tables"},
         {"names", "snippets"},
-        {"workspace"},
+        {"scopes", "workspace"},
         {"hover", "naming", "outline", "problems"},
         {"complete", "protocol"},
         {"answers"},

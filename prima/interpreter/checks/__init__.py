@@ -21,6 +21,7 @@ from prima.interpreter.checks.reachable import check_content, check_handlers, ch
 from prima.interpreter.checks.robot import check_commands
 from prima.interpreter.checks.rounds import check_endless, check_rounds
 from prima.interpreter.checks.targets import check_items, check_targets
+from prima.interpreter.checks.throws import check_throws
 from prima.interpreter.elements import Document
 from prima.interpreter.events import KnownEvents
 from prima.interpreter.repeats import source_of, told_twice
@@ -47,6 +48,7 @@ CHECKS: tuple[Callable[[Facts], Iterator[Problem]], ...] = (
     check_first_prompts,
     check_content,
     check_handlers,
+    check_throws,
 )
 
 
