@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from prima.api.transcripts import Transcript
 from prima.errors import UsageError
-from prima.language.values import LONGEST_MS
+from prima.language.values import LONGEST_MS, MOST_SEED
 from prima.loading import Loaded, load_scenario, seeded
 from prima.loading.files import texts_of
 from prima.loading.heads import chosen_policy, run_record
@@ -76,7 +76,7 @@ def rehearse(
 
     check_functions(sink=sink)
     check_numbers(bound=bound)
-    check_numbers(0, seed=seed)
+    check_numbers(0, MOST_SEED, seed=seed)
     check_numbers(0, LONGEST_MS, patience=patience)
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
     loaded = seeded(loaded, seed)

@@ -36,14 +36,13 @@ from prima.cli.printing import columns, put, tell, tell_problems, write_for_prog
 from prima.cli.progress import run_into
 from prima.cli.runs import tell_failures
 from prima.errors import TOO_MUCH, RunError, UsageError, counted
+from prima.language.values import MOST_SEED
 
 if TYPE_CHECKING:
     from prima.api import Transcript
     from prima.experiments.plan import Options
     from prima.loading import Loaded
 
-MOST_SEED = 999_999_999
-"""The greatest seed that a scenario can have."""
 FOLDER_ENDINGS = ("/", os.sep)
 
 

@@ -9,12 +9,11 @@ from typing import Any
 from prima.errors import UsageError, one_of
 from prima.experiments.levels import Factor
 from prima.language.distributions import share
+from prima.language.values import MOST_SEED
 
 DESIGNS = ("full", "random", "lhs")
 MOST_RUNS = 100_000_000
 """Maximum number of runs of a sweep."""
-MOST_SEED = 999_999_999
-"""The largest seed that `prima run` takes."""
 MOST_POINTS = 10_000_000
 """Maximum number of values of a Latin hypercube, which is made in one go."""
 

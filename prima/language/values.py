@@ -70,6 +70,8 @@ _XSD_WORD = r"[\i$-[:]][\c$-[:.\-]]*"
 _XSD_VARIABLE = rf"{_XSD_WORD}(\.{_XSD_WORD})*"
 _XSD_EVENT = r"[\c-[:.]]+(\.[\c-[:.]]+)*\.?"
 LONGEST_MS = 24 * 3600 * 1000
+MOST_SEED = 999_999_999
+"""The greatest seed that a scenario can have: whole numbers have nine digits."""
 
 
 def _fits(form: str, text: str) -> bool:

@@ -43,9 +43,10 @@ def test_a_sweep_is_made_of_no_wrong_word() -> None:
         prima.sweep(SCENARIO, isolate="some", workers=1)
 
 
-def test_a_seed_is_no_negative_number() -> None:
-    with pytest.raises(prima.UsageError, match="seed=-1"):
-        prima.rehearse(SCENARIO, seed=-1)
+@pytest.mark.parametrize("seed", [-1, 1_000_000_000])
+def test_a_seed_is_one_that_a_scenario_can_have(seed: int) -> None:
+    with pytest.raises(prima.UsageError, match=f"seed={seed}: write a whole number from 0 to 999"):
+        prima.rehearse(SCENARIO, seed=seed)
 
 
 @pytest.mark.parametrize(
