@@ -76,7 +76,7 @@ def note_resumed(mediation: Mediation, ab: Behavior, response: bool, begins: boo
         for stream in mediation.memory.streams.values():
             if stream.app is not ab.app and stream.suspended and stream.spoken:
                 stream.words_due = True
-    if response or ab.stream.suspended:
+    if response:
         return
     if ab.inserted in ("", "X9"):
         ab.stream.words_due = False  # also for what was said while the words waited

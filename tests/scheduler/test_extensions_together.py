@@ -10,7 +10,7 @@ import pytest
 
 from prima.invariants import check
 from prima.language.commands import TABLE_4_2, CommandType
-from prima.messages import Command, Group, OpenUnit
+from prima.messages import Command, Group, OpenUnit, Step
 from tests.helpers.robot import Bench, document
 from tests.helpers.stage import Stage, ask, chain, command, inserted, move, restartable, say
 
@@ -299,3 +299,30 @@ def test_x4_the_user_is_faced_before_the_words_with_which_a_topic_resumes() -> N
     assert inserted(stage) == [("X4", "face-human"), ("X9", "speak")]
     assert started == ["ea#3", "ea#4", "ea#2"]
     assert check(stage.records, "prima+x4+x9") == []
+
+
+def test_x1_a_way_back_is_not_overdue_with_the_word_behind_it() -> None:
+    """E6 counts how long others have kept the speaker; the way back needs none."""
+    stage = Stage("prima+x1", patience=10_000)
+    nod = command("gesture", name="nod")
+    told = [say("A"), nod, say("B"), nod, say("C"), command("turn", angle=90)]
+    after: list[tuple[int, ...]] = [(), (0,), (1,), (2,), (3,), (3,)]
+    stage.request("fa", steps=[Step(*one) for one in zip(told, after, strict=True)])
+    stage.request("ea", command("set-direction", heading=0), say("One."))
+    assert stage.select() == ["fa#1", "ea#1"]
+    stage.at(100).end("ea#1", x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == []
+    stage.at(200).request("fa", command("turn", angle=180), cause=EVENT)
+    assert stage.select() == ["fa#7"]
+    stage.at(1000).end("fa#7", x=0.0, y=0.0, heading=180.0)
+    assert stage.select() == []
+    for time, over, starts in (
+        (3000, "fa#1", ["fa#2"]),
+        (6000, "fa#2", ["fa#3"]),
+        (9000, "fa#3", ["fa#4"]),
+        (12_000, "fa#4", ["fa#5", "fa#6"]),
+    ):
+        stage.at(time).end(over)
+        assert stage.select() == starts
+    assert inserted(stage) == [("X1", "set-direction")]
+    assert check(stage.records, "prima+x1", patience=10_000) == []
