@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from prima.errors import Place, Problem, Span, suggestion
-from prima.errors.diagnoses.names import UNDECLARED_VARIABLE
+from prima.errors.diagnoses.names import NO_MEMBER, UNDECLARED_VARIABLE
 from prima.markup.spans import Declarations
 from prima.markup.tree import Node
 from prima.script.globals import IDENTIFIER
@@ -334,11 +334,6 @@ NOT_DECLARED = UNDECLARED_VARIABLE.says(
 DECLARED_AFTER = UNDECLARED_VARIABLE.says(
     'The variable "{name}" is declared after this: this will be error.semantic.',
     "Declare it before.",
-    "warning",
-)
-NO_MEMBER = UNDECLARED_VARIABLE.says(
-    'The scope "{scope}" declares no variable "{name}": this will be error.semantic.',
-    'Declare it there: <var name="{name}"/>.',
     "warning",
 )
 

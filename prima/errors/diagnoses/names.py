@@ -58,6 +58,11 @@ UNDECLARED_VARIABLE = Diagnosis(
     ),
     rule="VoiceXML 2.0, 5.1",
 )
+NO_MEMBER = UNDECLARED_VARIABLE.says(
+    'The scope "{scope}" declares no variable "{name}": this will be error.semantic.',
+    'Declare it there: <var name="{name}"/>.',
+    "warning",
+)
 
 BAD_EXPRESSION = Diagnosis(
     "bad-expression",

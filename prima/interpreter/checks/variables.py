@@ -8,7 +8,7 @@ from functools import cached_property
 from itertools import chain
 
 from prima.errors import Hint, Place, Problem, Span, one_of, replaced, suggestion
-from prima.errors.diagnoses.names import UNDECLARED_VARIABLE
+from prima.errors.diagnoses.names import NO_MEMBER, UNDECLARED_VARIABLE
 from prima.errors.diagnoses.structure import DUPLICATE_NAME
 from prima.interpreter.acts import Assign, Clear, Expression, Foreach, Handler, Return
 from prima.interpreter.checks.facts import Facts
@@ -56,10 +56,6 @@ ABSENT = {
 NOT_DECLARED = UNDECLARED_VARIABLE.says('The variable "{name}" is not declared.')
 NO_VARIABLE = UNDECLARED_VARIABLE.says(
     'No variable can be named "{name}": ECMAScript reserves this word.', "Choose another name."
-)
-NO_MEMBER = UNDECLARED_VARIABLE.says(
-    'The scope "{scope}" declares no variable "{name}": this will be error.semantic.',
-    severity="warning",
 )
 NOT_ASSIGNED = UNDECLARED_VARIABLE.says(
     '"{name}" cannot be assigned: a run tells it to the document.',
