@@ -56,6 +56,8 @@ class Facts:
         self._given: dict[str, NameScope] = {}
         """Names that subdialogs give as params, by the form they call."""
         self._visible: dict[str, Known] = {}
+        self._outside: dict[str, NameScope] = {}
+        """Names that no content declares, by form."""
         self._gather()
         self._common = NameScope(self.shared | self._declared.get(None, NONE))
 
@@ -97,10 +99,12 @@ class Facts:
 
     def outside_content(self, form: Form) -> NameScope:
         """The variables of a form that no content declares."""
-        own = NameScope(setup_names(form.setup))
-        for item in all_items(form.items):
-            own |= {item.name, f"{item.name}$"}
-        own |= self._given.get(form.id, set())
+        own = self._outside.get(form.id)
+        if own is None:
+            own = self._outside[form.id] = NameScope(setup_names(form.setup))
+            for item in all_items(form.items):
+                own |= {item.name, f"{item.name}$"}
+            own |= self._given.get(form.id, set())
         return own
 
     @cached_property

@@ -19,8 +19,10 @@ ELSEWHERE = UNHEARD_EVENT.says(
 
 
 def check_throws(facts: Facts) -> Iterator[Problem]:
-    """Warn of thrown events that are handled, but by none of the form's items, the form or the
-    document, where handlers are looked for (VoiceXML 2.0, 5.2.4)."""
+    """Warn of thrown events that only handlers of other forms take.
+
+    Handlers are looked for in the form's items, the form and the document (VoiceXML 2.0, 5.2.4).
+    """
     heard, shared = _taken(facts.handlers), _taken(facts.document.handlers) | DEFAULTS
     own = {
         form.id: _taken([*form.handlers, *(handler for one in items for handler in one.handlers)])

@@ -17,7 +17,7 @@ from prima.interpreter.selection import beginnings
 from prima.markup.spans import Declarations, value_span
 from prima.markup.tree import Node
 from prima.script.globals import HANDLED, IDENTIFIER, RESERVED
-from prima.script.known import Known, NameScope
+from prima.script.known import Known
 from prima.script.names import Names, expression_names, script_names
 
 ELSEWHERE = {
@@ -137,7 +137,6 @@ class Variables:
 
     def __init__(self, facts: Facts) -> None:
         self.facts = facts
-        self._dialogs: dict[str, NameScope] = {}
 
     def of_expression(self, expr: Expression, known: Known) -> Iterator[Problem]:
         """The undeclared names in an expression."""
@@ -221,13 +220,7 @@ class Variables:
             return True
         if scope == "document":
             return name in self.facts.shared
-        return scope == "dialog" and form is not None and name in self._of_dialog(form)
-
-    def _of_dialog(self, form: Form) -> NameScope:
-        """The variables of a form, gathered once."""
-        if form.id not in self._dialogs:
-            self._dialogs[form.id] = self.facts.outside_content(form)
-        return self._dialogs[form.id]
+        return scope == "dialog" and form is not None and name in self.facts.outside_content(form)
 
     @cached_property
     def _given_members(self) -> set[tuple[str, str]]:
