@@ -119,11 +119,11 @@ class Body:
     def _begin(self, now: int, begin: Begin) -> None:
         effort = self.efforts[begin.key] = Effort(begin, now)
         self._take_wheels(effort)
-        broken = sorted(begin.devices & self.broken.keys())
+        broken = begin.devices & self.broken.keys()
         if broken:
-            if not self.broken[broken[0]]:
-                effort.ends = now + FAILING_MS
-                effort.fails = broken[0], FAILS
+            hangs, device = min((self.broken[one], one) for one in broken)
+            if not hangs:
+                effort.ends, effort.fails = now + FAILING_MS, (device, FAILS)
             return
         if begin.kind == SAY:
             effort.ends = begin.spoken

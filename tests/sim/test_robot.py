@@ -143,6 +143,18 @@ def test_a_device_that_hangs_is_given_up_120_seconds_after_what_it_may_take(tmp_
     assert "the speech-recognition hangs" in told(transcript)
 
 
+@pytest.mark.parametrize("fails, hangs", [("neck", "arm"), ("arm", "neck")])
+def test_a_device_that_fails_is_reported_beside_one_that_hangs(
+    tmp_path: Path, fails: str, hangs: str
+) -> None:
+    body = """<form id="a"><block><gesture name="wave"/></block>
+      <on event="error.device"><log expr="event.name"/><exit/></on></form>"""
+    script = f'<when at="0s"><fail device="{hangs}" hangs="true"/><fail device="{fails}"/></when>'
+    transcript = rehearse(tmp_path, body, script)
+    logs = [r["message"] for r in transcript.records if r["phase"] == "log"]
+    assert logs == [f"error.device.{fails}"]
+
+
 def test_watches_see_the_sensors(tmp_path: Path) -> None:
     body = """<form id="a"><watch name="near" when="sensor.human.distance &lt; 1"/>
       <watch name="warm" when="sensor.temperature &gt; 30"/>
