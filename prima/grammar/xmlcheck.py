@@ -1,32 +1,18 @@
-"""The elements of SRGS's XML form: their content and attributes, and problems of these."""
+"""Problems of the elements of SRGS's XML form: their places, content and attributes."""
 
 from __future__ import annotations
 
 from functools import partial
 
-from prima.errors import Hint, suggestion
+from prima.errors import Hint, suggestion, with_article
 from prima.grammar.errors import Problems
 from prima.grammar.values import is_language
+from prima.grammar.vocabulary import GRAMMAR, SRGS
 from prima.markup.spans import name_spans, similar_attribute
 from prima.markup.tree import Node
 
-SRGS = "http://www.w3.org/2001/06/grammar"
-HEADER = {"meta", "metadata", "lexicon", "tag"}
-EXPANSION = {"token", "ruleref", "item", "one-of", "tag"}
-ATTRIBUTES: dict[str, set[str]] = {
-    "grammar": {"version", "mode", "root", "tag-format"},
-    "meta": {"name", "http-equiv", "content"},
-    "metadata": set(),
-    "lexicon": {"uri", "type"},
-    "rule": {"id", "scope"},
-    "example": set(),
-    "token": set(),
-    "item": {"repeat", "repeat-prob", "weight"},
-    "one-of": set(),
-    "ruleref": {"uri", "type", "special"},
-    "tag": set(),
-}
-"""The elements of SRGS and what they may say, beside ``xml:lang`` and the like."""
+HOLDERS = {"grammar": "rule", "one-of": "item"}
+"""What has to be around the expansions in an element."""
 
 
 class GrammarChecker:
@@ -44,24 +30,28 @@ class GrammarChecker:
         self.problems.note(partial(node.attribute_place, attribute), code, message, remedy)
 
     def known(self, node: Node, parent: Node) -> bool:
-        """Whether it is an element of SRGS; those of other languages are ignored."""
+        """Whether SRGS allows the element there; those of other languages are ignored."""
         if node.namespace != self.space:
             if node.namespace in ("", SRGS):
                 message = f"<{node.tag}> is in another namespace than <{parent.tag}>."
                 self.note(node, "wrong-namespace", message, f'Declare xmlns="{self.space}".')
             return False
-        if node.tag not in ATTRIBUTES:
-            hint = suggestion(node.tag, ATTRIBUTES, *name_spans(node))
+        if node.tag not in GRAMMAR.tags:
+            hint = suggestion(node.tag, GRAMMAR.tags, *name_spans(node))
             self.note(node, "unknown-element", f"SRGS has no element <{node.tag}>.", hint)
             return False
+        if GRAMMAR.child(parent.tag, node.tag) is None:
+            self._misplaced(node, parent)
+            return False
         self.attributes(node, set())
+        self._content(node)
         return True
 
     def attributes(self, node: Node, more: set[str]) -> None:
         """Note unknown attributes; ``more`` are known besides those of SRGS."""
         if not node.attributes:
             return
-        known = ATTRIBUTES[node.tag] | more
+        known = GRAMMAR.attributes[node.tag].keys() | more
         for name in node.attributes:
             if name not in known and ":" not in name and not name.startswith("{"):
                 message = f"<{node.tag}> has no attribute {name}."
@@ -72,19 +62,32 @@ class GrammarChecker:
             message = f'"{lang[:40]}" names no language.'
             self.note(node, "bad-value", message, 'Write one such as "en-US".', "xml:lang")
 
+    def _content(self, node: Node) -> None:
+        """Note text in an element that holds none, and elements in one that holds only text."""
+        if node.tag == "metadata":
+            return
+        self.no_text(node)
+        if not GRAMMAR.children(node.tag):
+            for child in node.nodes:
+                self._misplaced(child, node)
+
+    def _misplaced(self, node: Node, parent: Node) -> None:
+        holder = HOLDERS.get(parent.tag, "")
+        fits = holder and GRAMMAR.child(holder, node.tag) is not None
+        message = f"<{node.tag}> is not allowed in <{parent.tag}>."
+        self.note(node, "misplaced-element", message, _put_into(holder) if fits else "")
+
     def no_text(self, node: Node) -> None:
         """Note text in an element that holds none."""
-        if node.text:
-            remedy = "Put it in an <item>."
-            if node.tag == "grammar":
-                remedy = "Put it in a <rule>."
-                if not node.nodes:
-                    remedy = 'Write it in SRGS: rules in XML, or "#ABNF 1.0;" before the text.'
-            message = f"Text is not allowed in <{node.tag}>."
-            self.problems.note(partial(node.text_place, node.text), "stray-text", message, remedy)
+        if GRAMMAR.elements[node.tag].text or not node.text:
+            return
+        holder = HOLDERS.get(node.tag, "")
+        remedy = _put_into(holder) if holder else "Remove it."
+        if node.tag == "grammar" and not node.nodes:
+            remedy = 'Write it in SRGS: rules in XML, or "#ABNF 1.0;" before the text.'
+        message = f"Text is not allowed in <{node.tag}>."
+        self.problems.note(partial(node.text_place, node.text), "stray-text", message, remedy)
 
-    def no_elements(self, node: Node) -> None:
-        """Note elements in one that holds none."""
-        for child in node.nodes:
-            message = f"<{child.tag}> is not allowed in <{node.tag}>."
-            self.note(child, "misplaced-element", message)
+
+def _put_into(tag: str) -> str:
+    return f"Put it in {with_article(f'<{tag}>')}."

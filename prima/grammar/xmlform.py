@@ -19,7 +19,8 @@ from prima.grammar.values import (
     repeat,
     sequence,
 )
-from prima.grammar.xmlcheck import EXPANSION, HEADER, SRGS, GrammarChecker
+from prima.grammar.vocabulary import SRGS
+from prima.grammar.xmlcheck import GrammarChecker
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
@@ -113,9 +114,6 @@ class _Reader(GrammarChecker):
             if child.tag == "rule":
                 seen_rule = True
                 self._rule(child)
-            elif child.tag not in HEADER:
-                message = f"<{child.tag}> is not allowed in <grammar>."
-                self.note(child, "misplaced-element", message, "Put it in a <rule>.")
             else:
                 if seen_rule:
                     message = f"<{child.tag}> comes after a rule."
@@ -123,10 +121,6 @@ class _Reader(GrammarChecker):
                 self._header(child)
 
     def _header(self, node: Node) -> None:
-        if node.tag != "metadata":
-            self.no_elements(node)
-        if node.tag in ("meta", "lexicon") and node.text:
-            self.note(node, "stray-text", f"<{node.tag}> holds nothing.", "Remove the text.")
         if node.tag == "tag":
             self.document.globals.append(Tag(node.own_text, partial(node.attribute_place, "")))
         elif node.tag == "lexicon" and not node.get("uri"):
@@ -176,21 +170,14 @@ class _Reader(GrammarChecker):
             if isinstance(item, str):
                 if item.strip() and (words := self._words(node, item)):
                     parts.append(words)
-            elif self.known(item, node):
-                if item.tag in EXPANSION:
-                    parts += self._part(item, depth)
-                elif item.tag == "example" and node.tag == "rule":
-                    self._example(item, first=not parts)
-                else:
-                    message = f"<{item.tag}> is not allowed in <{node.tag}>."
-                    self.note(item, "misplaced-element", message)
+            elif not self.known(item, node):
+                continue
+            elif item.tag != "example":
+                parts += self._part(item, depth)
+            elif parts:
+                message = "<example> comes after the rule's expansion."
+                self.note(item, "misplaced-element", message, "Put it first in the <rule>.")
         return parts
-
-    def _example(self, node: Node, first: bool) -> None:
-        if not first:
-            message = "<example> comes after the rule's expansion."
-            self.note(node, "misplaced-element", message, "Put it first in the <rule>.")
-        self.no_elements(node)
 
     def _part(self, node: Node, depth: int) -> list[Part]:
         match node.tag:
@@ -201,7 +188,6 @@ class _Reader(GrammarChecker):
             case "one-of":
                 return self._one_of(node, depth)
             case "tag":
-                self.no_elements(node)
                 tag = Tag(node.own_text, partial(node.attribute_place, ""))
                 self.document.tags.append(tag)
                 return [tag]
@@ -224,7 +210,6 @@ class _Reader(GrammarChecker):
         return self._said(node, found)
 
     def _token(self, node: Node) -> list[Part]:
-        self.no_elements(node)
         text = node.text
         if not text or '"' in text:
             message = "<token> holds one token, without quotes."
@@ -247,8 +232,6 @@ class _Reader(GrammarChecker):
         return Words("".join(shown), tuple(shown))
 
     def _ruleref(self, node: Node) -> list[Part]:
-        if node.nodes or node.text:
-            self.note(node, "stray-text", "<ruleref> holds nothing.", "Write <ruleref .../>.")
         special, uri = node.get("special"), node.get("uri").strip()
         if ("special" in node.attributes) == ("uri" in node.attributes):
             message = "<ruleref> has either a uri or special."
@@ -269,18 +252,12 @@ class _Reader(GrammarChecker):
         return [found]
 
     def _one_of(self, node: Node, depth: int) -> list[Part]:
-        self.no_text(node)
         parts: list[Part] = []
         weights: list[float | None] = []
         for child in node.nodes:
-            if not self.known(child, node):
-                continue
-            if child.tag != "item":
-                message = f"<{child.tag}> is not allowed in <one-of>."
-                self.note(child, "misplaced-element", message, "Put it in an <item>.")
-                continue
-            parts.append(self._item(child, depth + 1))
-            weights.append(self._number(child, "weight"))
+            if self.known(child, node):
+                parts.append(self._item(child, depth + 1))
+                weights.append(self._number(child, "weight"))
         if not parts:
             self.note(node, "missing-element", "<one-of> has no <item>.", "Write at least one.")
             return []

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from prima.devices.vocabulary.robot import ROBOT
 from prima.devices.vocabulary.services import SERVICES
 from prima.grammar.builtin import TYPES
+from prima.grammar.vocabulary import GRAMMAR
 from prima.interpreter.units import ARRANGING
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.lsp.scan import ScannedTag, ScannedText
-from prima.markup.vocabulary import (
-    Element,
-    Vocabulary,
-    attributes_by_name,
-    elements,
-)
+from prima.markup.vocabulary import Element, Vocabulary, attributes_by_name
 from prima.scheduler.policy import BASELINES
 from prima.sim.vocabulary.scenario import SCENARIO
 from prima.sim.vocabulary.user import USER
@@ -26,41 +22,9 @@ from prima.voicexml.vocabulary import (
     EXPRESSIONS,
     HOLDING,
     PROPERTIES,
-    SRGS,
     VALUES,
     VOICEXML,
 )
-
-_PARTS = "one-of item ruleref tag token"
-TABLE = f"""
-rule > {_PARTS} example #text | A named part of a grammar. | SRGS 3.1
-  id*: id | its name
-  scope: text(private public) |
-one-of > item | Alternatives. | SRGS 2.4
-item repeat repeat-prob weight > {_PARTS} #text | A part of an expansion, or an alternative. | SRGS
-    2.5
-ruleref | Another rule: of this grammar, of a file, or a special one. | SRGS 2.2
-  uri: text |
-  special: text(NULL VOID GARBAGE) |
-  type: text |
-tag > #text | The meaning of a match. | SRGS 2.6, SISR 1.0
-token > #text | Words that belong together. | SRGS 2.1
-example > #text | A phrase that the rule takes, for the reader. | SRGS 3.3
-"""
-_OWN = VOICEXML.elements["grammar"]
-GRAMMAR = Vocabulary(
-    SRGS,
-    "srgs",
-    "grammar",
-    (
-        replace(
-            _OWN, children=("rule", *_PARTS.split(), "meta", "metadata", "lexicon"), source="SRGS 4"
-        ),
-        *elements(TABLE),
-        *(replace(VOICEXML.elements[key], source="") for key in ("meta", "metadata", "lexicon")),
-    ),
-)
-"""SRGS in XML, as used in VoiceXML documents."""
 
 LISTED: dict[tuple[str, str, str], tuple[str, ...]] = {
     ("dialogue", "property", "value"): ("true", "false"),

@@ -6,8 +6,6 @@ from prima.language.commands import TABLE_4_2
 from prima.markup.vocabulary import Vocabulary, elements
 
 NAMESPACE = "http://www.w3.org/2001/vxml"
-SRGS = "http://www.w3.org/2001/06/grammar"
-
 PRIMA_NAMESPACE = "urn:prima:dialogue:1"
 
 COMMANDS = frozenset(TABLE_4_2) - {"q-and-a"} | {"command"}

@@ -112,7 +112,7 @@ INSIDE = {
         {"__init__"},
     ],
     "grammar": [
-        {"abnferrors", "errors", "rings", "text", "numbers"},
+        {"abnferrors", "errors", "rings", "text", "numbers", "vocabulary"},
         {"media"},
         {"abnfheader", "dates", "model"},
         {"assent"},

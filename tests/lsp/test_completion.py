@@ -95,7 +95,7 @@ PROPOSED = {
     "voice unit content": ("ea/x.vxml", VOICE + '<form id="a"><p:iu><block><|', {"prompt", "p:speak"}, {"field"}),
     "voice unit items": ("ea/x.vxml", VOICE + '<form id="a"><p:iu name="u"><field name="f"/></p:iu><block><goto nextitem="|"/>', {"u", "f"}, set()),
     "voice goto": ("ea/x.vxml", VOICE + '<form id="a"><block><goto next="|"/>', {"#a", "pizza.vxml"}, set()),
-    "voice grammar": ("ea/x.vxml", VOICE + '<form id="a"><field name="f"><grammar><|', {"rule", "one-of"}, {"prompt"}),
+    "voice grammar": ("ea/x.vxml", VOICE + '<form id="a"><field name="f"><grammar><|', {"rule", "meta"}, {"prompt", "one-of"}),
     "voice events": ("ea/x.vxml", VOICE + '<form id="a"><catch event="|"', {"nomatch", "error.badfetch"}, set()),
     "voice properties": ("ea/x.vxml", VOICE + '<property name="|"', {"maxspeechtimeout", "recordutterance", "universals", "grammarmaxage"}, set()),
     "voice values": ("ea/x.vxml", VOICE + '<form id="a" scope="|"', {"dialog", "document"}, set()),

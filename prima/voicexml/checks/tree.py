@@ -9,6 +9,7 @@ from prima.errors.diagnoses.structure import (
     UNKNOWN_ELEMENT,
     WRONG_NAMESPACE,
 )
+from prima.grammar.vocabulary import SRGS
 from prima.markup.hints import inside_itself
 from prima.markup.spans import name_spans, renamed
 from prima.markup.tree import Node
@@ -18,7 +19,7 @@ from prima.voicexml.checks.attributes import ENTRIES, check_attributes
 from prima.voicexml.checks.elements import RULES
 from prima.voicexml.checks.guests import check_guest
 from prima.voicexml.upgrade import is_other_version, version_problem
-from prima.voicexml.vocabulary import COMMANDS, NAMESPACE, PRIMA_NAMESPACE, SRGS, VOICEXML
+from prima.voicexml.vocabulary import COMMANDS, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
 MOST_ALIKE = 5
 """How many problems with the same message are shown, each with its place."""
