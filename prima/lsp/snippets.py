@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from prima.grammar.vocabulary import GRAMMAR
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.lsp.tables import AllowedElement
 from prima.markup.vocabulary import Element, Vocabulary
@@ -41,6 +42,9 @@ def opening(choice: AllowedElement) -> str:
         begin += ' version="1.0" kind="${1|ea,fa|}" id="$2" xml:lang="en"'
         body = '\n  <form id="$3">\n    <block>\n      $0\n      <exit/>\n    </block>\n  </form>\n'
         return f"{begin}>{body}</{choice.name}>"
+    if choice.vocabulary is GRAMMAR:
+        begin += ' version="1.0" xml:lang="en" root="$1" tag-format="semantics/1.0"'
+        return f'{begin}>\n  <rule id="$1" scope="public">$0</rule>\n</{choice.name}>'
     begin += ' version="1.0" id="$1"'
     if choice.name == "scenario":
         begin += ' world="$2" robot="$3"'

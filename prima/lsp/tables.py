@@ -139,7 +139,6 @@ def roots() -> list[AllowedElement]:
     return [
         AllowedElement(one.elements[one.root].tag, one.elements[one.root], one)
         for one in VOCABULARIES
-        if one is not GRAMMAR
     ]
 
 

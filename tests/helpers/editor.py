@@ -15,6 +15,7 @@ from prima.lsp.text import Lines
 
 BEGIN = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="x">\n'
 VOICE = '<vxml xmlns="http://www.w3.org/2001/vxml" xmlns:p="urn:prima:dialogue:1" version="2.1">\n'
+SRGS = '<grammar xmlns="http://www.w3.org/2001/06/grammar" version="1.0" root="r">\n'
 SCENE = (
     '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s"'
     ' world="../worlds/office.xml" robot="../robots/papero-plus.xml">\n'

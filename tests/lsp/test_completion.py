@@ -7,11 +7,12 @@ from pathlib import Path
 import pytest
 from lsprotocol import types as lsp
 
-from tests.helpers.editor import BEGIN, SCENE, VOICE, Editor, edited, plain
+from prima.grammar import load
+from tests.helpers.editor import BEGIN, SCENE, SRGS, VOICE, Editor, edited, plain
 
 PROPOSED = {
     "document": ("fa/x.xml", "|", {"prima", "vxml", "scenario", "world", "robot"}, {"form"}),
-    "root": ("fa/x.xml", "<|", {"prima", "vxml"}, {"form"}),
+    "root": ("fa/x.xml", "<|", {"prima", "vxml", "grammar"}, {"form"}),
     "form": ("fa/x.xml", BEGIN + "<|", {"form", "on", "/prima"}, {"block", "speak"}),
     "in a name": ("fa/x.xml", BEGIN + '<form id="a"><block><spe|</block>', {"speak"}, {"field"}),
     "between": ("fa/x.xml", BEGIN + '<form id="a"><block>|</block>', {"speak", "goto"}, {"field"}),
@@ -96,6 +97,8 @@ PROPOSED = {
     "voice unit items": ("ea/x.vxml", VOICE + '<form id="a"><p:iu name="u"><field name="f"/></p:iu><block><goto nextitem="|"/>', {"u", "f"}, set()),
     "voice goto": ("ea/x.vxml", VOICE + '<form id="a"><block><goto next="|"/>', {"#a", "pizza.vxml"}, set()),
     "voice grammar": ("ea/x.vxml", VOICE + '<form id="a"><field name="f"><grammar><|', {"rule", "meta"}, {"prompt", "one-of"}),
+    "grammar file": ("ea/x.grxml", SRGS + "<|", {"rule", "lexicon"}, {"item", "prompt"}),
+    "grammar attributes": ("ea/x.grxml", SRGS.replace('root="r"', "|"), {"mode", "tag-format"}, {"src", "scope"}),
     "voice events": ("ea/x.vxml", VOICE + '<form id="a"><catch event="|"', {"nomatch", "error.badfetch"}, set()),
     "voice properties": ("ea/x.vxml", VOICE + '<property name="|"', {"maxspeechtimeout", "recordutterance", "universals", "grammarmaxage"}, set()),
     "voice values": ("ea/x.vxml", VOICE + '<form id="a" scope="|"', {"dialog", "document"}, set()),
@@ -113,6 +116,15 @@ def test_completion(editor: Editor, case: str) -> None:
     found = editor.proposals(name, text).keys()
     assert wanted <= found
     assert not unwanted & found
+
+
+def test_a_new_grammar_has_what_a_grammar_needs(editor: Editor) -> None:
+    item = editor.proposals("ea/x.grxml", "<|")["grammar"]
+    assert isinstance(item.text_edit, lsp.TextEdit)
+    made = item.text_edit.new_text.replace("$1", "size").replace("$0", "small")
+    grammar = load(made if made[0] == "<" else f"<{made}")
+    assert grammar.match("small")
+    assert not grammar.match("large")
 
 
 def test_proposals_bring_what_an_element_needs(editor: Editor) -> None:
