@@ -225,6 +225,17 @@ def _substitute(reader: Reader, node: Node, rows: dict[str, CommandType], profil
     profile.commands[lacking.name] = replace(lacking, substitute=other.name)
 
 
+def _check_range(reader: Reader, node: Node) -> None:
+    """Report a range without numbers in it, or of values that are not numbers."""
+    low, high = reader.get(node, "low"), reader.get(node, "high")
+    if low is not None and high is not None and low > high:
+        reader.problem(node, "out-of-range", "low is greater than high.", "low")
+    kind, limits = node.get("kind", "text"), [one for one in ("low", "high") if node.get(one)]
+    if limits and kind not in ("number", "duration"):
+        message = f"{limits[0]} limits numbers and durations, and the kind is {kind}."
+        reader.problem(node, "exclusive", message, limits[0], 'Write kind="number".')
+
+
 def _motion(reader: Reader, node: Node) -> Motion | None:
     """The steps of an added Command that moves the body (X5)."""
     steps = [
@@ -254,9 +265,7 @@ def _added(reader: Reader, node: Node, motion: Motion | None) -> CommandType:
         for child in node.all("argument")
     }
     for child in node.all("argument"):
-        low, high = reader.get(child, "low"), reader.get(child, "high")
-        if low is not None and high is not None and low > high:
-            reader.problem(child, "out-of-range", "low is greater than high.", "low")
+        _check_range(reader, child)
     lasts = reader.get(node, "duration")
     if motion is not None and "duration" not in node.attributes:
         lasts = motion.duration

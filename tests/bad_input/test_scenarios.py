@@ -52,6 +52,7 @@ SCENARIOS = [
     ("two-robots", scenario('<robot at="lab"/>' * 2 + PLAY), "s.xml:2:18", "a second <robot>"),
     ("infinite", scenario(PLAY + '<person x="1e999" y="0"/>'), "s.xml:2:40", "is not a number"),
     ("service", scenario(PLAY + '<service name="a"><replay/></service>'), "s.xml:2:47", "reply"),
+    ("status", scenario(PLAY + '<service name="a"><failure status="-1"/></service>'), "s.xml:2:64", "from 100 to 599"),
     ("foreign", scenario(f"{PLAY}<x:person{FOREIGN} x='1'/>"), "s.xml:2:29", "another namespace"),
     ("foreign-answer", scenario(f"{PLAY}<x:answer{FOREIGN} to='x'>Yes.</x:answer>"), "s.xml:2:29", "another namespace"),
     ("no-such-favourite", scenario(PLAY, 'policy="fixed:zz"'), "s.xml:1:", "Write a."),
@@ -89,6 +90,7 @@ ROBOTS = [
     ("foreign", robot(f"<x:camera{FOREIGN} angle='1'/>"), "w.xml:2:1", "another namespace"),
     ("adds-device", robot('<adds command="dance" devices="leg"/>'), "w.xml:2:32", "leg"),
     ("bounds", robot('<adds command="a" devices="arm"><argument name="n" kind="number" low="5" high="1"/></adds>'), "w.xml:2:", "low"),
+    ("bounds-of-text", robot('<adds command="a" devices="arm"><argument name="n" high="1"/></adds>'), "w.xml:2:58", "high limits numbers"),
 ]  # fmt: skip
 
 
@@ -118,6 +120,7 @@ def test_a_world_of_nothing(prima: Prima, tmp_path: Path) -> None:
     write(tmp_path, "w.xml", world('<wall x1="0" y1="0" x2="0" y2="0"/>'))
     write(tmp_path, "s.xml", scenario(PLAY, world="w.xml"))
     prima("run", "s.xml").check(0, "log: alive")
+    prima("validate", "w.xml").check(0, "w.xml:2:25: warning: The wall has no length")
 
 
 LACKING = block("<speak>x</speak>")

@@ -17,7 +17,7 @@ reply > data | An answer.
 failure | An error instead of an answer.
   {AFTER}
   reason: text = the service does not answer | why
-  status: integer | the HTTP status that answers a fetch
+  status: integer 100..599 | the HTTP status that answers a fetch
 connection > redirect | What VoiceXML applications know of the user's call, as session.connection;
     without it, or an attribute of it, that is undefined.
   remote: text | the URI of the user's telephone
