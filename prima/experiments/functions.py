@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterable, Mapping, Sequence, Set
+from numbers import Real
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from prima.api.rehearsing import check_numbers
 from prima.errors import UsageError
@@ -149,20 +149,37 @@ def _levels(vary: Mapping[str, Level | Sequence[Level]]) -> dict[str, str]:
         UsageError: they are not levels by paths.
     """
     texts: object = vary
-    with suppress(AttributeError, TypeError):
+    if isinstance(vary, Mapping):
         texts = {path: _text(path, levels) for path, levels in vary.items()}
     return check_texts(texts, "vary")
 
 
-def _text(path: str, levels: Level | Sequence[Level]) -> str:
-    """The levels of one path; an empty list would read like the level that removes a value.
+def _text(path: str, levels: Any) -> str:
+    """The levels of one path; no levels would read like the level that removes a value.
 
     Raises:
-        UsageError: there are none.
+        UsageError: there are none, or one is neither a text nor a number.
     """
-    if isinstance(levels, list | tuple) and not levels:
+    if isinstance(levels, str):
+        return levels
+    if isinstance(levels, Iterable) and not isinstance(levels, Set | Mapping | bytes):
+        several = list(levels)
+    else:
+        several = [levels]
+    if not several:
         raise UsageError(f'{path}: there are no levels. Write some, as ["Yes.", "No."].')
-    return levels_text(levels)
+    for one in several:
+        if not _is_level(one):
+            raise UsageError(
+                f"{path}: {one!r:.80} cannot be a level. Write texts or numbers in a list;"
+                ' "" removes the value.'
+            )
+    return levels_text(several)
+
+
+def _is_level(one: object) -> bool:
+    """Whether a value can be a level: a text or a number, and not a missing one (NaN)."""
+    return isinstance(one, str | Path) or (isinstance(one, Real) and one == one)
 
 
 def _table(made: Sweep, output: str | Path | None, pool: Pool, resume: bool) -> pyarrow.Table:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import pickle
 from collections.abc import Callable
+from math import nan
 from pathlib import Path
 from typing import Any
 
@@ -236,6 +237,36 @@ def test_records_of_a_live_run_that_were_not_kept_are_named() -> None:
         (prima.sweep, {"scenarios": SCENARIO, "vary": 5}, "vary=5: write a dict."),
         (prima.sweep, {"scenarios": SCENARIO, "vary": {5: "a"}}, "vary=5: write a text."),
         (prima.sweep, {"scenarios": SCENARIO, "vary": {"answer": []}}, "answer: there are no"),
+        (
+            prima.sweep,
+            {"scenarios": SCENARIO, "vary": {"answer": range(0)}},
+            "answer: there are no",
+        ),
+        (
+            prima.sweep,
+            {"scenarios": SCENARIO, "vary": {"answer": None}},
+            "answer: None cannot be a level.",
+        ),
+        (
+            prima.sweep,
+            {"scenarios": SCENARIO, "vary": {"answer": ["a", None]}},
+            "answer: None cannot",
+        ),
+        (
+            prima.sweep,
+            {"scenarios": SCENARIO, "vary": {"answer": [nan]}},
+            "answer: nan cannot be a level.",
+        ),
+        (
+            prima.sweep,
+            {"scenarios": SCENARIO, "vary": {"answer": [b"x"]}},
+            "answer: b'x' cannot be a level.",
+        ),
+        (
+            prima.sweep,
+            {"scenarios": SCENARIO, "vary": {"answer": {"a"}}},
+            "answer: {'a'} cannot be a level.",
+        ),
         (prima.sweep, {"scenarios": SCENARIO, "policies": [5]}, "policies=5: write a text."),
         (prima.sweep, {"scenarios": SCENARIO, "output": b"x"}, "output=b'x': write a path,"),
         (prima.sweep, {"scenarios": "a\0b"}, "'a\\x00b' is not a file's name."),
