@@ -92,12 +92,15 @@ def _constant(measures: list[MeasureColumn]) -> str:
     if not measures:
         return ""
     listed = ", ".join(_value(one) for one in measures)
-    return f'<p id="constant">The same in all runs, so neither drawn nor tested: {listed}.</p>\n'
+    same = "The same in all runs that have a value, so neither drawn nor tested"
+    return f'<p id="constant">{same}: {listed}.</p>\n'
 
 
 def _value(measure: MeasureColumn) -> str:
     known = [one for one in measure.values.tolist() if one == one]
     value = f"{number(known[0])}{measure.unit}" if known else "no value"
+    if known and (missing := len(measure.values) - len(known)):
+        value += f"; {counted(missing, 'run')} without a value"
     return text(f"{measure.name} ({value})")
 
 

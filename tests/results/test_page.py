@@ -69,6 +69,14 @@ def test_measures_have_their_means_and_what_does_not_differ_is_told(page: str) -
     assert page.count("<figure>") == 4
 
 
+def test_a_value_that_is_the_same_where_there_is_one_is_told_so(tmp_path: Path) -> None:
+    made = [{**row, "response_mean": 0.0 if row["run"] else None} for row in runs()]
+    page = results.make(results.read(write(tmp_path, made)), tmp_path)
+    constant = re.search(r'<p id="constant">(.*?)</p>', page)
+    assert constant and constant[1].startswith("The same in all runs that have a value, so")
+    assert "response_mean (0 s; 1 run without a value)" in constant[1]
+
+
 def test_each_level_has_its_row(page: str) -> None:
     rows = [row for row in Tables(page).by_name("levels-0") if row["Factor"] == "policy"]
     assert [(row["Level"], row["Mean"], row["Runs"]) for row in rows] == [
