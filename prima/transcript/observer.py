@@ -8,7 +8,13 @@ from typing import ClassVar
 
 from prima.messages import Record
 from prima.transcript.criteria import Criteria, ReactionDelay
-from prima.transcript.perceived import AwaitedAnswer, AwaitingEvent, PerceivedStream, does_speak
+from prima.transcript.perceived import (
+    NEVER,
+    AwaitedAnswer,
+    AwaitingEvent,
+    PerceivedStream,
+    does_speak,
+)
 from prima.transcript.record import Entry
 
 LATE_REACTION = 3.0
@@ -121,7 +127,7 @@ class Observer:
         again = not record.resumed and record.behavior.partition(".")[2] not in ("", "1")
         if not again:
             self._begin(tree, record, request)
-        self._go_on(tree, not again and does_speak(request))
+        self._go_on(tree, request, not again and does_speak(request))
         tree.run(name, request)
 
     def _talk(self, tree: PerceivedStream, record: Entry) -> None:
@@ -175,20 +181,23 @@ class Observer:
                 self._stolen[tree.name] = False
         self._end(record)
 
-    def _go_on(self, tree: PerceivedStream, speaks: bool) -> None:
+    def _go_on(self, tree: PerceivedStream, request: Entry, speaks: bool) -> None:
         """A stream does something, or speaks: note whether another application has broken it.
 
         ABs that begin beside it at the same instant do not break it.
         """
-        spoken_into = speaks and tree.spoken_into
-        came_in = bool(tree.broken_by) and tree.since < self._now
-        broken = spoken_into or (came_in and not tree.by_reaction)
+        if request.feedback and tree.spoken_into == self._now:
+            tree.spoken_into = NEVER  # what is said beside a way from its first instant on
+        since = tree.spoken_into if speaks else self._now
+        if tree.broken_by and not tree.by_reaction:
+            since = min(since, tree.entered)
+        broken = since < self._now
         if broken:
             self.found.broken += 1
-            self.broken_since = tree.since
+            self.broken_since = since
         tree.broken_by = ""
         if speaks or broken:
-            tree.spoken, tree.spoken_into = speaks, False
+            tree.spoken, tree.spoken_into = speaks, NEVER
 
     def _react(self, tree: PerceivedStream, serial: int, event: AwaitingEvent) -> None:
         """An application starts something in reaction to an event: the first time counts."""
@@ -229,23 +238,26 @@ class Observer:
 
     def _come_into(self, other: PerceivedStream, tree: PerceivedStream, speaks: bool) -> None:
         """A stream enters another one, which is broken if it continues later."""
-        if speaks and other.spoken and not other.spoken_into:
+        if speaks and other.spoken and other.spoken_into == NEVER:
             self._speak_into(other, tree)
         idle = not other.running and not tree.running
         first = not other.broken_by or (other.by_reaction and tree.reacting < 0)
         # A stream that only has to drive away has no topic to break.
         if other.topics and idle and first:
-            other.broken_by, other.since = tree.app, self._now
+            other.broken_by, other.entered = tree.app, self._now
             other.by_reaction = tree.reacting >= 0
             other.reacting = -1.0  # its continuation does not count as a reaction any more
 
     def _speak_into(self, other: PerceivedStream, tree: PerceivedStream) -> None:
-        """A stream speaks while another that has spoken is active: note whether it breaks a topic.
+        """A stream speaks while another that has spoken goes on: note whether it breaks a topic.
 
         Speaking during a way or a search is fine: a feedback Command takes as long as it takes.
         """
-        if other.running and not other.looping and not other.speaking:
-            other.spoken_into, other.since = tree.reacting < 0, self._now
+        if other.looping or other.speaking:
+            return
+        if other.running or other.topics:
+            other.spoken_into = self._now if tree.reacting < 0 else NEVER
+        if other.running:
             other.reacting = -1.0
 
     def _leave(self, tree: PerceivedStream, behavior: str) -> None:

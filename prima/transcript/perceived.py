@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import inf
 
 from prima.transcript.criteria import ReactionDelay
 from prima.transcript.record import Entry
+
+NEVER = inf
+"""The time of what has not happened."""
 
 
 @dataclass(slots=True)
@@ -27,10 +31,10 @@ class PerceivedStream:
     """Its running ABs that speak."""
     spoken: bool = False
     """Whether it has spoken, and no break has been counted since."""
-    spoken_into: bool = False
-    """Whether another application has spoken, other than by a reaction, since it last did."""
-    since: float = 0.0
-    """When another application entered it or spoke into it."""
+    spoken_into: float = NEVER
+    """When another application first spoke, other than by a reaction, since it last did."""
+    entered: float = NEVER
+    """When another application entered it, if ``broken_by`` is one."""
     has_spoken: bool = False
     """Whether it has ever spoken."""
     talked_over: bool = False

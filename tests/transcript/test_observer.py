@@ -108,6 +108,47 @@ def test_a_break_by_words_and_a_turn_counts_once() -> None:
     assert observe(in_time(*topic, *others)).broken == 1
 
 
+@pytest.mark.parametrize("first", ["fa", "ea"])
+@pytest.mark.parametrize(("feedback", "count"), [(False, 1), (True, 0)])
+def test_words_between_two_utterances_break_a_topic_whichever_is_recorded_first(
+    first: str, feedback: bool, count: int
+) -> None:
+    """In the instant of the words it turns its head or drives, and only on its way one may talk."""
+    beside = records_of("ea", 2, whole(1, 3), "move-head", feedback=feedback)
+    words = records_of("fa", 1, whole(1, 2), text="I say.")
+    topic = [
+        records_of("ea", 1, whole(0, 1), text="1"),
+        *([words, beside] if first == "fa" else [beside, words]),
+        records_of("ea", 3, whole(3, 4), text="2"),
+    ]
+    assert observe(in_time(*topic)).broken == count
+
+
+def test_words_that_begin_with_the_next_utterance_are_not_between_two() -> None:
+    topic = [
+        records_of("ea", 1, whole(0, 1), text="1"),
+        records_of("ea", 2, whole(1, 3), "move-head"),
+        records_of("fa", 1, whole(2, 3), text="I say."),
+        records_of("ea", 3, whole(2, 3), text="2"),
+    ]
+    assert observe(in_time(*topic)).broken == 0
+
+
+def test_parts_of_a_unit_that_runs_leave_a_reaction_one() -> None:
+    unit = [
+        records_of("ea", 1, whole(2, 6, 2), "iu", reactive=True, cause=1),
+        records_of("ea", 2, whole(2, 3, 2), text="I have got a message.", unit="ea#1"),
+        records_of("ea", 3, whole(4, 6, 2), text="It is this.", unit="ea#1"),
+        records_of("ea", 4, whole(9, 10, 2), text="So much for that."),
+    ]
+    touched = [
+        records_of("fa", 1, whole(0, 1), text="I go."),
+        records_of("fa", 2, whole(3, 3.1, 3), "stop-moving", reactive=True, cause=2),
+        records_of("fa", 3, whole(6, 7, 3), text="What is it?"),
+    ]
+    assert observe(in_time(*unit, *touched)).broken == 0
+
+
 @pytest.mark.parametrize(("between", "count"), [(999, 1), (1000, 1), (1001, 0)])
 def test_a_reaction_counts_after_a_thousand_other_events(between: int, count: int) -> None:
     common = {"phase": "event", "actor": "user", "event": "touch.head"}
