@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 from prima.errors import nearest_word, one_of, with_article
 from prima.language.values import DRAWABLE, read_value
@@ -185,14 +185,19 @@ def inside_itself(tag: str) -> str:
     return f"Close the first <{tag}> before this one."
 
 
-def _holder(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
-    """The element allowed in the parent that may contain another; none if several could."""
+def put_into(tag: str, parent: Node, vocabulary: Vocabulary, usual: Sequence[str]) -> str:
+    """The remedy for an element that belongs into another one, allowed in its parent.
+
+    Of several that could contain it, this is the first of the usual ones, or none.
+    """
     inside = [
         one
         for one, key in vocabulary.children(parent.key).items()
         if tag in vocabulary.children(key)
     ]
-    return "block" if "block" in inside else inside[0] if len(inside) == 1 else ""
+    alone = inside[0] if len(inside) == 1 else ""
+    holder = next((one for one in usual if one in inside), alone)
+    return f"Put it into {with_article(f'<{holder}>')}." if holder else ""
 
 
 def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
@@ -208,8 +213,8 @@ def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
         return inside_itself(tag)
     if tag in INSTEAD and vocabulary.child(parent.key, "speak"):
         return INSTEAD[tag]
-    if holder := _holder(tag, parent, vocabulary):
-        return f"Put it into {with_article(f'<{holder}>')}."
+    if into := put_into(tag, parent, vocabulary, ["block"]):
+        return into
     if set(allowed) & set(vocabulary.parents(parent.tag)):
         return f"Move it out of the <{parent.tag}>."
     return INSTEAD.get(tag) or f"It is allowed in {one_of(allowed)}."

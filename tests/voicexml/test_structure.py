@@ -129,6 +129,23 @@ def test_problems_have_a_place(text: str, found: list[str]) -> None:
     assert problems(text) == found
 
 
+@pytest.mark.parametrize(
+    ("body", "remedy"),
+    [
+        ("<form><throw event='e'/></form>", "Put it into a <block>."),
+        ("<form><block>Hi <break/></block></form>", "Put it into a <prompt>."),
+        ("<form><field name='f'><noinput><s>Hm</s></noinput></field></form>", "into a <prompt>."),
+        ("<form><option>tea</option></form>", "Put it into a <field>."),
+        ("<field name='f'/>", "Put it into a <form>."),
+        ("<form><form/></form>", "Close the first <form> before this one."),
+        ("<form><block><field name='f'/></block></form>", "It is allowed in form."),
+    ],
+)
+def test_a_misplaced_element_is_told_where_it_belongs(body: str, remedy: str) -> None:
+    (problem,) = read_page("a.vxml", "a.vxml", vxml(body).encode()).problems
+    assert (problem.code, problem.remedy.endswith(remedy)) == ("misplaced-element", True)
+
+
 DOCTYPE = (
     '<?xml version="1.0" encoding="UTF-8"?>\n<!DOCTYPE vxml PUBLIC "-//W3C//DTD VOICEXML 2.1//EN"'
     ' "http://www.w3.org/TR/voicexml21/vxml.dtd">\n'

@@ -10,7 +10,7 @@ from prima.errors.diagnoses.structure import (
     WRONG_NAMESPACE,
 )
 from prima.grammar.vocabulary import SRGS
-from prima.markup.hints import inside_itself
+from prima.markup.hints import inside_itself, put_into
 from prima.markup.spans import name_spans, renamed
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Instead
@@ -40,6 +40,8 @@ HOLDERS = {
     "said-foreach": "a <foreach> of a prompt",
 }
 """How messages name elements whose content depends on where they appear."""
+USUAL = ("block", "prompt")
+"""Elements that authors forget most often around others."""
 
 HOLDS_TEXT = STRAY_TEXT.says('<{tag}> holds text: "{text}".')
 IGNORED = WRONG_NAMESPACE.says(
@@ -110,7 +112,8 @@ def _check_children(node: Node, stack: list[Node], problems: list[Problem]) -> N
 def _misplaced(child: Node, node: Node) -> Problem:
     if child.tag not in VOICEXML.tags:
         return UNKNOWN_HERE.at(child.place, _known_instead(child), tag=child.tag)
-    hint = Hint(inside_itself(child.tag) if child.tag == node.tag else "")
+    around = put_into(child.tag, node, VOICEXML, USUAL)
+    hint = Hint(inside_itself(child.tag) if child.tag == node.tag else around)
     others = one_of(tag for tag in VOICEXML.parents(child.tag) if tag != node.tag)
     holder = HOLDERS.get(node.key, f"<{node.tag}>")
     return NOT_HERE.at(child.place, hint, tag=child.tag, holder=holder, others=others)
