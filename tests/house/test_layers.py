@@ -100,7 +100,7 @@ INSIDE = {
     "script": [
         {"sandbox", "surrogates"},
         {"budget", "evaluation", "globals", "parse", "wire"},
-        {"choices", "ecmascript", "known", "literals", "walk"},
+        {"choices", "conditions", "ecmascript", "known", "literals", "walk"},
         {"comparison", "constants", "names", "operations"},
         {"hoisting", "syntax"},
         {"compile", "data", "wrapping"},

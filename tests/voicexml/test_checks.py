@@ -32,7 +32,7 @@ from tests.helpers.voice import Call
         ("<form><block><script>var y = x;</script></block></form>", "x"),
         ("<script>function f(y) { return x + y; }</script><form><var name='x'/></form>", "x"),
         ("<form><block><script>x++;</script></block></form>", "x"),
-        ("<form><block><if cond='(x = 1)'/></block></form>", "x"),
+        ("<form><block><log expr='(x = 1)'/></block></form>", "x"),
         ('<form><block><disconnect namelist="x"/></block></form>', "x"),
         ('<form><block><data src="service:s" namelist="x"/></block></form>', "x"),
         ('<form><block><var name="x"/></block><block><log expr="x"/></block></form>', "x"),

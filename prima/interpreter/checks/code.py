@@ -8,7 +8,8 @@ from contextlib import suppress
 from itertools import chain
 from typing import Any
 
-from prima.errors import Diagnosis, Problem
+from prima.errors import Problem
+from prima.errors.diagnoses.conditions import ASSIGNING_CONDITION, FUNCTION_CONDITION
 from prima.errors.diagnoses.names import BAD_EXPRESSION
 from prima.interpreter.acts import (
     Act,
@@ -32,10 +33,10 @@ from prima.interpreter.elements import Document, Field, Form, Item, Prompt, Subd
 from prima.interpreter.steps import no_step
 from prima.markup.hints import half
 from prima.script.compile import compiled
+from prima.script.conditions import assigned
 from prima.script.data import declared
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.known import Known
-from prima.script.parse import inner, parse_expression
 
 STRINGS = re.compile(r""""(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'""")
 MISTAKES = (
@@ -57,18 +58,6 @@ WIDEST = 60
 
 NOT_ECMASCRIPT = BAD_EXPRESSION.says('"{code}" is not ECMAScript: {error}.')
 NOT_CHECKED = BAD_EXPRESSION.says('"{code}" cannot be checked: {error}.', severity="warning")
-ASSIGNING_CONDITION = Diagnosis(
-    "assigning-condition",
-    "Condition that assigns",
-    "A condition has = where a comparison, ==, was most likely meant: it changes the variable, and"
-    " holds whenever the new value does. With =>, meant for >=, it is a function, which always holds.",
-    severity="warning",
-    message="This condition gives a variable a value; it does not compare.",
-    remedy="Write ==.",
-)
-FUNCTION_CONDITION = ASSIGNING_CONDITION.says(
-    "This condition is a function, which is always true; it does not compare.", "Write >=."
-)
 
 
 def of_requests(run: CommandRun) -> Iterator[object]:
@@ -239,16 +228,6 @@ def _of_full_width(code: str) -> str:
 
 def _assigns(expr: Expression) -> Iterator[Problem]:
     """The problem of a condition that assigns a variable where a comparison was meant."""
-    if "=" not in expr.code:
-        return
-    parsed = parse_expression(expr.code)
-    if parsed is None:
-        return
-    whole = inner(parsed)
-    if whole is not None and whole.type == "arrow_function":
-        sign = next(one for one in whole.children if one.type == "=>")
-        yield FUNCTION_CONDITION.at(place_in(expr, parsed.start(sign)))
-        return
-    found = (node for node in parsed.walk() if node.type == "assignment_expression")
-    if (first := next(found, None)) is not None:
-        yield ASSIGNING_CONDITION.at(place_in(expr, parsed.start(first.children[1])))
+    if (found := assigned(expr.code)) is not None:
+        diagnosis = FUNCTION_CONDITION if found.function else ASSIGNING_CONDITION
+        yield diagnosis.at(place_in(expr, found.start))

@@ -20,6 +20,7 @@ from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.shared import IsolatedSyntax, syntax
 from prima.voicexml.arranging import UNIT, items_in, parts_of
 from prima.voicexml.checks.attributes import bad_value, fits, instead_of
+from prima.voicexml.checks.conditions import check_conditions
 from prima.voicexml.checks.failing import check_failing
 from prima.voicexml.checks.guests import command_problems
 from prima.voicexml.checks.names import (
@@ -97,7 +98,7 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
         problems += _targets(node, dialogs)
     for dialog in root.all("form", "menu"):
         problems += _items(dialog, dialogs)
-    return [*problems, *check_failing(root), *_first_prompt(root)]
+    return [*problems, *check_conditions(root), *check_failing(root), *_first_prompt(root)]
 
 
 def _check_node(node: Node, lang: str) -> Iterator[Problem]:
