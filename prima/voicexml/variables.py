@@ -7,23 +7,22 @@ what is evaluated in document order, and everywhere in all else.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
 
-from prima.errors import Place, Problem, Span, suggestion
+from prima.errors import Problem, Span, suggestion
 from prima.errors.diagnoses.names import NO_MEMBER, UNDECLARED_VARIABLE
 from prima.markup.spans import Declarations
 from prima.markup.tree import Node
-from prima.script.globals import IDENTIFIER
 from prima.script.known import Known, NameScope
 from prima.script.names import Names, Use, expression_names, script_names
+from prima.script.slips import or_text, value_elsewhere
 from prima.script.walk import OBJECTS
 from prima.voicexml.checks import NAMING, is_code
 from prima.voicexml.document import Page
 from prima.voicexml.elements import HANDLERS, INPUTS, ITEMS
+from prima.voicexml.reads import FILES, Read, reads, scope_members
 
 ALWAYS = frozenset(
     [
@@ -33,17 +32,10 @@ ALWAYS = frozenset(
     ]
 )
 """The platform's variables (5.1.2, 5.1.4, 5.1.5, 5.2.2, 2.2.4; 2.1, D)."""
-LISTING = frozenset(["submit", "clear", "return", "exit", "subdialog", "disconnect", "data"])
-"""Elements whose namelist names variables."""
 DIALOGS = ("form", "menu")
 SETUP = ("var", "script", "data")
 CONTAINERS = frozenset([*HANDLERS, "block", "filled", "prompt"])
 """Elements whose content has a scope of its own, unless they are in such content themselves."""
-FILES = ("src", "srcexpr")
-"""Attributes of an external script."""
-LISTED = re.compile(r"\S+")
-"""A name in a list of names."""
-
 Text = Callable[[Page, Node], str | None]
 """Gives the text of a script in a file, if it can be read."""
 
@@ -67,22 +59,6 @@ def check_variables(page: Page, root: Page | None, text: Text, is_root: bool) ->
         return list(_Look(page, root, text).problems(is_root))
     except Unknown:
         return []
-
-
-class Read(NamedTuple):
-    """A variable that a piece of code reads."""
-
-    name: str
-    node: Node
-    attribute: str
-    start: int
-    at_once: bool = True
-    """Whether it is read as soon as the code is evaluated."""
-
-    @property
-    def place(self) -> Place:
-        """Where it is written."""
-        return self.node.source.inside(self.node.index, self.attribute, self.start)
 
 
 @dataclass(slots=True)
@@ -221,9 +197,11 @@ class _Look:
 
     def _undeclared(self, read: Read, known: Known) -> Problem:
         place = read.place
-        hint = suggestion(read.name, known.written(), Span.of(place, read.name))
+        span = Span.of(place, read.name)
+        hint = value_elsewhere(read.name, span) or suggestion(read.name, known.written(), span)
         declare = f'Declare it: <var name="{read.name}"/>.'
         hint = hint or self._declarations.hint(declare, read.name, read.node)
+        hint = or_text(hint, read.name) if read.bare else hint
         return NOT_DECLARED.at(place, hint, name=read.name)
 
     def check(
@@ -233,7 +211,7 @@ class _Look:
         seen: set[str] = set()
         for node in nodes:
             seen |= _with_it(node, level)
-            for read in _reads(node):
+            for read in reads(node):
                 if read.name in ALWAYS or read.name in outer or read.name in seen:
                     continue
                 if read.name in self.asked:
@@ -247,7 +225,7 @@ class _Look:
 
     def members(self, node: Node, known: Mapping[str, NameScope]) -> Iterator[Problem]:
         """Warn of members of scopes that must exist and do not."""
-        for read in _members(node):
+        for read in scope_members(node):
             holder, _, name = read.name.partition(".")
             scope = known.get(holder)
             if scope is None or name in scope or name in ALWAYS:
@@ -278,54 +256,6 @@ def _with_it(node: Node, level: Level) -> set[str]:
 def _in_order(read: Read) -> bool:
     """Whether code of a document or dialog is evaluated where it is written, and not later."""
     return read.node.tag in SETUP or (read.node.tag in ITEMS and read.attribute == "expr")
-
-
-def _reads(node: Node) -> Iterator[Read]:
-    """The variables that an element reads, or changes by their names."""
-    for attribute in node.attributes:
-        if is_code(node, attribute):
-            yield from _in_code(node, attribute, expression_names(node.get(attribute)))
-    if node.key == "assign":
-        yield from _listed(node, "name")
-    elif node.key in LISTING:
-        yield from _listed(node, "namelist")
-    elif node.key == "script" and node.attributes.keys().isdisjoint(FILES):
-        yield from _in_code(node, "", script_names(node.own_text))
-
-
-def _in_code(node: Node, attribute: str, names: Names) -> Iterator[Read]:
-    for name, start in names.free.items():
-        at_once = name in names.now
-        yield Read(name, node, attribute, names.now.get(name, start), at_once)
-
-
-def _listed(node: Node, attribute: str) -> Iterator[Read]:
-    for whole in LISTED.finditer(node.get(attribute)):
-        head = whole[0].partition(".")[0]
-        if IDENTIFIER.fullmatch(head):
-            yield Read(head, node, attribute, whole.start())
-
-
-def _members(node: Node) -> Iterator[Read]:
-    """Members of scopes, such as ``document.x``, that must exist."""
-    for attribute, code in node.attributes.items():
-        if is_code(node, attribute):
-            yield from _parted(node, attribute, expression_names(code))
-    if node.key == "script" and node.attributes.keys().isdisjoint(FILES):
-        yield from _parted(node, "", script_names(node.own_text))
-    changed = {"assign": "name", "clear": "namelist"}.get(node.key, "")
-    for whole in LISTED.finditer(node.get(changed)):
-        holder, _, rest = whole[0].partition(".")
-        name = rest.partition(".")[0]
-        if holder in OBJECTS and IDENTIFIER.fullmatch(name):
-            yield Read(f"{holder}.{name}", node, changed, whole.start())
-
-
-def _parted(node: Node, attribute: str, names: Names) -> Iterator[Read]:
-    for use in names.uses:
-        if use.parted:
-            start = use.start - len(use.holder) - 1
-            yield Read(f"{use.holder}.{use.name}", node, attribute, start)
 
 
 NOT_DECLARED = UNDECLARED_VARIABLE.says(

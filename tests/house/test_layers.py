@@ -100,7 +100,7 @@ INSIDE = {
     "script": [
         {"sandbox", "surrogates"},
         {"budget", "evaluation", "globals", "parse", "wire"},
-        {"choices", "conditions", "ecmascript", "known", "literals", "walk"},
+        {"choices", "conditions", "ecmascript", "known", "literals", "slips", "walk"},
         {"comparison", "constants", "names", "operations"},
         {"hoisting", "syntax"},
         {"compile", "data", "wrapping"},
@@ -154,7 +154,7 @@ INSIDE = {
         },
         {"arranging", "speech"},
         {"acting", "checks", "queue"},
-        {"document"},
+        {"document", "reads"},
         {"access", "listening", "matching", "sketch", "state", "variables"},
         {"results", "settings", "sketched", "waits"},
         {"reading", "shared"},

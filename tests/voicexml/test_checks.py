@@ -50,6 +50,23 @@ def test_a_variable_that_nothing_declares_is_told(tmp_path: Path, content: str, 
 
 
 @pytest.mark.parametrize(
+    ("content", "remedy"),
+    [
+        ("<if cond='n == tea'/>", """<var name="tea"/>. For the text itself write 'tea'."""),
+        ("<assign name='n' expr=' tea '/>", "For the text itself write 'tea'."),
+        ("<if cond='tea == n'/>", '<var name="tea"/>.'),
+        ("<value expr='tea'/>", '<var name="tea"/>.'),
+        ("<assign name='tea' expr='1'/>", '<var name="tea"/>.'),
+        ("<if cond='n == True'/>", "Write true."),
+        ("<script>n == tea;</script>", '<var name="tea"/>.'),
+    ],
+)
+def test_a_text_without_quotes_is_told_as_one(tmp_path: Path, content: str, remedy: str) -> None:
+    (one,) = told(tmp_path, f"<var name='n'/><form><block>{content}</block></form>")
+    assert one.startswith("main.vxml undeclared-variable") and one.endswith(remedy)
+
+
+@pytest.mark.parametrize(
     "code",
     [
         """<if cond="typeof q != 'undefined' &amp;&amp; q == 1"/>""",

@@ -19,13 +19,8 @@ from prima.markup.tree import Node
 from prima.script.globals import HANDLED, IDENTIFIER, RESERVED
 from prima.script.known import Known
 from prima.script.names import Names, expression_names, script_names
+from prima.script.slips import is_bare, or_text, value_elsewhere
 
-ELSEWHERE = {
-    **dict.fromkeys(("True", "TRUE"), "true"),
-    **dict.fromkeys(("False", "FALSE"), "false"),
-    **dict.fromkeys(("None", "Null", "NULL", "nil"), "null"),
-}
-"""Values as other languages write them, with those of ECMAScript."""
 PARTS = ("name", "message", "data")
 TOLD = ("session.time", *(f"event.{part}" for part in PARTS))
 """What a run tells to documents."""
@@ -257,19 +252,14 @@ class Variables:
         if name in RESERVED:
             return NO_VARIABLE.at(place, meant, name=name)
         hint = meant or self._declarations.hint(f'Declare it: <var name="{name}"/>.', name, node)
-        return NOT_DECLARED.at(place, _quoted(hint, name) if bare else hint, name=name)
+        return NOT_DECLARED.at(place, or_text(hint, name) if bare else hint, name=name)
 
 
 def _is_bare(expr: Expression, name: str, start: int) -> bool:
     """Whether a name is an expression's only one, or compared, and may have been meant as a text."""
-    if name in {*ABSENT, *ELSEWHERE}:
+    if name in ABSENT or (expr.node.tag == "value" and expr.code.strip() == name):
         return False
-    whole = expr.code.strip() == name and expr.node.tag != "value"
-    return whole or expr.code[:start].rstrip().endswith(("==", "!="))
-
-
-def _quoted(hint: Hint, name: str) -> Hint:
-    return hint._replace(text=f"{hint.text} For the text itself write '{name}'.")
+    return is_bare(expr.code, name, start)
 
 
 def _meant(place: Place, name: str, every: Iterable[str], spans: Sequence[Span] = ()) -> Hint:
@@ -277,6 +267,4 @@ def _meant(place: Place, name: str, every: Iterable[str], spans: Sequence[Span] 
     if name in ABSENT:
         return Hint(ABSENT[name])
     spans = spans or [Span.of(place, name)]
-    if right := ELSEWHERE.get(name, ""):
-        return replaced(f"Write {right}.", right, *spans)
-    return suggestion(name, every, *spans)
+    return value_elsewhere(name, *spans) or suggestion(name, every, *spans)
