@@ -12,6 +12,8 @@ from prima.markup.encodings import ENCODINGS, byte_place, with_line_feeds
 from prima.markup.tree import Source
 
 HEADER = re.compile(r"#ABNF[ \t]+([^\s;]+)(?:[ \t]+([^\s;]+))?[ \t]*;")
+UNENDED = re.compile(r"#ABNF[ \t]+1\.0(?:[ \t]+[^\s;]+)?(?=[ \t]*(?:\n|\Z))")
+"""A header without its semicolon."""
 LINE_END = re.compile(r"[ \t]*(?:\n|\Z)")
 
 
@@ -74,6 +76,9 @@ def header_end(source: Source) -> int:
         GrammarError: it is missing, its version is unknown, or its line goes on.
     """
     header = HEADER.match(source.text)
+    if header is None and (unended := UNENDED.match(source.text)) is not None:
+        message = "The header of the ABNF form does not end with a semicolon."
+        raise GrammarError.of(source.at(0), "not-abnf", message, f'Write "{unended[0]};".')
     if header is None or header[1] != "1.0":
         found = header[1] if header else ""
         message = f'Version "{found[:20]}" is not known.' if found else NO_HEADER

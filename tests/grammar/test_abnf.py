@@ -141,6 +141,12 @@ def test_a_line_that_goes_on_after_the_header_is_told_where_it_does() -> None:  
     assert problems("#ABNF 1.0; language en;\nroot $r;\n$r = a;") == [told]
 
 
+@pytest.mark.parametrize("header", ["#ABNF 1.0", "#ABNF 1.0 ISO-8859-1"])
+def test_a_header_without_its_semicolon_is_told_with_it(header: str) -> None:  # SRGS 4.1
+    why = "The header of the ABNF form does not end with a semicolon."
+    assert problems(f"{header} \nroot $r;\n$r = a;") == [(1, 1, why, f'Write "{header};".')]
+
+
 @pytest.mark.parametrize(
     "text",
     [
