@@ -24,6 +24,12 @@ NAME = "function (v) { return v === void 0 || v === null ? null : `${v}`; }"
 """Like the former, for names and URIs: null is refused."""
 TOLD = frozenset(["message", "aai"])
 """Attributes that name nothing: their text is only reported."""
+WRONG = {
+    "not a name": "is not a name",
+    "reserved": "is a name of the platform's",
+    "scope": "names a scope; declare it there",
+}
+"""Why a variable cannot have a name, as messages of a run say it."""
 
 
 def is_worded(node: Node) -> bool:
@@ -136,12 +142,8 @@ class VoiceEvaluator:
     def check_name(node: Node, attribute: str = "name") -> None:
         """Refuse to declare a variable whose name has a scope prefix or is invalid (5.1)."""
         name = node.get(attribute)
-        if "." in name:
-            message = f'"{name}" names a scope; declare it there'
-            raise Thrown.at(node, "error.semantic", message)
         if wrong := wrong_name(name):
-            why = "is not a name" if wrong == "not a name" else "is a name of the platform's"
-            raise Thrown.at(node, "error.semantic", f'"{name}" {why}')
+            raise Thrown.at(node, "error.semantic", f'"{name}" {WRONG[wrong]}')
 
     def text(self, node: Node, context: Context, local: Scope) -> str:
         """The text of a value (4.1.4)."""

@@ -380,6 +380,20 @@ def test_an_items_expression_without_a_value_is_error_semantic(item: str) -> Non
 
 
 @pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("a.b", "is not a name"),
+        ("dialog.b", "names a scope; declare it there"),
+        ("_b", "is a name of"),
+    ],
+)
+def test_a_run_says_why_a_variable_cannot_have_its_name(name: str, why: str) -> None:
+    text = "<catch><log expr='_message'/><exit/></catch>" + block(f'<var name="{name}" expr="1"/>')
+    (logged,) = run(text).logs()
+    assert f'"{name}" {why}' in logged
+
+
+@pytest.mark.parametrize(
     ("body", "told"),
     [
         ("<var name='_a'/>", ['"_a" is reserved']),
@@ -387,6 +401,7 @@ def test_an_items_expression_without_a_value_is_error_semantic(item: str) -> Non
         ("<form><block><foreach item=' ' array='[]'/></block></form>", ['"" is not a name']),
         ("<form><field name='a$'><option>x</option></field></form>", ['"a$" is reserved']),
         ("<form><block><foreach item='a.b' array='[]'/></block></form>", ['"a.b" is not a name']),
+        ("<var name='a.b'/><var name='application.b'/>", ['"a.b" is not a name', '"application.b" names a scope']),
         ("<form><block><prompt><foreach item='1' array='[]'/></prompt></block></form>", ['"1" is not a name']),
         ("<form><block><assign name='session.a' expr='1'/></block></form>", ['"session.a" cannot be assigned']),
         ("<form><block><assign name='sessions.a' expr='1'/></block></form>", []),

@@ -38,6 +38,12 @@ RESERVED_NAME = BAD_VALUE.says(
     "Write another name.",
     "warning",
 )
+SCOPED_NAME = BAD_VALUE.says(
+    '"{name}" names a scope, as no declaration does: a run throws error.semantic.',
+    "Declare it without, where the scope declares its variables.",
+    "warning",
+)
+WRONG = {"not a name": NOT_A_NAME, "reserved": RESERVED_NAME, "scope": SCOPED_NAME}
 
 READ_ONLY = BAD_VALUE.says(
     '"{name}" cannot be assigned, as the session is read-only: a run throws error.semantic.',
@@ -75,7 +81,7 @@ def check_name(node: Node) -> Iterator[Problem]:
     if name in HIDING:
         yield _hides(place, name)
     elif wrong := wrong_name(name):
-        yield (NOT_A_NAME if wrong == "not a name" else RESERVED_NAME).at(place, name=name)
+        yield WRONG[wrong].at(place, name=name)
 
 
 def check_assigned(node: Node) -> Iterator[Problem]:
