@@ -146,6 +146,15 @@ def test_a_misplaced_element_is_told_where_it_belongs(body: str, remedy: str) ->
     assert (problem.code, problem.remedy.endswith(remedy)) == ("misplaced-element", True)
 
 
+def test_a_pause_of_other_platforms_is_told_as_a_break() -> None:
+    text = vxml(block("<prompt>Wait <pause>400</pause></prompt>"))
+    (problem,) = read_page("a.vxml", "a.vxml", text.encode()).problems
+    assert (problem.code, problem.message) == (
+        "unknown-element", "There is no <pause> in VoiceXML."
+    )  # fmt: skip
+    assert problem.remedy.startswith('In a prompt write <break time="1s"/>; between Commands <p:')
+
+
 DOCTYPE = (
     '<?xml version="1.0" encoding="UTF-8"?>\n<!DOCTYPE vxml PUBLIC "-//W3C//DTD VOICEXML 2.1//EN"'
     ' "http://www.w3.org/TR/voicexml21/vxml.dtd">\n'

@@ -30,6 +30,8 @@ HABITS: dict[str, str | Instead] = {
     "say": Instead("prompt"),
     "on": Instead("catch", 'event="..."'),
     "send": Instead("submit"),
+    "pause": 'In a prompt write <break time="1s"/>; between Commands '
+    f'<p:pause time="1s"/>, with xmlns:p="{PRIMA_NAMESPACE}".',
     "iu": f'Write <p:iu> around Commands or form items, with xmlns:p="{PRIMA_NAMESPACE}".',
     "par": f'Write <p:par> around Commands, with xmlns:p="{PRIMA_NAMESPACE}".',
     "seq": f'Write <p:seq> around Commands, with xmlns:p="{PRIMA_NAMESPACE}".',
