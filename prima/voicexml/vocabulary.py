@@ -205,3 +205,5 @@ PROPERTIES = {
     "maxnbest": "integer",
 }
 """Kinds of the Recommendation's properties (6.3)."""
+PROPERTY_NAMES = frozenset([*PROPERTIES, "fetchaudio", "recordutterancetype", "universals"])
+"""The names of all its properties."""

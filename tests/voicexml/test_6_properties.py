@@ -55,6 +55,28 @@ def test_an_unknown_property_is_ignored() -> None:  # 6.3
 
 
 @pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("timout", "timeout"),
+        ("inputmode", "inputmodes"),
+        ("bargeinType", "bargeintype"),
+        ("universal", "universals"),
+        ("fetchaudio", ""),
+        ("com.example.timeout", ""),
+        ("termdigits", ""),
+        ("voicename", ""),
+        ("", ""),
+    ],
+)
+def test_a_misspelt_property_is_told(name: str, meant: str) -> None:
+    text = vxml(f'<property name="{name}" value="x"/><form/>')
+    found = read_page("a.vxml", "a.vxml", text.encode()).warnings()
+    told = [f'There is no property "{name}" in VoiceXML: it has no effect.'] * bool(meant)
+    assert [one.message for one in found if "property" in one.message] == told
+    assert all(one.remedy == f'Did you mean "{meant}"?' for one in found if meant)
+
+
+@pytest.mark.parametrize(
     ("name", "value", "remedy"),
     [
         ("timeout", "1", 'Write "1s".'),
