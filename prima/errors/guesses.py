@@ -51,8 +51,11 @@ def guessable(word: str, known: Iterable[str]) -> list[str]:
     return sorted(words) if len(words) <= MANY_WORDS else []
 
 
-def nearest_word(word: str, known: Iterable[str]) -> str:
-    """The known word most similar to another, or the only one that it abbreviates; or nothing."""
+def nearest_word(word: str, known: Iterable[str], alike_from: float = 0.6) -> str:
+    """The known word most similar to another, or the only one that it abbreviates; or nothing.
+
+    ``alike_from`` is the least similarity, from 0 to 1.
+    """
     words, folded = guessable(word, known), word.casefold()
     alike = [one for one in words if one.casefold() == folded]
     if not alike and len(word) >= SHORTEST:
@@ -61,7 +64,7 @@ def nearest_word(word: str, known: Iterable[str]) -> str:
     if words and not alike:
         from difflib import get_close_matches  # costs a third of a start, and is rarely needed
 
-        alike = get_close_matches(word, words, n=1, cutoff=0.6)
+        alike = get_close_matches(word, words, n=1, cutoff=alike_from)
     return alike[0] if alike else ""
 
 

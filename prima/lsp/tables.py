@@ -21,7 +21,7 @@ from prima.voicexml.vocabulary import (
     COMMANDS,
     EXPRESSIONS,
     HOLDING,
-    PROPERTIES,
+    PROPERTY_NAMES,
     VALUES,
     VOICEXML,
 )
@@ -31,7 +31,7 @@ LISTED: dict[tuple[str, str, str], tuple[str, ...]] = {
     ("scenario", "scenario", "policy"): ("prima", "prima+all", *BASELINES),
     ("voicexml", "vxml", "version"): ("2.1", "2.0"),
     ("voicexml", "field", "type"): TYPES,
-    ("voicexml", "property", "name"): (*PROPERTIES, "fetchaudio", "universals"),
+    ("voicexml", "property", "name"): tuple(sorted(PROPERTY_NAMES)),
 }
 """Values to propose that no vocabulary lists, by vocabulary, key of the element and attribute."""
 

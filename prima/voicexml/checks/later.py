@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from typing import Literal
 
-from prima.errors import Hint, Problem, meant, one_of, suggestion
+from prima.errors import Hint, Problem, meant, nearest_word, one_of, suggestion
 from prima.errors.diagnoses.names import BAD_EXPRESSION, NO_SUCH_FORM, NO_SUCH_ITEM, NO_SUCH_NAME
 from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE
 from prima.errors.diagnoses.values import ASKED_LATER, BAD_VALUE, EXCLUSIVE
@@ -90,7 +90,7 @@ NOT_ECMASCRIPT = BAD_EXPRESSION.says(
 NOT_CHECKED = BAD_EXPRESSION.says('"{code}" cannot be checked: {error}.', severity="warning")
 
 ALIKE = 0.85
-"""The share of letters that the name of a property has in common with a slip of it."""
+"""The similarity from which a name is a slip: vendors' own properties are less like these."""
 
 
 def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
@@ -193,22 +193,13 @@ def _property_problems(node: Node) -> Iterator[Problem]:
     """A property without a value of its kind, or most likely misspelt: the default counts (6.3)."""
     name, value = node.get("name"), node.get("value")
     place = node.attribute_place("name")
-    if name not in PROPERTY_NAMES:  # a vendor's own are like none
-        hint = meant(_similar_property(name), *value_span(node, "name"))
-        yield from [NO_PROPERTY.at(place, hint, name=name)] if hint else []
+    if name not in PROPERTY_NAMES and (near := nearest_word(name, PROPERTY_NAMES, ALIKE)):
+        yield NO_PROPERTY.at(place, meant(near, *value_span(node, "name")), name=name)
     kind = PROPERTIES.get(name)
     if kind is not None and not fits(kind, value):
         hint = instead_of(node, "value", value, kind)
         place = node.attribute_place("value")
         yield BAD_PROPERTY.at(place, hint, name=name, value=value[:LONGEST_VALUE])
-
-
-def _similar_property(name: str) -> str:
-    """The property of which a name is a slip; vendors' properties may resemble them as well."""
-    from difflib import get_close_matches  # costs a third of a start, and is rarely needed
-
-    alike = get_close_matches(name.casefold(), PROPERTY_NAMES, n=1, cutoff=ALIKE)
-    return alike[0] if alike else ""
 
 
 def _type_problems(node: Node) -> Iterator[Problem]:

@@ -39,8 +39,8 @@ RESERVED_NAME = BAD_VALUE.says(
     "warning",
 )
 SCOPED_NAME = BAD_VALUE.says(
-    '"{name}" names a scope, as no declaration does: a run throws error.semantic.',
-    "Declare it without, where the scope declares its variables.",
+    '"{name}" names a scope, which a declaration cannot: a run throws error.semantic.',
+    "Declare it without the scope, in an element of that scope.",
     "warning",
 )
 WRONG = {"not a name": NOT_A_NAME, "reserved": RESERVED_NAME, "scope": SCOPED_NAME}
