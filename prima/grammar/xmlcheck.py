@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from functools import partial
 
-from prima.errors import Hint, suggestion, with_article
+from prima.errors import Hint, one_of, suggestion, with_article
 from prima.grammar.errors import Problems
 from prima.grammar.values import is_language
 from prima.grammar.vocabulary import GRAMMAR, SRGS
+from prima.markup.hints import inside_itself
 from prima.markup.spans import name_spans, similar_attribute
 from prima.markup.tree import Node
 
@@ -72,10 +73,8 @@ class GrammarChecker:
                 self._misplaced(child, node)
 
     def _misplaced(self, node: Node, parent: Node) -> None:
-        holder = HOLDERS.get(parent.tag, "")
-        fits = holder and GRAMMAR.child(holder, node.tag) is not None
         message = f"<{node.tag}> is not allowed in <{parent.tag}>."
-        self.note(node, "misplaced-element", message, _put_into(holder) if fits else "")
+        self.note(node, "misplaced-element", message, _remedy(node.tag, parent.tag))
 
     def no_text(self, node: Node) -> None:
         """Note text in an element that holds none."""
@@ -87,6 +86,16 @@ class GrammarChecker:
             remedy = 'Write it in SRGS: rules in XML, or "#ABNF 1.0;" before the text.'
         message = f"Text is not allowed in <{node.tag}>."
         self.problems.note(partial(node.text_place, node.text), "stray-text", message, remedy)
+
+
+def _remedy(tag: str, parent: str) -> str:
+    """Where a misplaced element belongs."""
+    holder, others = HOLDERS.get(parent, ""), GRAMMAR.parents(tag)
+    if holder in others:
+        return _put_into(holder)
+    if tag == parent:
+        return inside_itself(tag)
+    return f"It is allowed in {one_of(f'<{one}>' for one in others)}." if others else ""
 
 
 def _put_into(tag: str) -> str:
