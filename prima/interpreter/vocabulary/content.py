@@ -8,8 +8,8 @@ ACTS = f"""
 assign | Gives a declared variable a value. | VoiceXML 5.3.2
   name*: variable | the variable
   expr*: expression | the value
-clear | Makes form items undefined again, with their counters; without names, all of the form. |
-    VoiceXML 5.3.3
+clear | Makes form items, with their counters, and other variables undefined; without names, all
+    items of the form. | VoiceXML 5.3.3
   namelist: variables | which
 if > {CONTENT} elseif else | Content under a condition; elseif and else divide it. | VoiceXML 5.3.4
   cond*: expression | the condition
