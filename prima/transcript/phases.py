@@ -116,7 +116,7 @@ PHASES = {
         ("app", "serial", "outcome", "data"),
     ),
     "sensed": Phase(
-        "sensor values have changed: at first all of them, then those that some document uses",
+        "sensor values have changed, if some document uses any: at first all of them, then those used",
         "`data`",
         ("data",),
     ),
