@@ -17,7 +17,7 @@ _EXPECTED = f"""says: text | the robot begins to say something with these words
   sends: text | an application sends something to this service or URI
   state: id | an application is in this form
   ends: id | this application ends
-  reason: text | why it ends: exit, unloaded or an error's name
+  reason: text | why it ends: exit, return, unloaded or an error's name
   by: id | the application that does it; by default any
   after: text | it comes after the expectation with this id
   before: text | it comes before the expectation with this id
