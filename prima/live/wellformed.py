@@ -7,9 +7,9 @@ from math import isfinite
 from numbers import Integral, Real
 from typing import Any, get_args, get_type_hints
 
-from prima.devices.goals import At, Broke, Done, Lost, News, Report, Sees, Stopped
+from prima.devices.goals import At, Broke, Done, Lost, News, Report, Sees, Speaks, Stopped
 from prima.errors import brief, one_of
-from prima.messages import Data, Heard, Json, Narrated, Occurred, Sensed
+from prima.messages import Data, Emergency, Heard, Json, Narrated, Occurred, Sensed
 
 OCCURRED = frozenset(get_args(get_type_hints(Occurred)["actor"])) - {"mediator"}
 NARRATED = frozenset(get_args(get_type_hints(Narrated)["actor"]))
@@ -59,6 +59,10 @@ def _news(news: News) -> News | None:
             return Sees(bool(news.visible), _number(news.distance), _number(news.angle))
         case At():
             return news if all(map(isfinite, (news.x, news.y, news.heading))) else None
+        case Speaks():
+            return Speaks(_flag(news.begins))
+        case Emergency():
+            return Emergency(_flag(news.pressed), _flag(news.resume))
         case Heard():
             data = _data(news.data)
             if "lasted" in data:
@@ -80,6 +84,13 @@ def _news(news: News) -> News | None:
 def _check_actor(actor: str, actors: frozenset[str]) -> None:
     if actor not in actors:
         raise ValueError(f"its actor must be {one_of(actors)}")
+
+
+def _flag(value: Any) -> bool:
+    """Whether something holds: a library may report this as a number, or as a type of its own."""
+    if value is None or isinstance(value, str):
+        raise TypeError(f"whether it holds must be a bool, not {type(value).__name__}")
+    return bool(value)
 
 
 def _data(value: Any) -> Data:

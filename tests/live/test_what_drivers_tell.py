@@ -8,10 +8,11 @@ from math import inf, nan
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from prima.devices.conductor import Conductor
-from prima.devices.goals import At, Broke, Done, Lost, Sees, Stopped
+from prima.devices.goals import At, Broke, Done, Lost, Sees, Speaks, Stopped
 from prima.errors import brief
 from prima.live.speaking import UserSpeech
 from prima.live.wellformed import WRONG, well_formed
@@ -42,10 +43,14 @@ CYCLE.append(CYCLE)
         (Stopped("a#1", nan, 3), Stopped("a#1", None, 3)),
         (Lost(frozenset({"neck"}), "gone"), Lost(frozenset({"neck"}), "gone")),
         (Emergency(True), Emergency(True)),
+        (Emergency(1), Emergency(True)),  # type: ignore[arg-type]
+        (Emergency(np.False_, 1), Emergency(False, True)),  # type: ignore[arg-type]
+        (Speaks(np.True_), Speaks(True)),  # type: ignore[arg-type]
     ],
 )
-def test_a_measurement_that_is_no_number_says_nothing(told: Any, held: Any) -> None:
-    assert well_formed(told) == held
+def test_what_a_driver_tells_is_taken_in_a_form_that_records_can_hold(told: Any, held: Any) -> None:
+    taken = well_formed(told)
+    assert taken == held and repr(taken) == repr(held)
 
 
 @pytest.mark.parametrize(
@@ -71,6 +76,9 @@ def test_a_measurement_that_is_no_number_says_nothing(told: Any, held: Any) -> N
         Heard("x" * 2_000_000),
         Occurred("speech", "user"),
         Occurred("touch.head", "user", {"image": [255] * 500_000}),
+        Emergency("no"),  # type: ignore[arg-type]
+        Emergency(None),  # type: ignore[arg-type]
+        Speaks("begins"),  # type: ignore[arg-type]
         "touch.head",
         None,
     ],
