@@ -58,7 +58,8 @@ def _news(news: News) -> News | None:
         case Sees():
             return Sees(bool(news.visible), _number(news.distance), _number(news.angle))
         case At():
-            return news if all(map(isfinite, (news.x, news.y, news.heading))) else None
+            pose = (news.x, news.y, news.heading)
+            return At(*map(float, pose)) if all(map(isfinite, pose)) else None
         case Speaks():
             return Speaks(_flag(news.begins))
         case Emergency():
@@ -134,4 +135,6 @@ def _plain(value: Any) -> Json:
             return {_text(name): _plain(one) for name, one in value.items()}
         case list() | tuple():
             return [_plain(one) for one in value]
+    if callable(item := getattr(value, "item", None)):
+        return _plain(item())  # a boolean of NumPy
     raise TypeError(f"a record cannot hold {type(value).__name__}")

@@ -34,6 +34,8 @@ CYCLE.append(CYCLE)
         (Sees(True, 1.5, -20), Sees(True, 1.5, -20.0)),
         (At(1.0, nan, 0.0), None),
         (At(1.0, 2.0, 3.0), At(1.0, 2.0, 3.0)),
+        (At(Fraction(1, 2), np.float32(2), 3), At(0.5, 2.0, 3.0)),  # type: ignore[arg-type]
+        (Sensed({"up": np.True_, "at": np.int8(3)}), Sensed({"up": True, "at": 3})),
         (Occurred("touch.head", "user", {"x": -inf}), Occurred("touch.head", "user", {"x": None})),
         (Done("a#1", {"x": nan}), Done("a#1", {"x": None})),
         (Heard("Yes.", {"confidence": 0.5}, 300), Heard("Yes.", {"confidence": 0.5}, 300)),
@@ -67,6 +69,7 @@ def test_what_a_driver_tells_is_taken_in_a_form_that_records_can_hold(told: Any,
         Occurred("touch.head", "mediator"),
         Heard("Yes.", {}, inf),  # type: ignore[arg-type]
         Sensed({"huge": 10**400}),
+        Sensed({"image": np.zeros(2)}),
         Lost(frozenset({"speaker"}), ValueError("gone")),  # type: ignore[arg-type]
         Narrated("user", None),  # type: ignore[arg-type]
         Narrated("robot", "It waits."),  # type: ignore[arg-type]
