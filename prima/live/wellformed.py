@@ -7,7 +7,7 @@ from math import isfinite
 from numbers import Integral, Real
 from typing import Any, get_args, get_type_hints
 
-from prima.devices.goals import At, Broke, Done, Lost, News, Report, Sees, Speaks, Stopped
+from prima.devices.goals import At, Back, Broke, Done, Lost, News, Report, Sees, Speaks, Stopped
 from prima.errors import brief, one_of
 from prima.messages import Data, Emergency, Heard, Json, Narrated, Occurred, Sensed
 
@@ -37,11 +37,16 @@ def well_formed(report: Report | News) -> Report | News | None:
 
 
 def _report(report: Report) -> Report:
+    if isinstance(report, Lost | Back):
+        _check_devices(report.devices)
+    else:
+        _text(report.key)
     match report:
         case Done():
             return Done(report.key, _data(report.data))
         case Stopped():
-            return Stopped(report.key, _number(report.share), report.said)
+            said = None if report.said is None else int(report.said)
+            return Stopped(report.key, _number(report.share), said)
         case Broke():
             return Broke(
                 report.key, _text(report.device), brief(_text(report.reason), REASON), report.lacks
@@ -73,7 +78,8 @@ def _news(news: News) -> News | None:
             _check_actor(news.actor, OCCURRED)
             if (news.name, news.actor) == ("speech", "user"):
                 raise ValueError("report the user's words by Heard(text)")
-            return Occurred(_short(news.name), news.actor, _data(news.data), news.app)
+            app = None if news.app is None else _short(news.app)
+            return Occurred(_short(news.name), news.actor, _data(news.data), app)
         case Narrated():
             _check_actor(news.actor, NARRATED)
             return Narrated(news.actor, _short(news.text))
@@ -85,6 +91,13 @@ def _news(news: News) -> News | None:
 def _check_actor(actor: str, actors: frozenset[str]) -> None:
     if actor not in actors:
         raise ValueError(f"its actor must be {one_of(actors)}")
+
+
+def _check_devices(devices: Any) -> None:
+    if not isinstance(devices, set | frozenset):
+        raise TypeError(f"its devices must be a set, not {type(devices).__name__}")
+    for name in devices:
+        _text(name)
 
 
 def _flag(value: Any) -> bool:

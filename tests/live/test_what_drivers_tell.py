@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from prima.devices.conductor import Conductor
-from prima.devices.goals import At, Broke, Done, Lost, Sees, Speaks, Stopped
+from prima.devices.goals import At, Back, Broke, Done, Lost, Sees, Speaks, Stopped
 from prima.errors import brief
 from prima.live.speaking import UserSpeech
 from prima.live.wellformed import WRONG, well_formed
@@ -43,6 +43,7 @@ CYCLE.append(CYCLE)
         (Broke("a#1", "neck", "x" * 9_000_000), Broke("a#1", "neck", brief("x" * 5_000, 4_000))),
         (Stopped("a#1", 0.5), Stopped("a#1", 0.5)),
         (Stopped("a#1", nan, 3), Stopped("a#1", None, 3)),
+        (Stopped("a#1", None, np.int64(3)), Stopped("a#1", None, 3)),  # type: ignore[arg-type]
         (Lost(frozenset({"neck"}), "gone"), Lost(frozenset({"neck"}), "gone")),
         (Emergency(True), Emergency(True)),
         (Emergency(1), Emergency(True)),  # type: ignore[arg-type]
@@ -71,6 +72,12 @@ def test_what_a_driver_tells_is_taken_in_a_form_that_records_can_hold(told: Any,
         Sensed({"huge": 10**400}),
         Sensed({"image": np.zeros(2)}),
         Lost(frozenset({"speaker"}), ValueError("gone")),  # type: ignore[arg-type]
+        Lost(["speaker"], "gone"),  # type: ignore[arg-type]
+        Back(frozenset({5})),  # type: ignore[arg-type]
+        Done(["a#1"]),  # type: ignore[arg-type]
+        Stopped("a#1", None, "half"),  # type: ignore[arg-type]
+        Stopped("a#1", None, nan),  # type: ignore[arg-type]
+        Occurred("touch.head", "user", {}, 5),  # type: ignore[arg-type]
         Narrated("user", None),  # type: ignore[arg-type]
         Narrated("robot", "It waits."),  # type: ignore[arg-type]
         Done("a#1", 5),  # type: ignore[arg-type]
