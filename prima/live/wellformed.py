@@ -14,6 +14,8 @@ from prima.messages import Data, Emergency, Heard, Json, Narrated, Occurred, Sen
 OCCURRED = frozenset(get_args(get_type_hints(Occurred)["actor"])) - {"mediator"}
 NARRATED = frozenset(get_args(get_type_hints(Narrated)["actor"]))
 """The actors that may cause an event, and those of a note for the reader."""
+EMERGENCY = ("emergency.stop", "emergency.release")
+"""Events that applications get when the run has stopped, or goes on: by themselves they stop nothing."""
 
 
 WRONG = (TypeError, ValueError, OverflowError, RecursionError)
@@ -75,17 +77,24 @@ def _news(news: News) -> News | None:
                 raise ValueError("how long it lasted is not among its data: Heard(text, data, ms)")
             return Heard(_short(news.text), data, int(news.lasted))
         case Occurred():
-            _check_actor(news.actor, OCCURRED)
-            if (news.name, news.actor) == ("speech", "user"):
-                raise ValueError("report the user's words by Heard(text)")
-            app = None if news.app is None else _short(news.app)
-            return Occurred(_short(news.name), news.actor, _data(news.data), app)
+            return _occurred(news)
         case Narrated():
             _check_actor(news.actor, NARRATED)
             return Narrated(news.actor, _short(news.text))
     if not isinstance(news, News):
         raise TypeError(f"a driver reports {one_of(kind.__name__ for kind in get_args(News))}")
     return news
+
+
+def _occurred(news: Occurred) -> Occurred:
+    _check_actor(news.actor, OCCURRED)
+    if (news.name, news.actor) == ("speech", "user"):
+        raise ValueError("report the user's words by Heard(text)")
+    if news.name in EMERGENCY:
+        how = 'by Emergency(True), in <senses> by as="emergency"'
+        raise ValueError(f"report the emergency stop {how}")
+    app = None if news.app is None else _short(news.app)
+    return Occurred(_short(news.name), news.actor, _data(news.data), app)
 
 
 def _check_actor(actor: str, actors: frozenset[str]) -> None:

@@ -217,6 +217,7 @@ def test_commands_tell_what_happens(line: str, news: News) -> None:
         ("/xyz", 'There is no command "/xyz". Type /help.'),
         ("/touch", 'Write "/touch SENSOR".'),
         ("/event", 'Write "/event NAME KEY=VALUE ...".'),
+        ("/event emergency.stop", 'Write "/stop" or "/go".'),
         ("/event visitor Ann", 'Write "/event NAME KEY=VALUE ...".'),
         ('/event visitor name="Ann', "A quotation mark is not closed."),
         ("/sensor light", 'Write "/sensor NAME=VALUE".'),

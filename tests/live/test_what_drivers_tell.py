@@ -85,6 +85,8 @@ def test_what_a_driver_tells_is_taken_in_a_form_that_records_can_hold(told: Any,
         Heard("Yes.", {"lasted": 1.5}),
         Heard("x" * 2_000_000),
         Occurred("speech", "user"),
+        Occurred("emergency.stop", "environment"),
+        Occurred("emergency.release", "user"),
         Occurred("touch.head", "user", {"image": [255] * 500_000}),
         Emergency("no"),  # type: ignore[arg-type]
         Emergency(None),  # type: ignore[arg-type]
@@ -146,6 +148,10 @@ def test_the_journal_of_a_driver_that_measures_nothing_replays(what: str, tmp_pa
         ('self.tell(Heard("\\ud800"))', "a report of the driver is wrong (Heard): 'utf-8' codec"),
         ('self.tell(Sensed({"a": object()}))', "wrong (Sensed): a record cannot hold object"),
         ('self.tell(Occurred("speech", "user"))', "report the user's words by Heard(text)"),
+        (
+            'self.tell(Occurred("emergency.stop"))',
+            'report the emergency stop by Emergency(True), in <senses> by as="emergency"',
+        ),
         ('return {"map": "x" * 2_000_000}', "wrong (Done): it has more than 1,000,000 characters"),
         ("sys.exit(4)", "SystemExit: 4"),
     ],

@@ -10,6 +10,7 @@ from prima.devices.lines import check_line, split_event, split_message, split_se
 from prima.devices.senses import sensor_value
 from prima.errors import UsageError, did_you_mean
 from prima.language.values import BadValue, read_value
+from prima.live.wellformed import EMERGENCY
 from prima.messages import Emergency, Occurred, Sensed
 
 NEAR_M = 1.0
@@ -49,6 +50,8 @@ def _event(rest: str) -> News:
         read_value("event", name)
     except BadValue as error:
         raise UsageError(f'"{name}" {error}') from None
+    if name in EMERGENCY:
+        raise UsageError(f'Write "{COMMANDS["stop"].usage}" or "{COMMANDS["go"].usage}".')
     return Occurred(name, "environment", data)
 
 
