@@ -194,7 +194,7 @@ def _run(visit: Visit, why: bool, as_json: bool) -> None:
     if visit.stopped:
         journal = visit.journal
         if journal is not None and os.path.exists(journal.path) and not visit.settings.redact:
-            tell(f"Stopped. {how_to_go_on(journal.path)}")
+            tell(f"Stopped. {how_to_go_on(journal.path, visit.settings.drivers)}")
         raise Exit(INTERRUPTED)
     if session.failures:
         raise Exit(3)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import sys
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import IO, TYPE_CHECKING, Any
 
@@ -147,9 +148,12 @@ def _goes_on(transcript: Transcript) -> bool:
     return torn and "live" in head and not head.get("redacted")
 
 
-def how_to_go_on(journal: str) -> str:
-    """A message that a live run can go on from its journal."""
-    return f"Go on with: prima live --resume {argument(journal)}"
+def how_to_go_on(journal: str, drivers: Sequence[str] = ()) -> str:
+    """A message that a live run can go on from its journal, with drivers of these files."""
+    words = ["--resume", argument(journal)]
+    for file in drivers:
+        words += ["--driver", argument(file)]
+    return f"Go on with: prima live {' '.join(words)}"
 
 
 def print_json(data: Any, indent: int | None = 2) -> None:

@@ -147,6 +147,46 @@ def test_a_scenario_that_a_host_has_answered_does_not_go_on(whole: Path) -> None
     assert journal.read_text() == first + json.dumps(fetched) + "\n"
 
 
+OWN = """
+import asyncio, os, signal
+from prima.live.driver import TaskDriver
+
+class Own(TaskDriver):
+    kind = "own"
+
+    async def perform(self, goal):
+        if not os.path.exists("stopped"):
+            open("stopped", "w").close()
+            os.kill(os.getpid(), signal.SIGINT)
+            await asyncio.sleep(3600)
+        return {}
+"""
+
+
+def test_a_run_on_a_driver_of_ones_own_goes_on_by_the_command_that_it_prints(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "own.py").write_text(OWN)
+    (tmp_path / "robot.xml").write_text(
+        '<robot xmlns="urn:prima:robot:1" version="1.0" id="own"><device name="speaker"/>'
+        '<driver kind="own"/></robot>'
+    )
+    (tmp_path / "hi.xml").write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="hi"><form id="a">'
+        "<block><speak>Hi.</speak><speak>Bye.</speak><exit/></block></form></prima>"
+    )
+    words = ["--driver", "own.py", "--robot", "robot.xml", "--ea", "hi.xml", "-o", "visit.jsonl"]
+    ran = here.prima("live", *words, cwd=tmp_path)
+    told = "Stopped. Go on with: prima live "
+    assert ran.returncode == 130 and told in ran.stderr, ran.stderr
+    on = ran.stderr.splitlines()[-1].removeprefix(told).split()
+    assert on == ["--resume", "visit.jsonl", "--driver", "own.py"]
+    alone = here.prima("live", *on[:2], cwd=tmp_path)
+    assert alone.returncode == 2 and "--driver names the file of one of your own" in alone.stderr
+    ran = here.prima("live", *on, cwd=tmp_path)
+    assert ran.returncode == 0 and '"Bye."' in ran.stdout, ran.stderr
+
+
 def test_what_is_no_file_is_no_journal(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.jsonl")
     for path, what in (

@@ -44,7 +44,8 @@ def driver_class(kind: str, defined: Sequence[type[Driver]] = ()) -> type[Driver
         return found
     if kind not in kinds():
         known = {*kinds(), *(one.kind for one in defined)}
-        hint = did_you_mean(kind, known) or f"The kinds are {one_of(known)}."
+        listed = f"The kinds are {one_of(known)}; --driver names the file of one of your own."
+        hint = did_you_mean(kind, known) or listed
         raise UsageError(f'There is no driver of the kind "{kind}". {hint}')
     made: type[Driver] = importlib.import_module(f"{__name__}.{kind}").DRIVER
     return made
