@@ -60,5 +60,8 @@ def prepared(
         if settings.redact:
             message = "--redact is for a new journal: this one has what users have said."
             raise UsageError(f"{resume}: {message}")
+        if {settings.policy, settings.bound, settings.patience} != {None}:
+            message = "--resume goes on with the policy of the journal;"
+            raise UsageError(f"{message} leave out --policy, --bound and --patience.")
         return go_on(read_broken(resume), settings)
     return begin(chosen, settings, output)

@@ -243,6 +243,8 @@ def test_drivers_that_do_not_work_end_in_a_clear_sentence(
         (["--ea", "documents/ea/guide.xml"], "--robot"),
         (["--resume", "nowhere.jsonl"], "cannot be read"),
         (["--resume", "visit.jsonl", "--robot", ROBOT], "leave out the rest"),
+        (["--resume", "visit.jsonl", "--policy", "fifo"], "leave out --policy"),
+        (["--resume", "visit.jsonl", "--patience", "1s"], "leave out --policy"),
         (["documents/scenarios/schedule-alone.xml", "--ea", "x.xml"], "leave out --fa"),
         (["documents/scenarios/schedule-alone.xml", "--driver", "x.py"], "leave out --driver"),
         (["--robot", ROBOT, "--ea", "documents/ea/guide.xml", "--until", "soon"], "--until"),
