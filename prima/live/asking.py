@@ -17,7 +17,7 @@ from urllib.request import Request
 
 from prima.devices.endpoints import Endpoint, Unfit
 from prima.live.answers import HIDDEN
-from prima.live.driver import call_in, settle
+from prima.live.threads import call_in, settle
 from prima.loading.web import end_connections, follow, read_plain, silence
 from prima.sim.services import host_of
 

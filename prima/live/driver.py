@@ -2,15 +2,15 @@
 
 Drivers do not know the rules of mediation. :class:`Driver` is the plain interface;
 :class:`TaskDriver` suits most robots: it runs one coroutine for each goal.
-All methods are called in the event loop of the run; a thread reports with
-:meth:`Driver.post`.
+All methods are called in the event loop of the run; a thread may call :meth:`Driver.tell`,
+:meth:`Driver.post` and :meth:`Driver.lose`.
 """
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Sequence
-from contextlib import suppress
+from threading import get_ident
 from typing import Any, ClassVar
 
 from prima.devices.goals import (
@@ -32,30 +32,12 @@ from prima.errors import RunError, UsageError
 from prima.grammar.answers import Answers
 from prima.live.deadlines import Escaped, guarded
 from prima.live.recordings import Recordings
+from prima.live.threads import call_in, in_run
 from prima.live.wellformed import WRONG, well_formed
 from prima.messages import Data, Json, Record
 from prima.sim.map import Map
 
 Tell = Callable[[Report | News], None]
-
-
-def call_in(
-    loop: asyncio.AbstractEventLoop | None, what: Callable[..., object], *given: object
-) -> None:
-    """Call something in a run's event loop, from any thread; dropped if the run is over."""
-    if loop is not None:
-        with suppress(RuntimeError):  # the loop is closed
-            loop.call_soon_threadsafe(what, *given)
-
-
-def settle(future: asyncio.Future[Any], outcome: object) -> None:
-    """Resolve a future with its result or error, unless nothing waits for it any more."""
-    if future.done():
-        return
-    if isinstance(outcome, BaseException):
-        future.set_exception(outcome)
-    else:
-        future.set_result(outcome)
 
 
 class Unreachable(RunError):
@@ -130,6 +112,7 @@ class Driver:
         """Where it stores recordings."""
         self._tell: Tell = lambda _: None
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._thread: int | None = None
 
     # What a driver implements -----------------------------------------------------------
 
@@ -197,10 +180,11 @@ class Driver:
     def attach(self, tell: Tell, now: Callable[[], int] = lambda: 0) -> None:
         """Connect it with a run and its clock (ms), in whose event loop this is called."""
         self._tell, self.now = tell, now
-        self._loop = asyncio.get_running_loop()
+        self._loop, self._thread = asyncio.get_running_loop(), get_ident()
 
+    @in_run
     def tell(self, report: Report | News) -> None:
-        """Report to the run, from its event loop; if no record can hold it, the robot is lost."""
+        """Report to the run; if no record can hold it, the robot is lost."""
         try:
             checked = well_formed(report)
         except WRONG as error:
@@ -293,6 +277,7 @@ class TaskDriver(Driver):
         if task := self._tasks.get(key):
             task.cancel()
 
+    @in_run
     def lose(self, reason: str) -> None:
         """Report a lost connection; running goals do not go on when it is back."""
         super().lose(reason)

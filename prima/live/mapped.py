@@ -10,8 +10,9 @@ from typing import ClassVar, Final
 from prima.devices import voice
 from prima.devices.goals import LISTEN, SAY, At, Begin
 from prima.devices.settings import Does, Senses
-from prima.live.driver import Refused, TaskDriver, call_in, speaks
+from prima.live.driver import Refused, TaskDriver, speaks
 from prima.live.reports import SenseReports
+from prima.live.threads import call_in
 from prima.messages import Json
 
 DEGREES: Final = ("angle", "heading", "pan", "tilt", "down", "turn", "turn-speed")

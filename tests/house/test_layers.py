@@ -232,6 +232,7 @@ INSIDE = {
             "reports",
             "signals",
             "speaking",
+            "threads",
             "wellformed",
         },
         {"driver"},

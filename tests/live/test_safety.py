@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Callable, Sequence
+from threading import Thread
 
 import pytest
 
@@ -258,6 +259,22 @@ def test_a_robot_that_is_lost_at_the_end_is_not_looked_for(stage: Stage) -> None
     warned: list[str] = []
     records = carried_out(loop, 3, warned)
     assert records[-1]["outcome"] == "over" and warned == []
+
+
+def test_a_thread_of_a_library_may_say_that_the_robot_is_lost(stage: Stage) -> None:
+    loop, (voice, body) = stage(lasts=0.3)
+    answer_when_asked(voice)
+
+    def begun(goal: Begin) -> None:
+        body.begun = lambda _: None
+        Thread(target=body.lose, args=["the link is down"]).start()
+
+    body.begun = begun
+    warned: list[str] = []
+    records = carried_out(loop, 5, warned)
+    assert ("fail", "turns#1") in rows(records, "fail")
+    assert ("device", "locomotion") in rows(records, "device")
+    assert body.safe_calls >= 2 and warned[-1] == "robot: the robot is back."
 
 
 def test_what_a_thread_posts_after_the_run_is_dropped() -> None:

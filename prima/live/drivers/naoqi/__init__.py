@@ -12,8 +12,9 @@ from typing import Any, Final
 from prima.devices.goals import LISTEN, Begin
 from prima.devices.settings import Does
 from prima.errors import UsageError
-from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in, settle
+from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable
 from prima.live.mapped import SAFE_S, SHARE, MappedDriver
+from prima.live.threads import call_in, settle
 from prima.messages import Data, Json
 
 INSTALL: Final = "the library qi is not there ({}). Write: pip install 'prima[naoqi]'."

@@ -12,10 +12,11 @@ from typing import Any
 
 from prima.devices.settings import Senses
 from prima.errors import UsageError
-from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in, settle
+from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable
 from prima.live.drivers.ros2.messages import fill, interface, paths, plain
 from prima.live.mapped import OFTEN, SHARE
 from prima.live.ros import Outcome, RosDriver, RosUse, Sent
+from prima.live.threads import call_in, settle
 from prima.messages import Json
 
 SETUP = (

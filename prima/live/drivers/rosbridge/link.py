@@ -10,9 +10,10 @@ from typing import Any, Final
 from urllib.parse import urlsplit
 
 from prima.devices.settings import Senses
-from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable, call_in, settle
+from prima.live.driver import OpenRequests, Refused, Unreachable, Unusable
 from prima.live.mapped import OFTEN, SHARE
 from prima.live.ros import Outcome, RosDriver, RosUse, Sent
+from prima.live.threads import call_in, settle
 from prima.messages import Json
 
 INSTALL: Final = "the library roslibpy is not there ({}). Write: pip install 'prima[rosbridge]'."

@@ -14,9 +14,10 @@ from prima.devices.goals import LISTEN, RECORD, SAY, Begin, RecordingBounds, Spe
 from prima.devices.profile import Profile
 from prima.devices.settings import DriverSettings
 from prima.grammar.answers import Answers
-from prima.live.driver import Refused, TaskDriver, Unusable, call_in
+from prima.live.driver import Refused, TaskDriver, Unusable
 from prima.live.drivers.speech.segments import Segments
 from prima.live.drivers.speech.sound import CHUNK, RATE, Sound, SoundCard, beep
+from prima.live.threads import call_in
 from prima.messages import BEEP, Command, Cue, Data, Heard, Hypothesis
 from prima.sim.map import Map
 
