@@ -19,6 +19,10 @@ class Escaped(Exception):
     """What a driver raised would have ended the program, or passed for a cancellation."""
 
 
+class Late(TimeoutError):
+    """A driver's work has taken longer than it may."""
+
+
 async def guarded(work: Coroutine[Any, Any, T]) -> T:
     """The result of a driver's work, which neither ends the program nor cancels the run.
 
@@ -44,14 +48,14 @@ async def within(seconds: float, work: Coroutine[Any, Any, T]) -> T:
     """The result of a driver's work, which is cancelled at its deadline.
 
     Raises:
-        TimeoutError: the deadline has passed.
+        Late: the deadline has passed.
         Exception: whatever the work raises.
     """
     task = asyncio.ensure_future(guarded(work))
     try:
         await asyncio.wait([task], timeout=seconds)
         if not task.done():
-            raise TimeoutError
+            raise Late(f"no answer within {seconds:g} s")
         return task.result()
     finally:
         await leave([task])

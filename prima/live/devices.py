@@ -283,6 +283,8 @@ class LiveDevices:
     async def _make_safe(self, driver: Driver) -> None:
         try:
             await within(SAFE_S, driver.safe())
+        except Exception as error:
+            driver.lose(f"safe has failed: {why(error)}")
         finally:
             self._stopping -= 1
             if self._news and self._told is None:

@@ -30,7 +30,7 @@ from prima.devices.profile import Profile
 from prima.devices.settings import Does, DriverSettings, Pose
 from prima.errors import RunError, UsageError
 from prima.grammar.answers import Answers
-from prima.live.deadlines import Escaped, guarded
+from prima.live.deadlines import Escaped, Late, guarded
 from prima.live.recordings import Recordings
 from prima.live.threads import call_in, in_run
 from prima.live.wellformed import WRONG, well_formed
@@ -64,7 +64,7 @@ class Refused(Exception):
 def why(error: BaseException) -> str:
     """Why a driver has failed: its own words, or an error that it did not mean with its type."""
     said, kind = str(error), type(error).__name__
-    meant = isinstance(error, Refused | RunError | UsageError | Escaped)
+    meant = isinstance(error, Refused | RunError | UsageError | Escaped | Late)
     return (said if meant else f"{kind}: {said}") if said else kind
 
 

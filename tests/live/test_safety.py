@@ -185,6 +185,45 @@ def test_an_emergency_stop_makes_every_driver_safe_at_once(stage: Stage) -> None
     assert records[-1]["outcome"] == "over", "what was stopped goes on"
 
 
+def test_a_robot_that_an_emergency_stop_does_not_make_safe_is_lost(stage: Stage) -> None:
+    loop, (voice, body) = stage(lasts=0.3)
+    answer_when_asked(voice)
+
+    async def fails() -> None:
+        body.safe = Robot.safe.__get__(body)  # type: ignore[method-assign]
+        asyncio.get_running_loop().call_later(0.1, voice.tell, Emergency(False, True))
+        raise OSError("no motor answers")
+
+    def begun(goal: Begin) -> None:
+        body.begun = lambda _: None
+        body.safe = fails  # type: ignore[method-assign]
+        voice.tell(Emergency(True))
+
+    body.begun = begun
+    warned: list[str] = []
+    records = carried_out(loop, 5, warned)
+    lost = [record for record in records if record["phase"] == "device"]
+    assert lost[0]["message"] == "safe has failed: OSError: no motor answers"
+    assert body.safe_calls >= 2, "after the loss, and when it is back"
+    assert warned[-1] == "robot: the robot is back."
+
+
+def test_a_robot_that_does_not_become_safe_in_time_is_named(
+    stage: Stage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("prima.live.shell.SAFE_S", 0.05)
+    loop, (voice, body) = stage()
+    answer_when_asked(voice)
+
+    async def safe() -> None:
+        await asyncio.sleep(1000)
+
+    body.safe = safe  # type: ignore[method-assign]
+    warned: list[str] = []
+    carried_out(loop, 3, warned)
+    assert warned == ["robot: safe has failed: no answer within 0.05 s."]
+
+
 def test_a_lost_robot_fails_what_runs_on_it_and_is_taken_up_again(stage: Stage) -> None:
     loop, (voice, body) = stage(lasts=0.3)
     answer_when_asked(voice)
