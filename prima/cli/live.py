@@ -187,7 +187,7 @@ def _run(visit: Visit, why: bool, as_json: bool) -> None:
         except OSError as error:
             raise RunError(f"stdout: cannot be written: {error.strerror}.") from None
 
-    visit.run(sink, lambda text: tell(f"prima: {text}"))
+    visit.run(sink, lambda text: tell_line(f"prima: {text}"))
     session = visit.loop.session
     for failure in session.failures:
         tell_line(f"prima: {failure}")

@@ -105,8 +105,8 @@ class LiveDevices:
         """Makes the shell check at once what is due."""
         self.spawn: Callable[[Coroutine[Any, Any, None]], object] = lambda one: one.close()
         """Runs something in the background."""
-        self.lost: Callable[[Driver], None] = lambda _: None
-        """Called with a driver that has lost its robot."""
+        self.lost: Callable[[Driver, str], None] = lambda *_: None
+        """Called with a driver that has lost its robot, and why."""
         self._watches = watches
         self.listening: Callable[[], Sequence[Answers]] = tuple
         """Returns what questions and links are listening for."""
@@ -225,7 +225,7 @@ class LiveDevices:
                 self._sees = report
             case _ if isinstance(report, Report):
                 if isinstance(report, Lost):
-                    self.lost(driver)
+                    self.lost(driver, report.reason)
                     if EAR in report.devices:  # it will not report the end of an utterance
                         self._news.append(Speaks(False))
                 if isinstance(report, Back):

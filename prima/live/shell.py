@@ -13,7 +13,7 @@ from typing import Any
 
 from prima.devices.goals import Back
 from prima.devices.loop import Loop
-from prima.errors import UsageError
+from prima.errors import UsageError, brief
 from prima.live.clock import Clock
 from prima.live.deadlines import within
 from prima.live.devices import SAFE_S, LiveDevices
@@ -21,6 +21,8 @@ from prima.live.driver import Driver, Unreachable, Unusable, why
 
 FIRST_S, LONGEST_S = 0.5, 30.0
 """The delays before trying to reach a lost robot again: the first, and the longest."""
+REASON = 300
+"""Characters of a reason above which its middle is left out in messages: a record has more."""
 LATE_MS = 250
 """An instant that is later than this is reported."""
 
@@ -150,7 +152,7 @@ class Shell:
     async def _close(self) -> None:
         """Make all robots safe at once, whatever still runs; then close the connections."""
         if isinstance(self.loop.devices, LiveDevices):
-            self.loop.devices.lost = lambda _: None  # nobody is looked for any more
+            self.loop.devices.lost = lambda *_: None  # nobody is looked for any more
         tasks = list(self._tasks)
         for task in tasks:
             task.cancel()
@@ -177,23 +179,27 @@ class Shell:
         if not task.cancelled() and (error := task.exception()):
             self._warn(f"A driver has failed: {why(error)}.")
 
-    def _lose(self, driver: Driver) -> None:
+    def _lose(self, driver: Driver, reason: str) -> None:
         """A driver has lost its robot: try repeatedly to reach it."""
         if driver in self._lost:
             return
         self._lost.add(driver)
-        self._warn(f"{driver.kind}: the robot is lost; it is looked for.")
+        known = f" ({brief(reason, REASON)})" if reason else ""
+        self._warn(f"{driver.kind}: the robot is lost{known}; it is looked for.")
         self._spawn(self._end(driver, driver.safe))
         self._spawn(self._find(driver))
 
     async def _find(self, driver: Driver) -> None:
-        wait = FIRST_S
+        wait, told = FIRST_S, ""
         while True:
             await asyncio.sleep(wait)
             wait = min(wait * 2, LONGEST_S)
             try:
                 await open_driver(driver)
-            except (Unreachable, UsageError):
+            except (Unreachable, UsageError) as error:
+                if str(error) != told:
+                    told = str(error)
+                    self._warn(f"{driver.kind}: the robot is not back: {brief(told, REASON)}")
                 continue
             self._lost.discard(driver)
             await self._end(driver, driver.safe)  # it was not stopped meanwhile

@@ -239,7 +239,7 @@ def test_a_driver_that_fails_later_has_lost_its_robot(kind: str, told: str, stag
     journal = stage / "visit.jsonl"
     ran = live(stage, f'{drivers}<driver kind="well"/>', "-o", str(journal))
     assert ran.returncode == 0, ran.stderr
-    assert f"{kind}: the robot is lost; it is looked for." in ran.stderr
+    assert f"{kind}: the robot is lost ({told}); it is looked for." in ran.stderr
     assert told in journal.read_text()
     assert "well is safe" in ran.stderr
 

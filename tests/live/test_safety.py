@@ -240,7 +240,7 @@ def test_a_lost_robot_fails_what_runs_on_it_and_is_taken_up_again(stage: Stage) 
     assert body.safe_calls >= 2, "after the loss, and at the end"
     ends = [name for _, name in rows(records, "end")]
     assert "talk#1" in ends, "the other application goes on"
-    assert warned[0] == "robot: the robot is lost; it is looked for."
+    assert warned[0] == "robot: the robot is lost (the link is down); it is looked for."
     assert "robot: the robot is back." in warned
     outcomes = [record["outcome"] for record in records if record["phase"] == "device"]
     assert set(outcomes) == {"missing", "back"}
@@ -283,8 +283,11 @@ def test_a_robot_lost_again_while_it_is_made_safe_is_not_back(stage: Stage) -> N
     warned: list[str] = []
     carried_out(loop, 5, warned)
     told = [one for one in warned if one.startswith("robot: the robot is")]
-    lost, back = "robot: the robot is lost; it is looked for.", "robot: the robot is back."
-    assert told == [lost, lost, back]
+    assert [one.partition(";")[0] for one in told] == [
+        "robot: the robot is lost (the link is down)",
+        "robot: the robot is lost (the link is down again)",
+        "robot: the robot is back.",
+    ]
 
 
 def test_a_robot_that_is_lost_at_the_end_is_not_looked_for(stage: Stage) -> None:
@@ -344,7 +347,9 @@ def test_a_robot_that_no_longer_answers_its_heartbeat_is_lost(stage: Stage) -> N
     warned: list[str] = []
     records = carried_out(loop, 1.0, warned)
     assert ("fail", "turns#1") in rows(records, "fail")
-    assert warned[0] == "robot: the robot is lost; it is looked for."
+    assert warned[0] == "robot: the robot is lost (it is switched off); it is looked for."
+    again = "robot: the robot is not back: robot.xml:1:1: robot: it is switched off"
+    assert set(warned[1:]) <= {again} and len(warned) <= 2, "told once"
 
 
 def test_an_error_inside_makes_the_robot_safe(stage: Stage) -> None:
