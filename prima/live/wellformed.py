@@ -65,8 +65,7 @@ def _news(news: News) -> News | None:
         case Sees():
             return Sees(bool(news.visible), _number(news.distance), _number(news.angle))
         case At():
-            pose = (news.x, news.y, news.heading)
-            return At(*map(float, pose)) if all(map(isfinite, pose)) else None
+            return _pose(news)
         case Speaks():
             return Speaks(_flag(news.begins))
         case Emergency():
@@ -84,6 +83,11 @@ def _news(news: News) -> News | None:
     if not isinstance(news, News):
         raise TypeError(f"a driver reports {one_of(kind.__name__ for kind in get_args(News))}")
     return news
+
+
+def _pose(news: At) -> At | None:
+    pose = (news.x, news.y, news.heading)
+    return At(*map(float, pose)) if all(map(isfinite, pose)) else None
 
 
 def _occurred(news: Occurred) -> Occurred:
