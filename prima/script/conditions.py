@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Collection, Iterator
 from typing import NamedTuple
 
+from prima.errors import Hint, Place, Problem, Span, one_of, suggestion
+from prima.errors.diagnoses.conditions import (
+    ASSIGNING_CONDITION,
+    FUNCTION_CONDITION,
+    NEVER_EQUAL,
+)
 from prima.script.parse import Node, inner, parse_expression
 
 EQUALITY = frozenset(("==", "===", "!=", "!=="))
+NUMERIC = re.compile(r"\s*([-+.\d].*)?", re.DOTALL)
+"""A text that may equal true, false or a number; an empty one may stand for no answer."""
+PLAIN = re.compile(r"[\w .-]*")
+"""A text that is written in an attribute as it is."""
+MOST = 5
+"""Maximum number of values that a message lists."""
+LONGEST = 100
+"""Characters of a text above which a comparison is not checked."""
+TRUE_OR_FALSE = 'It is true or false: write "{field}" or "!{field}".'
 
-
-class Assigned(NamedTuple):
-    """A condition that assigns where a comparison was meant."""
-
-    start: int
-    """Where the sign is that should be another."""
-    function: bool
-    """Whether it is a function, by ``=>`` for ``>=``."""
+At = Callable[[int], Place]
+"""Gives the place of a character of some code."""
 
 
 class Compared(NamedTuple):
@@ -28,18 +38,19 @@ class Compared(NamedTuple):
     """Where the text begins, with its quote."""
 
 
-def assigned(code: str) -> Assigned | None:
-    """Where a condition assigns a variable, or is a function, if it does or is."""
+def assigning(code: str, at: At) -> Iterator[Problem]:
+    """The problem of a condition that assigns a variable, or is a function, by a slip."""
     parsed = parse_expression(code) if "=" in code else None
     if parsed is None or not parsed.sound:
-        return None
+        return
     whole = inner(parsed)
     if whole is not None and whole.type == "arrow_function":
         sign = next(one for one in whole.children if one.type == "=>")
-        return Assigned(parsed.start(sign), function=True)
+        yield FUNCTION_CONDITION.at(at(parsed.start(sign)))
+        return
     found = (node for node in parsed.walk() if node.type == "assignment_expression")
-    first = next(found, None)
-    return first and Assigned(parsed.start(first.children[1]), function=False)
+    if (first := next(found, None)) is not None:
+        yield ASSIGNING_CONDITION.at(at(parsed.start(first.children[1])))
 
 
 def may_compare(code: str) -> bool:
@@ -65,3 +76,22 @@ def _sides(node: Node) -> tuple[Node, Node] | None:
     if left.type == "string":
         left, right = right, left
     return (left, right) if (left.type, right.type) == ("identifier", "string") else None
+
+
+def may_equal(text: str, values: Collection[str]) -> bool:
+    """Whether one of some values, or true or false, may equal a text as code has it."""
+    return "\\" in text or bool(NUMERIC.fullmatch(text)) or len(text) > LONGEST or text in values
+
+
+def never_equal(found: Compared, at: At, values: Collection[str] | None) -> Problem:
+    """The problem of comparing a field with a text that no answer gives it.
+
+    ``values`` are those that answers give; None if the field is boolean.
+    """
+    if values is None:
+        hint = Hint(TRUE_OR_FALSE.format(field=found.name))
+    else:
+        plain = filter(PLAIN.fullmatch, values) if PLAIN.fullmatch(found.text) else ()
+        hint = suggestion(found.text, plain, Span.of(at(found.start + 1), found.text))
+        hint = hint or Hint(f"It is {one_of(values, MOST)}.")
+    return NEVER_EQUAL.at(at(found.start), hint, field=found.name, text=found.text)

@@ -1,4 +1,4 @@
-"""Names in code that are most likely no variables: values of other languages, texts without quotes."""
+"""Names in code that were most likely meant as something else: values of other languages, texts."""
 
 from __future__ import annotations
 

@@ -2,13 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection
-
 from prima.errors.diagnosis import Diagnosis
-from prima.errors.guesses import suggestion
-from prima.errors.problems import Hint, Place, Problem, Span
-from prima.errors.words import one_of
 
 ASSIGNING_CONDITION = Diagnosis(
     "assigning-condition",
@@ -33,38 +27,3 @@ NEVER_EQUAL = Diagnosis(
     severity="warning",
     message='No answer to "{field}" gives it the value "{text}".',
 )
-TRUE_OR_FALSE = 'It is true or false: write "{field}" or "!{field}".'
-NUMERIC = re.compile(r"\s*([-+.\d].*)?", re.DOTALL)
-"""A text that may equal true, false or a number; an empty one may stand for no answer."""
-PLAIN = re.compile(r"[\w .-]*")
-"""A text that is written in an attribute as it is."""
-MOST = 5
-"""Maximum number of values that a message lists."""
-LONGEST = 100
-"""Characters of a text above which a comparison is not checked."""
-
-
-def may_equal(text: str, values: Collection[str]) -> bool:
-    """Whether one of some values, or true or false, may equal a text as code has it."""
-    return "\\" in text or bool(NUMERIC.fullmatch(text)) or len(text) > LONGEST or text in values
-
-
-def never_equal(
-    quote: Place, inside: Place, field: str, text: str, values: Collection[str] | None
-) -> Problem:
-    """A comparison with a text that is none of a field's values; without any, it is boolean.
-
-    Args:
-        quote: where the text begins, with its quote.
-        inside: where it begins without it.
-        field: the name of the field.
-        text: the text.
-        values: the values that answers give.
-    """
-    if values is None:
-        hint = Hint(TRUE_OR_FALSE.format(field=field))
-    else:
-        plain = filter(PLAIN.fullmatch, values) if PLAIN.fullmatch(text) else ()
-        hint = suggestion(text, plain, Span.of(inside, text))
-        hint = hint or Hint(f"It is {one_of(values, MOST)}.")
-    return NEVER_EQUAL.at(quote, hint, field=field, text=text)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
+from functools import partial
 from itertools import chain
 from typing import Any
 
 from prima.errors import Problem
-from prima.errors.diagnoses.conditions import ASSIGNING_CONDITION, FUNCTION_CONDITION
 from prima.errors.diagnoses.names import BAD_EXPRESSION
 from prima.interpreter.acts import (
     Act,
@@ -33,7 +33,7 @@ from prima.interpreter.elements import Document, Field, Form, Item, Prompt, Subd
 from prima.interpreter.steps import no_step
 from prima.markup.hints import half
 from prima.script.compile import compiled
-from prima.script.conditions import assigned
+from prima.script.conditions import assigning
 from prima.script.data import declared
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.known import Known
@@ -116,7 +116,9 @@ def _used(variables: Variables, expr: Expression, known: Known, script: bool) ->
     if script:
         return variables.of_script(expr, known)
     found = variables.of_expression(expr, known)
-    return chain(found, _assigns(expr)) if expr.attribute in CONDITIONS else found
+    if expr.attribute not in CONDITIONS:
+        return found
+    return chain(found, assigning(expr.code, partial(place_in, expr)))
 
 
 # All code, with the names that it may use and whether it is a script
@@ -224,10 +226,3 @@ def _of_full_width(code: str) -> str:
         return ""
     wide = [half(one) for one in code if not one.isascii()]
     return " ".join([one for one in wide if one.isascii() and one.strip()][:5])
-
-
-def _assigns(expr: Expression) -> Iterator[Problem]:
-    """The problem of a condition that assigns a variable where a comparison was meant."""
-    if (found := assigned(expr.code)) is not None:
-        diagnosis = FUNCTION_CONDITION if found.function else ASSIGNING_CONDITION
-        yield diagnosis.at(place_in(expr, found.start))

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import partial
 from itertools import islice
 
 from prima.errors import Problem
-from prima.errors.diagnoses.conditions import may_equal, never_equal
 from prima.grammar.answers import Answers
 from prima.grammar.text import fold
 from prima.interpreter.acts import Assign, Declare, Expression, Foreach, If, Script
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.checks.variables import place_in
 from prima.interpreter.elements import Field
-from prima.script.conditions import Compared, compared, may_compare
+from prima.script.conditions import Compared, compared, may_compare, may_equal, never_equal
 
 NAME = re.compile(r"[\w$]+")
 MOST_CHECKED = 100
@@ -28,9 +28,8 @@ def check_comparisons(facts: Facts) -> Iterator[Problem]:
         if id(field) not in values:
             values[id(field)] = _values(field)
         if not _possible(field, found.text, values[id(field)]):
-            start, inside = (place_in(expr, found.start + more) for more in (0, 1))
             answers = None if field.answers.type else values[id(field)]
-            yield never_equal(start, inside, field.name, found.text, answers)
+            yield never_equal(found, partial(place_in, expr), answers)
 
 
 def _compared(facts: Facts) -> Iterator[tuple[Expression, Compared, Field]]:

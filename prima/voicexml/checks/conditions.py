@@ -6,15 +6,9 @@ import re
 from collections.abc import Iterator
 from itertools import islice
 
-from prima.errors import Place, Problem
-from prima.errors.diagnoses.conditions import (
-    ASSIGNING_CONDITION,
-    FUNCTION_CONDITION,
-    may_equal,
-    never_equal,
-)
+from prima.errors import Problem
 from prima.markup.tree import Node
-from prima.script.conditions import Compared, assigned, compared
+from prima.script.conditions import At, Compared, assigning, compared, may_equal, never_equal
 from prima.voicexml.arranging import items_in
 
 BOOLEAN = re.compile(r"(builtin:(grammar|dtmf)/)?boolean(\?.*)?", re.DOTALL)
@@ -24,29 +18,27 @@ MOST_CHECKED = 100
 """Maximum number of comparisons checked."""
 
 Answers = dict[str, set[str] | None]
-"""The values that answers give to fields, by names; of a boolean field, none is listed."""
+"""The values that answers give to fields, by name; None for a boolean field."""
 Found = tuple[Node, Compared, set[str] | None]
-"""A comparison, its element, and the values of which its text is none."""
+"""A comparison with a text that no answer gives, its element, and what answers give."""
 
 
 def check_conditions(root: Node) -> Iterator[Problem]:
     """Warn of conditions that do not ask what they seem to ask."""
-    conditions = [node for node in root.walk() if node.get("cond")]
-    for node in conditions:
-        if (found := assigned(node.get("cond"))) is not None:
-            diagnosis = FUNCTION_CONDITION if found.function else ASSIGNING_CONDITION
-            yield diagnosis.at(_place(node, found.start))
-    for node, one, values in islice(_never_equal(root), MOST_CHECKED):
-        start, inside = _place(node, one.start), _place(node, one.start + 1)
-        yield never_equal(start, inside, one.name, one.text, values)
+    for node in root.walk():
+        if cond := node.get("cond"):
+            yield from assigning(cond, _places(node))
+    for node, found, values in islice(_never_equal(root), MOST_CHECKED):
+        yield never_equal(found, _places(node), values)
 
 
-def _place(node: Node, start: int) -> Place:
-    return node.source.inside(node.index, "cond", start)
+def _places(node: Node) -> At:
+    """The places of the characters of an element's condition."""
+    return lambda start: node.source.inside(node.index, "cond", start)
 
 
 def _never_equal(root: Node) -> Iterator[Found]:
-    """Comparisons of a form's fields with texts that are none of their values."""
+    """Comparisons of a form's fields with texts that no answer gives them."""
     changed = _changed(root)
     for form in root.all("form"):
         if answers := _answers(form, changed):
@@ -74,7 +66,7 @@ def _answers(form: Node, changed: set[str]) -> Answers:
 
 
 def _values(field: Node) -> set[str] | None:
-    """The values of a field's options; nothing if it is boolean, no value if they are unknown."""
+    """The values of a field's options: None if it is boolean, an empty set if they are unknown."""
     options, grammars = field.all("option"), field.all("grammar")
     kinds = [field.get("type")] if "type" in field.attributes else []
     kinds += [one.get("src") for one in grammars]
