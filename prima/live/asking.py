@@ -91,7 +91,9 @@ class ServiceRequests:
         url, own = request.full_url, self.endpoint.uri
         if self.closed:
             raise Unfit("nobody waits for it any more")
-        if urlsplit(url).scheme not in ("http", "https") or host_of(url) not in self.hosts:
+        if urlsplit(url).scheme not in ("http", "https"):
+            raise Unfit("it is moved to a URI that is neither http nor https")
+        if host_of(url) not in self.hosts:
             raise Unfit(f'it is moved to the host "{host_of(url)}", which no service names')
         if urlsplit(url)[:2] != urlsplit(own)[:2]:
             return

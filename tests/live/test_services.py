@@ -247,6 +247,12 @@ def test_only_what_is_idempotent_is_asked_again(
     assert found.name == ("reply.library" if times == 3 else "error.service.library")
 
 
+def test_a_service_is_not_moved_to_a_file(host: Host, tmp_path: Path) -> None:
+    host.moved = "file:///etc/hostname"
+    reason = why(send(document(tmp_path, host, 'url="URL/away"/>')))
+    assert "it is moved to a URI that is neither http nor https" in reason
+
+
 def test_a_service_that_is_not_named_is_none(host: Host, tmp_path: Path) -> None:
     path = document(tmp_path, host, 'url="URL/"/>')
     found = asked(path, {"to": "archive", "params": {}})

@@ -99,6 +99,14 @@ def test_a_built_in_grammar_is_checked_as_a_type_is(
     assert len(found) == bool(says) and says in "".join(found)
 
 
+@pytest.mark.parametrize("written", ['src="a.txt"', "srcexpr=\"'a.txt'\""])
+def test_a_grammar_of_another_format_is_told(tmp_path: Path, written: str) -> None:  # 3.1.1.4
+    (tmp_path / "a.txt").write_text("yes | no")
+    field = f'<field name="f"><grammar {written} type="text/foo"/></field>'
+    [found] = told(tmp_path, f"<form>{field}</form>")
+    assert found.startswith('main.vxml format Grammars of type "text/foo" are not supported.')
+
+
 GOTO = '<catch event="e"><goto nextitem="{}"/></catch>'
 
 

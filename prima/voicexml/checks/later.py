@@ -109,7 +109,7 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
 
 
 def _check_node(node: Node, lang: str) -> Iterator[Problem]:
-    if node.key == "grammar" and not {"src", "srcexpr"} & node.attributes.keys():
+    if node.key == "grammar" and "src" not in node.attributes:
         yield from grammar_problems(node, lang)
     yield from _type_problems(node)
     if node.key in ("prosody", "voice") and not node.attributes:
@@ -227,12 +227,19 @@ def _type_problems(node: Node) -> Iterator[Problem]:
 def grammar_problems(
     node: Node, lang: str, base: str = "", fetch: Callable[[str], bytes] | None = None
 ) -> list[Problem]:
-    """The problems of a ``<grammar>``; without ``fetch``, files that it names are not read."""
+    """The problems of a ``<grammar>``; without ``fetch``, files that it names are not read.
+
+    Of a grammar with ``srcexpr`` only the type is known before it listens.
+    """
     from prima.grammar import GrammarError, load
+    from prima.grammar.media import check_known, media_type
 
     mode: Literal["dtmf", "voice"] = "dtmf" if node.get("mode") == "dtmf" else "voice"
     lang = node.get("xml:lang", lang)
     try:
+        if "srcexpr" in node.attributes:
+            check_known(media_type(node.get("type")), node.attribute_place("type"), "")
+            return []
         return load(node, base=base, lang=lang, mode=mode, fetch=fetch, lenient=True).warnings()
     except GrammarError as error:
         return [
