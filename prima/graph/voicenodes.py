@@ -6,13 +6,13 @@ from prima.graph.labels import ASKED, LEAVES_USER, sayings
 from prima.graph.model import clean
 from prima.graph.throws import Taker
 from prima.graph.transitions import Branches
+from prima.interpreter.deadcontent import branches
 from prima.markup.tree import Node
 from prima.voicexml.arranging import is_unit, parts_of
 from prima.voicexml.elements import (
     HANDLERS,
     ITEMS,
     LEAVING,
-    branches,
     handler_names,
     handler_number,
     leaves,

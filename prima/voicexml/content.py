@@ -6,6 +6,7 @@ import json
 from collections import defaultdict
 from collections.abc import Iterable
 
+from prima.interpreter.deadcontent import branches
 from prima.interpreter.places import source
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, no_item, undeclared
 from prima.markup.tree import Node
@@ -14,7 +15,7 @@ from prima.script.evaluation import RESULT_LIMIT, Scope, ScriptError
 from prima.script.wrapping import check_variable
 from prima.voicexml.access import host_of_page, may_read
 from prima.voicexml.dom import DOM, plain_tree
-from prima.voicexml.elements import INPUTS, branches
+from prima.voicexml.elements import INPUTS
 from prima.voicexml.evaluating import is_worded
 from prima.voicexml.fetching import decoded, fetch
 from prima.voicexml.prompts import Speaker

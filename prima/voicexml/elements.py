@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
+from prima.interpreter.deadcontent import branches
 from prima.markup.tree import Node
 
 ITEMS = frozenset(["field", "block", "initial", "subdialog", "object", "record", "transfer"])
@@ -29,18 +30,6 @@ def handler_number(handler: Node) -> int:
     """The count of a handler or a prompt; 1 if it is not a number."""
     count = handler.get("count", "1")
     return max(int(count), 1) if count.isdecimal() else 1
-
-
-def branches(node: Node) -> Iterator[tuple[Node, list[Node | str]]]:
-    """The branches of an ``if`` (5.3.4), each with the element that has its condition."""
-    head, part = node, list[Node | str]()
-    for one in node.content:
-        if isinstance(one, Node) and one.tag in ("elseif", "else"):
-            yield head, part
-            head, part = one, []
-        else:
-            part.append(one)
-    yield head, part
 
 
 def to_item(node: Node) -> bool:

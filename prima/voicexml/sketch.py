@@ -14,6 +14,7 @@ from itertools import chain
 from urllib.parse import urlsplit
 
 from prima.interpreter.acts import Act, CommandRun, Expression, Foreach, Goto, Handler, If, all_acts
+from prima.interpreter.deadcontent import branches
 from prima.interpreter.elements import (
     Block,
     Document,
@@ -43,7 +44,7 @@ from prima.voicexml.acting import (
 )
 from prima.voicexml.arranging import is_unit, longest_of
 from prima.voicexml.document import Page
-from prima.voicexml.elements import HANDLERS, ITEMS, branches, handler_names, handler_number
+from prima.voicexml.elements import HANDLERS, ITEMS, handler_names, handler_number
 from prima.voicexml.platform import own_words
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 

@@ -125,7 +125,7 @@ INSIDE = {
         {"__init__"},
     ],
     "interpreter": [
-        {"acts", "diagnoses", "selection", "steps", "vocabulary"},
+        {"acts", "deadcontent", "diagnoses", "selection", "steps", "vocabulary"},
         {"elements"},
         {"events", "places", "pyengine", "sensors"},
         {"naming", "transfers"},

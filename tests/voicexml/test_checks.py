@@ -131,7 +131,7 @@ def test_an_item_to_go_to_that_is_not_there_is_told(
 
 def test_an_item_to_go_to_that_is_there_is_none_to_tell(tmp_path: Path) -> None:
     form = """<form><p:iu xmlns:p="urn:prima:dialogue:1" name="u"><block name="b"/></p:iu>
-    <block><if cond="true"><goto nextitem="b"/><else/><goto expritem="'u'"/></if>
+    <block><if cond="true"><goto nextitem="b"/><elseif cond="false"/><goto expritem="'u'"/></if>
     <goto nextitem="u"/></block></form>"""
     assert told(tmp_path, GOTO.format("b") + form) == []
 

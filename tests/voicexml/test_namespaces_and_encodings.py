@@ -201,7 +201,7 @@ def test_attributes_that_exclude_each_other_are_one_error_wherever_they_are_told
     tmp_path: Path,
 ) -> None:
     application = tmp_path / "app.vxml"
-    body = '<form id="a"><block><goto next="#a" expr="1"/><audio/></block></form>'
+    body = '<form id="a"><block><goto next="#a" expr="1"/></block><block><audio/></block></form>'
     application.write_text(f"{HEAD}{body}</vxml>", encoding="utf-8")
     path = scenario(tmp_path, "app.vxml")
     told = [("error", "exclusive"), ("error", "missing-attribute")]

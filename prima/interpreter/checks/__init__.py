@@ -17,11 +17,12 @@ from prima.interpreter.checks.contents import check_contents
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.checks.hints import check_hints
 from prima.interpreter.checks.questions import check_first_prompts, check_leaving, check_silence
-from prima.interpreter.checks.reachable import check_content, check_handlers, check_reachable
+from prima.interpreter.checks.reachable import check_handlers, check_reachable
 from prima.interpreter.checks.robot import check_commands
 from prima.interpreter.checks.rounds import check_endless, check_rounds
 from prima.interpreter.checks.targets import check_items, check_targets
 from prima.interpreter.checks.throws import check_throws
+from prima.interpreter.deadcontent import dead_content
 from prima.interpreter.elements import Document
 from prima.interpreter.events import KnownEvents
 from prima.interpreter.repeats import source_of, told_twice
@@ -46,7 +47,6 @@ CHECKS: tuple[Callable[[Facts], Iterator[Problem]], ...] = (
     check_leaving,
     check_silence,
     check_first_prompts,
-    check_content,
     check_handlers,
     check_throws,
 )
@@ -56,6 +56,7 @@ def check_document(document: Document) -> list[Problem]:
     """All semantic problems of a document."""
     facts = Facts(document)
     problems = [problem for check in CHECKS for problem in check(facts)]
+    problems += dead_content(document.node)
     problems += endless_reactions(document)
     problems += KnownEvents(document, facts.acts).problems()
     return [*problems, *told_twice([source_of(document, facts.acts)])]

@@ -1,19 +1,17 @@
-"""Unreachable forms, forms that are never left, and unreachable content."""
+"""Unreachable forms and handlers, and forms that are never left."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 
 from prima.errors import Diagnosis, Problem
 from prima.errors.diagnoses.behaviour import UNREACHABLE
-from prima.interpreter.acts import Act, Exit, Foreach, Goto, Handler, If, Return, Throw, all_acts
+from prima.interpreter.acts import Exit, Goto, Handler, Return, Throw, all_acts
 from prima.interpreter.checks.facts import Facts, name_of
+from prima.interpreter.deadcontent import DEAD_CONTENT
 from prima.interpreter.elements import Field, Form, all_items
 from prima.interpreter.events import DEFAULTS, event_place, scopes_of
 from prima.interpreter.selection import beginnings
-
-LEAVING = (Goto, Return, Exit)
-"""Acts after which content is unreachable."""
 
 UNREACHABLE_FORM = UNREACHABLE.says(
     'Nothing leads to the form "{form}".', "Go to it from somewhere, or remove it."
@@ -31,16 +29,6 @@ DEAD_END = Diagnosis(
 )
 DEAD_END_INSIDE = DEAD_END.says(
     DEAD_END.message, "To come back from the subdialog, write <return/>."
-)
-DEAD_CONTENT = Diagnosis(
-    "dead-content",
-    "Content that is never reached",
-    "Nothing after a goto, return or exit is ever reached, nor is a handler whose events another"
-    " one of the same element takes first: of several with the same count it is the first.",
-    rule="VoiceXML 2.0, 5.3",
-    severity="warning",
-    message="<{tag}> comes after <{leaving}> and is never reached.",
-    remedy="Put it before <{leaving}>, or remove it.",
 )
 SHADOWED = DEAD_CONTENT.says(
     'The handler in line {line} takes "{name}" first: this one is never reached.',
@@ -170,12 +158,6 @@ def _exiting(facts: Facts) -> set[str]:
     return found
 
 
-def check_content(facts: Facts) -> Iterator[Problem]:
-    """Warn of content after a goto, return or exit."""
-    for _, content, _ in facts.document.contents():
-        yield from _dead(content)
-
-
 def check_handlers(facts: Facts) -> Iterator[Problem]:
     """Warn of handlers whose events an earlier one of the same scope always takes."""
     for scope in scopes_of(facts.document, facts.acts):
@@ -197,17 +179,3 @@ def check_handlers(facts: Facts) -> Iterator[Problem]:
 def _taker(earlier: Mapping[tuple[str, int], Handler], name: str, count: int) -> Handler | None:
     """The earlier handler that takes an event, with the same count and without a condition."""
     return next((earlier[one, count] for one in beginnings(name) if (one, count) in earlier), None)
-
-
-def _dead(content: Sequence[Act]) -> Iterator[Problem]:
-    for index, act in enumerate(content, 1):
-        if isinstance(act, LEAVING):
-            for behind in content[index : index + 1]:
-                place = behind.node.place
-                yield DEAD_CONTENT.at(place, tag=behind.node.tag, leaving=act.node.tag)
-            return
-        if isinstance(act, If):
-            for _, branch in act.branches:
-                yield from _dead(branch)
-        elif isinstance(act, Foreach):
-            yield from _dead(act.content)

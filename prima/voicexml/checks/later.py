@@ -10,6 +10,7 @@ from prima.errors import Hint, Problem, meant, nearest_word, one_of, suggestion
 from prima.errors.diagnoses.names import BAD_EXPRESSION, NO_SUCH_FORM, NO_SUCH_ITEM, NO_SUCH_NAME
 from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE
 from prima.errors.diagnoses.values import ASKED_LATER, BAD_VALUE, EXCLUSIVE
+from prima.interpreter.deadcontent import dead_content
 from prima.interpreter.steps import no_step
 from prima.language.commands import TABLE_4_2
 from prima.markup.spans import instead, value_span
@@ -105,6 +106,7 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
         problems += _targets(node, dialogs)
     for dialog in root.all("form", "menu"):
         problems += _items(dialog, dialogs)
+    problems += dead_content(root)
     return [*problems, *check_conditions(root), *check_failing(root), *_first_prompt(root)]
 
 

@@ -1,0 +1,68 @@
+"""Content that is never reached, in documents of both languages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+
+from prima.errors import Diagnosis, Problem
+from prima.markup.tree import Node
+
+LEAVING = frozenset(["goto", "submit", "exit", "return", "disconnect"])
+"""Elements after which nothing of the same content is reached."""
+DIVIDED = frozenset(["if", *LEAVING])
+
+DEAD_CONTENT = Diagnosis(
+    "dead-content",
+    "Content that is never reached",
+    "Nothing after a goto, return, exit, or in VoiceXML a submit or disconnect, is ever reached,"
+    " nor is anything after an if with an else if all branches have one of them, nor is a handler"
+    " whose events another one of the same element takes first: of several with the same count it"
+    " is the first.",
+    rule="VoiceXML 2.0, 5.3",
+    severity="warning",
+    message="<{tag}> comes after <{leaving}> and is never reached.",
+    remedy="Put it before <{leaving}>, or remove it.",
+)
+BEHIND_IF = DEAD_CONTENT.says(
+    "<{tag}> is never reached: each branch of the <if> before it ends with <goto> or the like.",
+    "Put it before the <if>, or remove it.",
+)
+
+
+def branches(node: Node) -> Iterator[tuple[Node, list[Node | str]]]:
+    """The branches of an ``if`` (5.3.4), each with the element that has its condition."""
+    head, part = node, list[Node | str]()
+    for one in node.content:
+        if isinstance(one, Node) and one.tag in ("elseif", "else"):
+            yield head, part
+            head, part = one, []
+        else:
+            part.append(one)
+    yield head, part
+
+
+def dead_content(root: Node) -> Iterator[Problem]:
+    """Warn of content after what leaves it, once in each branch."""
+    for holder in root.walk():
+        nodes = holder.nodes
+        if len(nodes) > 1 and any(one.key in DIVIDED for one in nodes):
+            for _, part in branches(holder):
+                yield from _dead(part)
+
+
+def _dead(part: Iterable[Node | str]) -> Iterator[Problem]:
+    for one, behind in pairwise(node for node in part if isinstance(node, Node)):
+        if _leaves(one) and behind.key:  # not unknown, nor misplaced
+            diagnosis = BEHIND_IF if one.key == "if" else DEAD_CONTENT
+            yield diagnosis.at(behind.place, tag=behind.tag, leaving=one.tag)
+            return
+
+
+def _leaves(node: Node) -> bool:
+    """Whether nothing after an element is reached."""
+    if node.key in LEAVING or node.key != "if":
+        return node.key in LEAVING
+    heads = [*branches(node)]
+    ends = (any(isinstance(one, Node) and _leaves(one) for one in part) for _, part in heads)
+    return heads[-1][0].tag == "else" and all(ends)
