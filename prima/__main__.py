@@ -15,6 +15,9 @@ def main() -> None:
         if sys.stderr is not None:
             sys.stderr.write("prima: interrupted\n")
         sys.exit(INTERRUPTED)
+    finally:
+        # An interrupt in code from text, as a dataclass is made of: python -m would end by the signal.
+        eval("0")
 
 
 if __name__ == "__main__":

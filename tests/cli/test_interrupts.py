@@ -40,6 +40,18 @@ def watch(frame, event, _):
 sys.setprofile(watch)
 main()
 """
+IN_TEXT = """
+import builtins
+from prima.__main__ import main
+real = builtins.__import__
+def imports(name, *rest, **named):
+    if name == "{module}":
+        exec("import signal; signal.raise_signal(signal.SIGINT)")
+    return real(name, *rest, **named)
+builtins.__import__ = imports
+main()
+"""
+"""Dataclasses are made of text, too."""
 
 
 @pytest.mark.parametrize("place", ["ext_cpSpaceShapeIteratorFunc", "spacefree", "step", "add"])
@@ -67,6 +79,17 @@ def test_each_signal_ends_a_command_that_makes_a_class(name: str) -> None:
     done = subprocess.run(
         [sys.executable, "-c", IN_CLASS.format(name=name)],
         capture_output=True, text=True, timeout=60, check=False, cwd=ROOT,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr.lstrip()) == (130, "prima: interrupted\n")
+
+
+@pytest.mark.parametrize("module", ["prima.cli", "prima.talk"])
+def test_a_module_interrupted_in_code_from_text_ends_with_130(tmp_path: Path, module: str) -> None:
+    """``python -m`` repeats the signal to itself at its end, though the exception was handled."""
+    (tmp_path / "started.py").write_text(IN_TEXT.format(module=module))
+    done = subprocess.run(
+        [sys.executable, "-m", "started", "talk", "none.xml"],
+        capture_output=True, text=True, timeout=60, check=False, cwd=tmp_path,
     )  # fmt: skip
     assert (done.returncode, done.stderr.lstrip()) == (130, "prima: interrupted\n")
 
