@@ -85,7 +85,7 @@ def check_folder(path: str | Path, remedy: str) -> None:
 
 
 def check_path(path: object, argument: str) -> None:
-    """Refuse what is no path, such as bytes.
+    """Refuse anything but a path, such as bytes.
 
     Raises:
         UsageError: it is neither a text nor a path, and the argument is named; or it holds NUL.
@@ -114,7 +114,7 @@ def texts_of(given: str | Iterable[str], argument: str) -> list[str]:
     """Several texts; one that is given alone is one, and not its letters.
 
     Raises:
-        UsageError: one is no text, such as bytes; the argument is named.
+        UsageError: one is not a text, such as bytes; the argument is named.
     """
     several = not isinstance(given, str | bytes) and isinstance(given, Iterable)
     texts = list(given) if several else [given]
@@ -124,10 +124,10 @@ def texts_of(given: str | Iterable[str], argument: str) -> list[str]:
 
 
 def check_text(given: object, argument: str) -> None:
-    """Refuse what is no text, such as bytes.
+    """Refuse anything but a text, such as bytes.
 
     Raises:
-        UsageError: it is none; the argument is named.
+        UsageError: it is not a text; the argument is named.
     """
     if not isinstance(given, str):
         raise UsageError(f"{argument}={given!r:.80}: write a text.")

@@ -17,7 +17,7 @@ HANDLERS = ("on", "catch", "error", "help", "noinput", "nomatch")
 CONTENT = ("block", "filled", *HANDLERS)
 """Elements with content that has variables of its own."""
 NO_ITEMS = ("var", "foreach", "said-foreach", "script", "data")
-"""Elements that declare variables and are no form items."""
+"""Elements that declare variables and are not form items."""
 UNFIT = {
     ("goto", "nextitem"): NO_ITEMS,
     ("filled", "namelist"): (*NO_ITEMS, "block", "initial", UNIT),
