@@ -47,6 +47,10 @@ class Answers:
         return read(self.type, text)
 
     def in_grammar(self, text: str) -> bool:
-        """Whether an utterance is an answer other than as free text."""
-        known = replace(self, type="") if self.type == "text" else self
-        return known.match(text) is not None
+        """Whether an utterance is an answer none of whose words are free, as GARBAGE takes them."""
+        known = replace(self, type="" if self.type == "text" else self.type, grammars=())
+        return known.match(text) is not None or any(
+            found.error is None and found.confidence == 1
+            for grammar in self.grammars
+            for found in grammar.match(text)
+        )

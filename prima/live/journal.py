@@ -38,14 +38,16 @@ SPOKEN = ("utterance", "alternatives", "recorded", "text")
 
 FREE = ("text", "words", "extra", "message")
 """Fields of records in which an application may repeat it."""
+ANSWERED = ("X8", "X10")
+"""The rules by which words answer a question that does not listen."""
 
 
 class Redactor:
     """Removes what users say from records; its times and the grammars' results are kept.
 
     What no grammar took is removed wherever it recurs word for word: as a field's value, in
-    messages to services, in logs, in what the robot says. Such a journal can be shown and measured; it
-    cannot be replayed or resumed.
+    messages to services, in logs, in errors, in what the robot says. Such a journal can be shown
+    and measured; it cannot be replayed or resumed.
 
     Args:
         listening: returns what is listened for now.
@@ -59,43 +61,57 @@ class Redactor:
 
     def __call__(self, records: list[Record]) -> list[Record]:
         """The records of an instant without users' words."""
-        made = [self._redacted(record) for record in records]
+        early = any(record.get("rule") in ANSWERED for record in records)
+        made = [self._redacted(record, early) for record in records]
         self._takes = self._listening()
         return made
 
-    def _redacted(self, record: Record) -> Record:
+    def _redacted(self, record: Record, early: bool) -> Record:
+        data = record.get("data")
         if record["phase"] == "run":
             return {**record, "data": {**record["data"], "redacted": True}}
-        data = record.get("data")
         if record["phase"] == "event" and record["event"] == "speech":
-            self._note(record.get("text") or "")
+            self._hear(record, early)
             record = {**record, "text": REDACTED}
         else:
-            held = [name for name in FREE if record.get(name)]
-            record = {**record, **{name: self._without(record[name]) for name in held}}
+            record = self._repeated(record)
         if isinstance(data, dict):
-            kept = {name: value for name, value in data.items() if name not in SPOKEN}
-            record = {**record, "data": self._without(kept) or None}
+            kept = {name: self.without(one) for name, one in data.items() if name not in SPOKEN}
+            record = {**record, "data": kept or None}
         return record
 
-    def _note(self, said: str) -> None:
-        """Remember free speech; short words only if a question takes any text."""
-        taken = any(one.type == "text" for one in self._takes)
+    def _repeated(self, record: Record) -> Record:
+        """What an application does or says without users' own words."""
+        made = {name: self.without(record[name]) for name in FREE if record.get(name)}
+        if record["phase"] == "unload" and record.get("outcome"):
+            name, colon, why = record["outcome"].partition(": ")
+            made["outcome"] = f"{name}{colon}{self.without(why)}"
+        return {**record, **made}
+
+    def _hear(self, record: Record, early: bool) -> None:
+        """Remember what was said, and what else the recogniser takes it for."""
+        others = (record.get("data") or {}).get("alternatives", [])
+        for said in (record.get("text") or "", *(one["text"] for one in others)):
+            self._note(said, early)
+
+    def _note(self, said: str, early: bool) -> None:
+        """Remember free speech; short words only if a question takes any text, or may have."""
+        taken = early or any(one.type == "text" for one in self._takes)
         if len(fold(said)) < (1 if taken else LONG_ENOUGH):
             return
         if not any(one.in_grammar(said) for one in self._takes):
             words = r"\W+".join(re.findall(r"\w+", said))
             self._free.append(re.compile(rf"(?<![a-z0-9]){words}(?![a-z0-9])", re.I))
 
-    def _without(self, value: Json) -> Json:
-        """A value without users' own words."""
+    def without(self, value: Json) -> Json:
+        """A value without users' own words, in names, too."""
         if isinstance(value, str):
             for said in self._free:
                 value = said.sub(REDACTED, value)
             return value
         if isinstance(value, dict):
-            return {name: self._without(one) for name, one in value.items()}
-        return [self._without(one) for one in value] if isinstance(value, list) else value
+            return {str(self.without(name)): self.without(one) for name, one in value.items()}
+        return [self.without(one) for one in value] if isinstance(value, list) else value
 
 
 def _is_there(path: str) -> UsageError:

@@ -117,6 +117,9 @@ class Visit:
             warn(str(error) or "The run was broken off.")
         finally:
             self.loop.session.close()
+            if redactor is not None:
+                failures = self.loop.session.failures
+                failures[:] = [str(redactor.without(one)) for one in failures]
             if self.journal is not None:
                 self.journal.close()
 
