@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +19,7 @@ from prima.experiments.examine import Finding, Seen
 from prima.experiments.explore import Exploration, FoundOrder, FoundProblem
 from prima.experiments.lines import Point
 from prima.experiments.pools import Pool
+from prima.experiments.table import ORDER
 from prima.experiments.variants import discard
 from prima.loading.writing import make_folder, write_whole
 from prima.messages import Json
@@ -25,6 +28,8 @@ from prima.version import __version__
 
 RUNS, RESULT, ORDERS, PROBLEMS = "runs.jsonl", "explored.json", "orders", "problems"
 """Names in an exploration's folder."""
+KINDS = ("endless", "error", "expect", "invariant")
+"""The kinds of problems."""
 WIDTH = 60
 """Characters of a row that a table of orders shows."""
 
@@ -213,7 +218,7 @@ class ExplorationFolder:
         """
         try:
             discard(self.path / ORDERS)
-            discard(self.path / PROBLEMS, "[0-9]+-(endless|error|expect|invariant)")
+            discard(self.path / PROBLEMS, f"[0-9]+-({'|'.join(KINDS)})")
             for order in self.exploration.orders:
                 self._case(ORDERS, order.signature, order.point)
             for number, problem in enumerate(self.exploration.problems, 1):
@@ -265,10 +270,24 @@ def _read(line: str) -> Any:
 
 
 def _run(data: Any, moves: int) -> tuple[Point, Seen] | None:
-    """A kept run; None if it is incomplete."""
+    """A kept run; None if it is incomplete or damaged."""
     try:
         point = tuple(int(one) for one in data.pop("at"))
         seen = Seen(**{**data, "found": [Finding(*one) for one in data["found"]]})
-    except (AttributeError, KeyError, TypeError, ValueError):
+    except (AttributeError, KeyError, OverflowError, TypeError, ValueError):
         return None
-    return (point, seen) if len(point) == moves else None
+    return (point, seen) if len(point) == moves and _sound(seen) else None
+
+
+def _sound(seen: Seen) -> bool:
+    """Whether a kept run has values of the right types, and names files of its own folder only."""
+    words = (seen.ended, seen.failures, seen.order, *chain.from_iterable(seen.found))
+    numbers = (seen.exit, seen.expects_failed)
+    lists = (seen.times, seen.outside)
+    return (
+        all(type(one) is str for one in words)
+        and all(type(one) is list for one in lists)
+        and all(type(one) is int for one in (*numbers, *chain.from_iterable(lists)))
+        and re.fullmatch(f"({ORDER})?", seen.order) is not None
+        and all(one.kind in KINDS for one in seen.found)
+    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -26,6 +27,8 @@ BATCH = 10_000
 """The number of rows converted at once."""
 BATCH_READ = 100_000
 """The number of rows read at once."""
+ORDER = "[0-9a-f]{12}"
+"""An order's signature, after which its files are named."""
 TYPES = {"duration": "number", "number": "number", "integer": "integer"}
 """Types of columns by kinds of values; others are strings."""
 
@@ -117,18 +120,26 @@ def line(cells: Iterable[Json]) -> str:
 
 
 def read_rows(stream: IO[str], made: Sequence[Column]) -> Iterator[dict[str, Json]]:
-    """The rows of a table written by :func:`line`, its head first.
+    """The rows of a table written by :func:`line`, its head first, then all runs in order.
 
     Raises:
-        ValueError: it is another table.
+        ValueError: it is another table, or is damaged.
     """
     rows = csv.reader(stream)
-    if next(rows, []) != [one.name for one in made]:
-        raise ValueError("its columns are others")
-    for row in rows:
-        if len(row) != len(made):
-            raise ValueError(f"line {rows.line_num} has {len(row)} cells")
-        yield {one.name: _value(one.type, text) for one, text in zip(made, row, strict=True)}
+    try:
+        if next(rows, []) != [one.name for one in made]:
+            raise ValueError("its columns are others")
+        for number, row in enumerate(rows):
+            if len(row) != len(made):
+                raise ValueError(f"line {rows.line_num} has {len(row)} cells")
+            cells = {one.name: _value(one.type, text) for one, text in zip(made, row, strict=True)}
+            if cells["run"] != number:
+                raise ValueError(f"line {rows.line_num} is not that of run {number}")
+            if not re.fullmatch(f"({ORDER})?", str(cells["order"])):
+                raise ValueError(f"line {rows.line_num} does not have the signature of an order")
+            yield cells
+    except csv.Error as error:
+        raise ValueError(f"line {rows.line_num}: {error}") from None
 
 
 def _value(kind: str, text: str) -> Json:

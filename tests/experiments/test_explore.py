@@ -187,6 +187,32 @@ def test_kept_runs_that_are_none_are_made_again(line: str) -> None:
     assert "0 runs had been made before" in again.stderr
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"order": "../../evil"},
+        {"order": None},
+        {"times": ["x"]},
+        {"times": None},
+        {"outside": ["a"]},
+        {"exit": "x"},
+        {"found": [["../x", "", ""]]},
+        {"found": [["expect", [], {}]]},
+        {"at": [float("inf")]},
+    ],
+)
+def test_kept_runs_that_are_damaged_are_made_again(change: dict[str, Any]) -> None:
+    first = prima("explore", "visit.xml", "-o", "out", "--depth", "1")
+    kept = files("out")
+    head, base, *others = Path("out/runs.jsonl").read_text().splitlines()
+    base = json.dumps({**json.loads(base), **change})
+    Path("out/runs.jsonl").write_text("\n".join([head, base, *others, ""]))
+    again = prima("explore", "visit.xml", "-o", "out", "--depth", "1", "--resume")
+    assert again.stdout == first.stdout, again.stderr
+    assert f"{len(others)} runs had been made before" in again.stderr
+    assert {**files("out"), "runs.jsonl": b""} == {**kept, "runs.jsonl": b""}
+
+
 LONG = [sys.executable, "-m", "prima", "explore", "visit.xml", "--step", "20ms", "--within", "20s"]
 
 

@@ -180,6 +180,40 @@ def test_tables_and_plans_of_others(whole: bytes, content: str) -> None:
     assert done.returncode == 2 and "cannot be resumed" in done.stderr, done.stderr
 
 
+def _changed(column: int, cell: str) -> Callable[[list[str]], list[str]]:
+    """Changes a cell of the second row."""
+
+    def change(rows: list[str]) -> list[str]:
+        cells = rows[1].split(",")
+        cells[column] = cell
+        return [rows[0], ",".join(cells), *rows[2:]]
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (lambda rows: [*rows[:1], *rows[2:]], "line 3 is not that of run 1"),
+        (lambda rows: [*rows[:3], *rows[2:]], "line 5 is not that of run 3"),
+        (_changed(0, ""), "line 3 is not that of run 1"),
+        (_changed(9, "../../evil"), "line 3 does not have the signature of an order"),
+        (_changed(1, "x" * 200_000), "line 3: field larger than field limit"),
+    ],
+)
+def test_a_damaged_table_is_not_resumed(
+    whole: bytes, change: Callable[[list[str]], list[str]], why: str
+) -> None:
+    head, *rows = whole.decode().splitlines()
+    assert head.split(",")[9] == "order"
+    damaged = "\r\n".join([head, *change(rows)[:20], ""]).encode()
+    Path("whole/t.csv").write_bytes(damaged)
+    done = prima(*ARGUMENTS, "-o", "whole/t.csv", "--resume")
+    assert done.returncode == 2, done.stderr
+    assert f"whole/t.csv: not the table of a sweep: {why}" in done.stderr
+    assert Path("whole/t.csv").read_bytes() == damaged
+
+
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
 def test_a_full_disk() -> None:
     Path("t.csv").symlink_to("/dev/full")
