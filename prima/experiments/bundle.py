@@ -14,6 +14,7 @@ import platform
 import re
 import zipfile
 from pathlib import Path
+from urllib.parse import quote
 
 from prima.errors import UsageError
 from prima.experiments.kept import Kept
@@ -153,9 +154,7 @@ def _name(path: Path, out: Output) -> str:
 def _metadata(files: dict[str, bytes], out: Output) -> str:
     """The description of the archive according to RO-Crate 1.1."""
     table, folder = _name(out.path, out), _name(out.folder, out)
-    parts = [{"@id": name} for name in files]
-    made_of = [one for one in parts if not one["@id"].startswith(f"{folder}/")]
-    made_of = [one for one in made_of if one["@id"] != table]
+    others = [name for name in files if name != table and not name.startswith(f"{folder}/")]
     graph: list[dict[str, Json]] = [
         {
             "@id": METADATA,
@@ -169,8 +168,8 @@ def _metadata(files: dict[str, bytes], out: Output) -> str:
             "name": f"A sweep of {', '.join(out.sweep.question.scenarios)}",
             "description": f"{len(out.sweep)} runs. Unpack it, and in its folder call:"
             f" prima sweep {STUDY} -o {table}",
-            "hasPart": parts,
-            "mainEntity": {"@id": table},
+            "hasPart": [{"@id": quote(name)} for name in files],
+            "mainEntity": {"@id": quote(table)},
             "mentions": {"@id": "#sweep"},
         },
         {
@@ -178,8 +177,8 @@ def _metadata(files: dict[str, bytes], out: Output) -> str:
             "@type": "CreateAction",
             "name": "The sweep",
             "instrument": {"@id": "#prima"},
-            "object": made_of,
-            "result": [{"@id": table}],
+            "object": [{"@id": quote(name)} for name in others],
+            "result": [{"@id": quote(table)}],
         },
         {
             "@id": "#prima",
@@ -191,7 +190,8 @@ def _metadata(files: dict[str, bytes], out: Output) -> str:
     ]
     for name, data in files.items():
         kind = TYPES.get(Path(name).suffix) or mimetypes.guess_type(name)[0]
-        entry: dict[str, Json] = {"@id": name, "@type": "File", "contentSize": len(data)}
+        entry: dict[str, Json] = {"@id": quote(name), "@type": "File"}
+        entry["contentSize"] = len(data)
         entry |= {"encodingFormat": kind} if kind else {}
         entry |= (
             {"description": "The transcript of an order"}

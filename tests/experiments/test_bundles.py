@@ -6,6 +6,7 @@ import json
 import shutil
 import zipfile
 from pathlib import Path
+from urllib.parse import unquote
 
 import pytest
 
@@ -95,6 +96,23 @@ def test_its_metadata_name_every_file_as_ro_crate_does(folder: Path) -> None:
     made_of = {one["@id"] for one in graph["#sweep"]["object"]}
     assert {"visit.xml", "delays.csv", "study.toml"} <= made_of
     assert graph["#sweep"]["result"] == [{"@id": "table.csv"}]
+
+
+def test_its_metadata_name_files_by_uris(folder: Path) -> None:
+    Path("delays.csv").rename("dé lays 100%.csv")
+    words = ["sweep", "visit.xml", "--vary", "touch=empirical(dé lays 100%.csv)", "--seeds", "2"]
+    done = prima(*words, "-o", "out 1/table.csv", "--bundle", "table.zip")
+    assert done.returncode == 0, done.stderr
+    with zipfile.ZipFile("table.zip") as archive:
+        names = set(archive.namelist())
+        crate = json.loads(archive.read("ro-crate-metadata.json"))
+    graph = {one["@id"]: one for one in crate["@graph"]}
+    assert graph["d%C3%A9%20lays%20100%25.csv"]["@type"] == "File"
+    assert graph["./"]["mainEntity"] == {"@id": "out%201/table.csv"}
+    parts = {unquote(one["@id"]) for one in graph["./"]["hasPart"]}
+    assert parts | {"ro-crate-metadata.json"} == names
+    made_of = {unquote(one["@id"]) for one in graph["#sweep"]["object"]}
+    assert not any(name.startswith("out 1/") for name in made_of) and "visit.xml" in made_of
 
 
 @pytest.mark.parametrize(
