@@ -100,8 +100,9 @@ def main() -> None:
         try:
             code = cli.main(standalone_mode=False)
             sys.stdout.flush()
-        except (click.Abort, KeyboardInterrupt):
-            code = interrupted()
+        except (click.Abort, KeyboardInterrupt) as error:
+            ended = error.__cause__  # click takes the end of any file for Ctrl-D
+            code = exit_code(ended) if isinstance(ended, EOFError) else interrupted()
         except (Exception, SystemExit) as error:
             code = exit_code(error)
     last_words()

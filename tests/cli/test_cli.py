@@ -475,3 +475,12 @@ def test_the_shell_completes_policies_formats_and_codes(line: str, expected: lis
         timeout=60,
     )
     assert [one.partition(",")[2] for one in done.stdout.split()] == expected, done.stderr
+
+
+def test_a_file_that_ends_too_soon_is_no_interrupt(monkeypatch: pytest.MonkeyPatch) -> None:
+    def cut(_self: object, _context: object) -> None:
+        raise EOFError("marshal data too short")
+
+    monkeypatch.setattr("prima.cli.Commands.invoke", cut)
+    with pytest.raises(AssertionError, match="defect of prima: EOFError: marshal data too short"):
+        prima("explain", "S1")
