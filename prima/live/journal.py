@@ -45,8 +45,7 @@ ANSWERED = ("X8", "X10")
 class Redactor:
     """Removes what users say from records; its times and the grammars' results are kept.
 
-    What no grammar took is removed wherever it recurs word for word: as a field's value, in
-    messages to services, in logs, in errors, in what the robot says. Such a journal can be shown
+    What no grammar took is removed wherever it recurs word for word. Such a journal can be shown
     and measured; it cannot be replayed or resumed.
 
     Args:
@@ -61,42 +60,51 @@ class Redactor:
 
     def __call__(self, records: list[Record]) -> list[Record]:
         """The records of an instant without users' words."""
-        early = any(record.get("rule") in ANSWERED for record in records)
-        made = [self._redacted(record, early) for record in records]
+        filled = any(
+            one.get("outcome") == "filled" or one.get("rule") in ANSWERED for one in records
+        )
+        made = [self._redacted(record, filled) for record in records]
         self._takes = self._listening()
         return made
 
-    def _redacted(self, record: Record, early: bool) -> Record:
+    def _redacted(self, record: Record, filled: bool) -> Record:
         data = record.get("data")
         if record["phase"] == "run":
             return {**record, "data": {**record["data"], "redacted": True}}
         if record["phase"] == "event" and record["event"] == "speech":
-            self._hear(record, early)
+            self._hear(record, filled)
             record = {**record, "text": REDACTED}
         else:
             record = self._repeated(record)
         if isinstance(data, dict):
-            kept = {name: self.without(one) for name, one in data.items() if name not in SPOKEN}
-            record = {**record, "data": kept or None}
+            record = {**record, "data": self._values(data) or None}
         return record
 
     def _repeated(self, record: Record) -> Record:
         """What an application does or says without users' own words."""
         made = {name: self.without(record[name]) for name in FREE if record.get(name)}
+        if record.get("args"):
+            made["args"] = self._values(record["args"])
+        if record.get("cues"):
+            made["cues"] = [self._values(one) for one in record["cues"]]
         if record["phase"] == "unload" and record.get("outcome"):
             name, colon, why = record["outcome"].partition(": ")
             made["outcome"] = f"{name}{colon}{self.without(why)}"
         return {**record, **made}
 
-    def _hear(self, record: Record, early: bool) -> None:
+    def _values(self, fields: dict[str, Json]) -> dict[str, Json]:
+        """The fields of data, arguments or a cue as they are named, but for what was said."""
+        return {name: self.without(one) for name, one in fields.items() if name not in SPOKEN}
+
+    def _hear(self, record: Record, filled: bool) -> None:
         """Remember what was said, and what else the recogniser takes it for."""
         others = (record.get("data") or {}).get("alternatives", [])
         for said in (record.get("text") or "", *(one["text"] for one in others)):
-            self._note(said, early)
+            self._note(said, filled)
 
-    def _note(self, said: str, early: bool) -> None:
-        """Remember free speech; short words only if a question takes any text, or may have."""
-        taken = early or any(one.type == "text" for one in self._takes)
+    def _note(self, said: str, filled: bool) -> None:
+        """Remember free speech; short words only if a question takes any text or has taken them."""
+        taken = filled or any(one.type == "text" for one in self._takes)
         if len(fold(said)) < (1 if taken else LONG_ENOUGH):
             return
         if not any(one.in_grammar(said) for one in self._takes):

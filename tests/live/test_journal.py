@@ -379,6 +379,9 @@ def test_words_are_left_out_of_errors_and_names_and_so_are_alternatives_and_late
     assert "'heard: [redacted]'" in left("I am Ermintrude", log), "GARBAGE takes free words"
     log = {"phase": "log", "message": "too late: Ada."}
     assert "'too late: [redacted].'" in left("Ada", log, rule="X10")
+    move = {"phase": "request", "args": {"to": "hall"}, "cues": [{"at": 1, "sound": "hall"}]}
+    made = left("hall", move, rule="X10")
+    assert "{'to': '[redacted]'}" in made and "[{'at': 1, 'sound': '[redacted]'}]" in made
     answered = {"phase": "end", "rule": "X8", "data": {"value": "Ben"}}
     assert "{'value': '[redacted]'}" in left("Ben", answered)
 

@@ -324,3 +324,11 @@ def test_at_a_terminal_a_recording_is_what_is_typed(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert logs(tmp_path) == ["Call me.,800,8,false"]
     assert "robot: I have Call me. now." in done.stderr
+
+
+@pytest.mark.parametrize("typed", ["Call me.", "Call Ermintrude at six."])
+def test_a_typed_recording_is_left_out_where_what_users_say_is(tmp_path: Path, typed: str) -> None:
+    done = live(tmp_path, NOTE, f"/wait\n{typed}\n", "--redact")
+    assert done.returncode == 0 and f"robot: I have {typed} now." in done.stderr
+    assert typed.rstrip(".") not in (tmp_path / "visit.jsonl").read_text()
+    assert logs(tmp_path)[0].startswith("[redacted].,")
