@@ -132,7 +132,7 @@ class Journal:
 
     Args:
         path: its path, which may be a device; a new file unless ``kept`` is given.
-        sync: whether each instant is flushed to the disk before it is carried out.
+        sync: whether each instant is flushed to the disk, if on one, before it is carried out.
         kept: the number of bytes of an older journal to keep; writing continues after them.
 
     Raises:
@@ -141,7 +141,7 @@ class Journal:
 
     def __init__(self, path: str, sync: bool = False, kept: int | None = None) -> None:
         self.path = path
-        self._sync = sync
+        self._sync = sync and (os.path.isfile(path) or not os.path.exists(path))
         flags = os.O_WRONLY | os.O_APPEND
         if kept is None and not os.path.exists(path):
             flags |= os.O_CREAT | os.O_EXCL

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections import Counter
 from collections.abc import Callable
@@ -322,6 +323,17 @@ def test_a_full_disk_ends_the_run_with_a_clear_error() -> None:
     with pytest.raises(RunError, match="No space left"):
         journal.write([HEAD])
     journal.close()
+
+
+def test_a_device_or_pipe_has_no_disk_to_flush_to(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    reader = os.open(tmp_path / "pipe", os.O_RDONLY | os.O_NONBLOCK)
+    for path in ("/dev/null", str(tmp_path / "pipe")):
+        journal = Journal(path, sync=True)
+        journal.write([{"time": 0, "phase": "note", "actor": "robot"}])
+        journal.close()
+    assert b"note" in os.read(reader, 1000)
+    os.close(reader)
 
 
 def test_what_users_say_in_their_own_words_is_left_out_wherever_it_comes_back() -> None:
