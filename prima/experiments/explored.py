@@ -19,8 +19,7 @@ from prima.experiments.examine import Finding, Seen
 from prima.experiments.explore import Exploration, FoundOrder, FoundProblem
 from prima.experiments.lines import Point
 from prima.experiments.pools import Pool
-from prima.experiments.table import ORDER
-from prima.experiments.variants import discard
+from prima.experiments.variants import ORDER, discard
 from prima.loading.writing import make_folder, write_whole
 from prima.messages import Json
 from prima.transcript.row import Row

@@ -15,6 +15,7 @@ from typing import IO, TYPE_CHECKING, Any
 from prima.errors import UsageError
 from prima.errors.visible import harmless, unharmed
 from prima.experiments.levels import Factor
+from prima.experiments.variants import ORDER
 from prima.messages import Json
 from prima.transcript.criteria import CRITERIA, MEANINGS
 from prima.version import __version__
@@ -27,8 +28,6 @@ BATCH = 10_000
 """The number of rows converted at once."""
 BATCH_READ = 100_000
 """The number of rows read at once."""
-ORDER = "[0-9a-f]{12}"
-"""An order's signature, after which its files are named."""
 TYPES = {"duration": "number", "number": "number", "integer": "integer"}
 """Types of columns by kinds of values; others are strings."""
 

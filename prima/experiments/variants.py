@@ -20,7 +20,6 @@ from prima.errors.visible import visible
 from prima.experiments.kept import Kept
 from prima.experiments.scenariotext import ScenarioText, Variant
 from prima.experiments.settings import ExperimentSettings
-from prima.experiments.table import ORDER
 from prima.interpreter.elements import Document
 from prima.loading import Loaded, load_text, with_robot, with_scenario
 from prima.loading.applications import digest
@@ -37,6 +36,8 @@ from prima.transcript.row import Row
 
 MOST_LOADED = 64
 """Maximum number of combinations of documents, worlds and robots kept loaded."""
+ORDER = "[0-9a-f]{12}"
+"""An order's signature, after which its files are named."""
 MOST_MESSAGE = 1_000
 """Maximum length of a run's messages (characters)."""
 
