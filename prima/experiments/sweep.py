@@ -20,7 +20,7 @@ from prima.experiments.levels import Factor, cell, read_factor
 from prima.experiments.pools import Pool
 from prima.experiments.scenariotext import Variant
 from prima.experiments.settings import ExperimentSettings
-from prima.experiments.table import Column, columns, dictionary, line, read_rows, write_parquet
+from prima.experiments.table import columns, count_runs, dictionary, line, read_rows, write_parquet
 from prima.experiments.variants import Made, Stage, discard
 from prima.loading.writing import make_folder, write_whole
 from prima.messages import Json
@@ -101,7 +101,7 @@ class Sweep:
         self._check_seeds()
         self.design = Design(question.design, self.factors, question.seeds, question.runs)
         self.policies = self._policies()
-        self.columns: list[Column] = columns(self.factors)
+        self.columns = columns(self.factors)
         self._check_levels()
 
     def __len__(self) -> int:
@@ -303,10 +303,9 @@ class Output:
             return 0
         with self.rows.open(encoding="utf-8", newline="") as text:
             try:
-                count = sum(1 for _ in read_rows(text, self.sweep.columns))
+                return count_runs(read_rows(text, self.sweep.columns))
             except ValueError as error:
                 raise UsageError(f"{self.rows}: not the table of a sweep: {error}.") from None
-        return count
 
     def read(self) -> Iterator[dict[str, Json]]:
         """The rows of the table."""

@@ -6,7 +6,7 @@ import csv
 import io
 import json
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -119,7 +119,7 @@ def line(cells: Iterable[Json]) -> str:
 
 
 def read_rows(stream: IO[str], made: Sequence[Column]) -> Iterator[dict[str, Json]]:
-    """The rows of a table written by :func:`line`, its head first, then all runs in order.
+    """The rows of a table written by :func:`line`, after its head.
 
     Raises:
         ValueError: it is another table, or is damaged.
@@ -128,17 +128,28 @@ def read_rows(stream: IO[str], made: Sequence[Column]) -> Iterator[dict[str, Jso
     try:
         if next(rows, []) != [one.name for one in made]:
             raise ValueError("its columns are others")
-        for number, row in enumerate(rows):
+        for row in rows:
             if len(row) != len(made):
                 raise ValueError(f"line {rows.line_num} has {len(row)} cells")
-            cells = {one.name: _value(one.type, text) for one, text in zip(made, row, strict=True)}
-            if cells["run"] != number:
-                raise ValueError(f"line {rows.line_num} is not that of run {number}")
-            if not re.fullmatch(f"({ORDER})?", str(cells["order"])):
-                raise ValueError(f"line {rows.line_num} does not have the signature of an order")
-            yield cells
+            yield {one.name: _value(one.type, text) for one, text in zip(made, row, strict=True)}
     except csv.Error as error:
         raise ValueError(f"line {rows.line_num}: {error}") from None
+
+
+def count_runs(rows: Iterable[Mapping[str, Json]]) -> int:
+    """The number of rows of a sweep's table; they have to be those of its runs, in order.
+
+    Raises:
+        ValueError: one is not, or has something else for the signature of an order.
+    """
+    count = 0
+    for row in rows:
+        if row["run"] != count:
+            raise ValueError(f"run {count} is missing")
+        if not re.fullmatch(f"({ORDER})?", str(row["order"])):
+            raise ValueError(f"run {count} does not have the signature of an order")
+        count += 1
+    return count
 
 
 def _value(kind: str, text: str) -> Json:
