@@ -31,6 +31,8 @@ DRIFT = 0.11
 """How far (m) it may drift off its line until it is."""
 ALIGNED = 1.5
 """The robot counts as turned in a direction within this many degrees."""
+SLOWEST = 10.0
+"""A turn slows down to this speed before its end (degrees a second), if it is faster."""
 REACTING_S = 0.3
 """How long the robot goes on away from its way after a dance has stopped moving it (X5)."""
 AFTERMATH_MS = 1000
@@ -118,11 +120,8 @@ class Locomotion:
     # Motions ------------------------------------------------------------------------
 
     def _rotate(self, left: float) -> None:
-        limit = self.profile.turn_speed
-        speed = max(min(left * 4.0, limit), -limit)
-        if abs(speed) < 10.0:
-            speed = 10.0 if left > 0 else -10.0
-        self.world.drive = (0.0, speed)
+        speed = min(max(abs(left) * 4.0, SLOWEST), self.profile.turn_speed)
+        self.world.drive = (0.0, speed if left > 0 else -speed)
 
     def _turned(self, plan: LocomotionMemory) -> float:
         """How far the robot has turned since the last time (degrees)."""

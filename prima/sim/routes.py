@@ -7,7 +7,7 @@ from functools import cached_property
 from math import dist, inf
 from typing import TYPE_CHECKING
 
-from prima.sim.map import Map
+from prima.sim.map import EPSILON, Map
 from prima.sim.plan import Point
 from prima.sim.world import World
 
@@ -58,9 +58,14 @@ class Routes:
 
         Of ways of equal length, the one through the place first in the alphabet.
         """
-        from networkx import dijkstra_predecessor_and_distance
+        from networkx import single_source_dijkstra_path_length
 
-        nexts, lengths = dijkstra_predecessor_and_distance(self._graph, to)
+        graph = self._graph
+        lengths = single_source_dijkstra_path_length(graph, to)
+        nexts = {
+            name: [one for one in graph[name] if lengths[one] + graph[name][one]["weight"] < most]
+            for name, most in ((name, length + EPSILON) for name, length in lengths.items())
+        }
         return {
             name: (float(length), min(nexts[name], default=to)) for name, length in lengths.items()
         }
@@ -68,12 +73,15 @@ class Routes:
     def _first(self, free: Callable[[Point, Point], bool], here: Point, to: str) -> str | None:
         """The place with the shortest way to another, among those that can be reached freely.
 
-        Checking that takes longest, so only nearer places are checked.
+        Checking that takes longest, so the best are checked first.
         """
-        found, shortest = None, inf
-        for name, (length, _) in sorted(self._leads[to].items()):
-            place = self._map.places[name]
-            whole = dist(here, place) + length
-            if whole < shortest - 1e-9 and free(here, place):
-                found, shortest = name, whole
-        return found
+        places = self._map.places
+        leads = self._leads[to].items()
+        shortest, found = inf, list[str]()
+        for whole, name in sorted((dist(here, places[one]) + lead[0], one) for one, lead in leads):
+            if whole > shortest + EPSILON:
+                break
+            if free(here, places[name]):
+                shortest = min(shortest, whole)
+                found.append(name)
+        return min(found, default=None)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import dist
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from prima import api
+from prima.sim.locomotion import ALIGNED
 from prima.sim.map import Map
+from prima.sim.routes import Routes
 from prima.sim.world import World
 from tests import ROOT
 from tests.helpers.rehearsing import HEAD, PROFILE, rehearse, told
@@ -221,14 +225,17 @@ def test_whenever_touch_and_message_come_the_room_is_reached(
     assert '"I\'ve just reached the goal."' in told(transcript)
 
 
-def moved(folder: Path, world: str, robot: str) -> api.Transcript:
-    """A move from ``a`` to ``d`` in a world of its own, by a robot of its own."""
+MOVE = '<topological-move to="d"/>'
+
+
+def moved(folder: Path, world: str, robot: str, does: str = MOVE) -> api.Transcript:
+    """A move from ``a`` to ``d``, or another motion, in a world and by a robot of their own."""
     texts = {
         "world": f'<world xmlns="urn:prima:world:1" version="1.0" id="w">{world}</world>',
         "robot": f'<robot xmlns="urn:prima:robot:1" version="1.0" id="r"{robot}>'
         '<device name="locomotion"/><device name="localization"/></robot>',
         "app": HEAD.format("ea", "mv", "en")
-        + '<form id="f"><block><topological-move to="d"/><exit/></block></form></prima>',
+        + f'<form id="f"><block>{does}<exit/></block></form></prima>',
         "scenario": '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" until="900s"'
         ' world="world.xml" robot="robot.xml"><robot at="a"/><application src="app.xml"/></scenario>',
     }
@@ -291,3 +298,43 @@ def test_a_robot_begins_in_the_direction_of_its_place(
     assert f"log: {heading}" in [row.what for row in api.rehearse(path).rows()]
     attributes = SCENARIO.elements["robot"].attributes
     assert [one.default for one in attributes if one.name == "heading"] == [""]
+
+
+def test_a_robot_that_turns_slowly_keeps_its_turn_speed(tmp_path: Path) -> None:
+    world = '<place id="a" x="0" y="0" heading="90"/><place id="d" x="1" y="0"/>'
+    [end] = [
+        record["time"]
+        for record in moved(tmp_path, world, ' turn-speed="1"', '<turn angle="-20"/>').records
+        if record["phase"] == "end" and record["command"] == "turn"
+    ]
+    assert end == pytest.approx(20 - ALIGNED, abs=0.1), "a degree a second"
+
+
+@given(st.permutations([0.4, 1.5, 4.3]), st.permutations([0.4, 1.5, 4.3]))
+def test_of_equal_ways_the_first_in_the_alphabet_is_taken_however_they_are_divided(
+    one: list[float], other: list[float]
+) -> None:
+    plan = Map("m", places={"here": (0.0, 0.0), "there": (0.0, 6.2)})
+    for name, lengths in (("a", one), ("b", other)):
+        along = [(0.0, round(sum(lengths[:count]), 1)) for count in (1, 2)]
+        names = [f"{name}{number}" for number in (1, 2)]
+        plan.places |= dict(zip(names, along, strict=True))
+        plan.ways += pairwise(["here", *names, "there"])
+    plan.walls = [((-1.0, -1.0), (-0.5, -1.0))]
+    world = World(plan, PROFILE, (0.0, 0.0), 0.0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(world, "passable", lambda here, place: here == place)
+        assert Routes(plan).route(world, "there") == [
+            plan.places[name] for name in ("here", "a1", "a2", "there")
+        ]
+
+
+def test_few_of_many_places_are_looked_at_to_begin_a_way() -> None:
+    places = {f"p{number}": (number * 0.2, 0.0) for number in range(500)}
+    plan = Map("m", places=places, ways=list(pairwise(places)))
+    world = World(plan, PROFILE, (0.0, 0.5), 0.0)
+    free = Mock(return_value=True)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(world, "passable", free)
+        assert Routes(plan).route(world, "p499") == [places["p499"]]
+    free.assert_called_once()
