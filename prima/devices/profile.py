@@ -10,6 +10,7 @@ from prima.devices.settings import DriverSettings, read_driver, share_devices
 from prima.devices.vocabulary.robot import ROBOT
 from prima.errors import Place, Problem, meant, suggestion
 from prima.interpreter.events import near
+from prima.language.arguments import missing_argument
 from prima.language.commands import ABSENCE_MS, DEVICES, TABLE_4_2, Argument, CommandType
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
@@ -125,7 +126,8 @@ def read_robot(file: str, data: bytes) -> Profile:
     _check_devices(reader, profile)
     _check_twice(reader)
     _read_parts(reader, profile)
-    rows = dict(TABLE_4_2)
+    longest = max((one or 0 for one in profile.gestures.values()), default=0)
+    rows = {**TABLE_4_2, "gesture": replace(TABLE_4_2["gesture"], lasts=longest)}
     for node in root.all("adds"):
         _add(reader, node, rows, profile)
     _allow(reader, rows)
@@ -219,6 +221,9 @@ def _substitute(reader: Reader, node: Node, rows: dict[str, CommandType], profil
     if unknown:
         message = f'{other.name} has no argument "{unknown[0]}", as {lacking.name} has.'
         reader.problem(node, "no-such-argument", message, "by", "Add it to the Command.")
+    if missing := missing_argument(other, lacking.arguments):
+        message = f"{missing.removesuffix('.')}, which {lacking.name} does not have."
+        reader.problem(node, "no-such-argument", message, "by", "Name another Command.")
     if lacking.text == "required" and other.text == "none":
         remedy = f"Name a Command that speaks, as {lacking.name} does."
         reader.problem(node, "bad-value", f"{other.name} cannot say anything.", "by", remedy)
@@ -249,7 +254,8 @@ def _motion(reader: Reader, node: Node) -> Motion | None:
     if steps and "locomotion" not in node.get("devices").split():
         message = "Its steps move the body, but it does not occupy the locomotion."
         reader.problem(node, "bad-value", message, "devices", 'Add "locomotion" to its devices.')
-    return Motion(steps, reader.get(node, "stray")) if steps else None
+    stray = reader.get(node, "stray")
+    return Motion(steps, stray) if steps else None
 
 
 def _added(reader: Reader, node: Node, motion: Motion | None) -> CommandType:

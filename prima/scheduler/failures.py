@@ -151,13 +151,13 @@ def set_deadlines(mediation: Mediation) -> None:
 
 
 def allowance(ab: Behavior) -> int:
-    """How long an AB may run (ms): the times among its arguments and :data:`HANG_MS`."""
+    """How long an AB may run (ms): :data:`HANG_MS` beyond the times that it is given."""
     row, command = ab.type, ab.command
     assert row is not None and command is not None
     stated = [
         int(value) for name, value in command.args.items() if row.arguments[name].kind == "duration"
     ]
-    return HANG_MS + sum(stated) + _saying_ms(command)
+    return HANG_MS + row.lasts + sum(stated) + _saying_ms(command)
 
 
 def _saying_ms(command: Command) -> int:

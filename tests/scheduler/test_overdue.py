@@ -26,6 +26,7 @@ SPOKEN = [Cue(0, "pause", 300), Cue(0, "mark", "here"), Cue(2, "pause", 700)]
         (replace(say("Hello"), cues=(Cue(0, "rate", 2.0),)), 2_500),
         (command("set-speed-and-time", speed=2, time="4s"), 4_000),
         (command("q-and-a", "Well?", timeout="9s"), 11_500),
+        (command("point-by-hand", toward="door"), 1_000),
     ],
 )
 def test_e1_a_command_may_run_for_its_own_times_and_two_minutes(what: Command, longer: int) -> None:

@@ -320,6 +320,21 @@ def test_x6_events_name_the_command_that_the_document_asks_for(more: str, tmp_pa
 
 
 @pytest.mark.parametrize(
+    ("more", "does"),
+    [
+        ('<adds command="sway" devices="arm" duration="300s"/>', '<command type="sway"/>'),
+        ('<gesture name="bow" duration="300s"/>', '<gesture name="bow"/>'),
+    ],
+)
+def test_what_takes_long_by_the_profile_is_not_given_up(
+    tmp_path: Path, more: str, does: str
+) -> None:
+    made = play(tmp_path, document("ea", "ea", block(does + "<exit/>")), more=ARM + more)
+    assert whats(made)[-1] == "ends ea: exit"
+    assert made.records[-1]["time"] == 300
+
+
+@pytest.mark.parametrize(
     ("more", "message"),
     [
         (ARM + LASER, "The robot can do point-by-hand itself."),
@@ -328,6 +343,11 @@ def test_x6_events_name_the_command_that_the_document_asks_for(more: str, tmp_pa
             '<substitute command="point-by-hand" by="ray"/>',
             'ray has no argument "angle"',
         ),
+        (
+            LASER.replace("<argument", '<argument name="for" required="true"/><argument', 1),
+            'point-by-laser needs "for", which point-by-hand does not have.',
+        ),
+        ('<adds command="sway" devices="speaker" stray="9"/>', 'stray "9" is out of range'),
         ('<substitute command="point-by-hand" by="nothing"/>', 'no Command "nothing"'),
         ('<adds command="sway" devices="speaker"><step for="1s"/></adds>', "locomotion"),
     ],
