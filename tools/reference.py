@@ -258,7 +258,7 @@ def limits() -> str:
         ("elements that a `foreach` goes through", f"{content.MAX_REPEATS:,}", "`error.semantic`"),
         ("what a Command says", f"{expressions.MAX_TEXT:,} characters", "the rest is not said"),
         (
-            "what one utterance or question keeps the speaker, at 50 ms a letter",
+            "what one utterance or question keeps the speaker, at 50 ms a character",
             f"{LONGEST_TURN_MS // 1000} s",
             "`too-long`, `error.semantic`",
         ),

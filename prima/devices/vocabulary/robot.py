@@ -42,7 +42,8 @@ adds > argument step | A Command that the hardware developer adds.
   command*: id | its name
   {TITLE}
   devices*: text | the devices it occupies, separated by spaces
-  duration: duration = 1s | how long it takes, or a loop of it
+  duration: duration = 1s | how long it takes, or a loop of it; with steps, by default as long
+    as these
   feedback: boolean = false | whether it works in loops
   leaves: boolean = false | whether it leaves the user
   engages: boolean = false | whether it engages the user
@@ -59,8 +60,8 @@ substitute | Another Command that takes the place of one that the robot lacks (e
 argument | A motion argument of an added Command.
   name*: id | its name
   kind: text(text number duration boolean id) = text | its type
-  low: number | the least
-  high: number | the most
+  low: number | the least; of a duration in ms
+  high: number | the most; of a duration in ms
   required: boolean = false | whether it is needed
 allows | An additional argument of a Command, for FAs only.
   command*: id | the Command

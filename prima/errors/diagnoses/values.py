@@ -33,8 +33,8 @@ TOO_LONG = Diagnosis(
     "Speech too long",
     (
         "An utterance or a question keeps the speaker for ten minutes at most, counted at 50 "
-        "ms a letter: meanwhile nobody can answer the user, as no unit is cut. A run refuses "
-        "it as error.semantic (rule E3)."
+        "ms a character: meanwhile nobody can answer the user, as no unit is cut. A run "
+        "refuses it as error.semantic (rule E3)."
     ),
     rule="E3",
 )
@@ -44,8 +44,8 @@ LONG_TURN = Diagnosis(
     "Speech too long beside another",
     (
         "Beside another application, an utterance or a question keeps the speaker no longer than "
-        "the run's patience, 60 s by default, counted at 50 ms a letter. A run refuses it as "
-        "error.semantic then (rule E6)."
+        "the run's patience, 60 s by default, counted at 50 ms a character. A run refuses it "
+        "as error.semantic then (rule E6)."
     ),
     rule="E6",
     severity="warning",
