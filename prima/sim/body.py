@@ -81,7 +81,7 @@ class Body:
         if isinstance(call, Begin):
             self._begin(now, call)
         elif isinstance(call, Again):
-            self._take_wheels(self.efforts[call.key])
+            self._go_on(self.efforts[call.key])
         elif isinstance(call, Stand):
             self.locomotion.stand()
         elif isinstance(call, Cancel) and (effort := self.efforts.get(call.key)) is not None:
@@ -140,6 +140,15 @@ class Body:
             return
         for other in self.efforts.values():
             other.lost = "locomotion" in other.begin.devices and other is not effort
+
+    def _go_on(self, effort: Effort) -> None:
+        """Begin the next loop; a dance is composed with it at once (X5)."""
+        self._take_wheels(effort)
+        effort.looped = -1
+        if dances := [one for one in self.efforts.values() if self._dances(one)]:
+            for one in (effort, *dances):
+                if one.control is not None and not one.lost:
+                    one.control()
 
     def _begin_loops(self, now: int, effort: Effort) -> None:
         """Begin the goal of a feedback Command."""

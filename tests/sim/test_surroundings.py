@@ -257,6 +257,8 @@ def test_x5_a_dance_on_the_way_strays_no_further_than_its_bound(
     [
         '<step for="1s" turn-speed="180"/><step for="1500ms" speed="2"/>',
         '<step for="3s" speed="-2"/>',
+        '<step for="250ms" speed="-2" turn-speed="-180"/>'
+        '<step for="200ms" speed="2" turn-speed="-90"/>',
     ],
 )
 def test_x5_a_fast_dance_strays_no_further_either(tmp_path: Path, steps: str, stray: float) -> None:
