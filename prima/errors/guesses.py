@@ -13,6 +13,8 @@ MANY_LETTERS, MANY_WORDS = 60, 300
 """Limits of words that are compared, to bound the time."""
 SHORTEST = 3
 """Letters that a word has at least to abbreviate another."""
+ESCAPED = str.maketrans({"&": "&amp;", "<": "&lt;", '"': "&quot;", "'": "&apos;"})
+"""Characters that an attribute's value may not contain as they are."""
 MOST_COMPARED = 30_000
 """Maximum number of comparisons for one document."""
 
@@ -80,7 +82,8 @@ def suggestion(word: str, known: Iterable[str], *spans: Span) -> Hint:
 
 def meant(word: str, *spans: Span) -> Hint:
     """A hint that suggests a word and writes it into some spans; nothing without a word."""
-    return replaced(f'Did you mean "{word}"?', word, *spans) if word else Hint()
+    text, title = f'Did you mean "{word}"?', f'Change to "{word}"'
+    return replaced(text, word.translate(ESCAPED), *spans, title=title) if word else Hint()
 
 
 def replaced(text: str, word: str, *spans: Span, title: str = "") -> Hint:

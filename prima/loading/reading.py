@@ -15,7 +15,6 @@ from prima.errors import (
     Hint,
     Place,
     Problem,
-    Span,
     UsageError,
     one_of,
     replaced,
@@ -73,11 +72,16 @@ class Reading:
     _listed: dict[Path, list[Path]] = field(default_factory=dict)
     """Files of the folders in which a document was missing."""
 
-    def read(self, name: str, place: Place, made_of: Callable[[str, bytes], Made]) -> Made | None:
-        """A document that the scenario names, or None if it cannot be read."""
+    def read(
+        self, name: str, node: Node, attribute: str, made_of: Callable[[str, bytes], Made]
+    ) -> Made | None:
+        """A document that an attribute names, or None if it cannot be read.
+
+        ``name`` is relative to the scenario.
+        """
         if not name:
             return None  # reported already by the schema
-        target = Path(normpath(self.path.parent / name))
+        target, place = Path(normpath(self.path.parent / name)), node.attribute_place(attribute)
         content = b""
         try:
             content = read_file(target)
@@ -85,8 +89,7 @@ class Reading:
             return made_of(str(target), content)
         except UsageError as error:
             wrong = str(error).removeprefix(f"{target}: ")
-            at = place._replace(column=place.column + len(name) - len(target.name))
-            hint = nearby(target, Span.of(at, target.name), listed=self._listed)
+            hint = nearby(target, *value_span(node, attribute, target.name), listed=self._listed)
             self.problems.append(UNREADABLE.at(place, hint, name=name, wrong=wrong))
         except DocumentError as error:
             self.problems += [_named_wrongly(name, place, one, content) for one in error.problems]
@@ -96,13 +99,14 @@ class Reading:
         """The applications that a scenario names."""
         self.answered = tuple(one.uri for one in scenario.services if one.uri)
         for src, _, node in scenario.applications:
-            self.application(src, node.attribute_place("src"), node)
+            self.application(src, node)
 
-    def application(self, src: str, place: Place, node: Node | None = None) -> AnyDocument | None:
-        """An application, with its problems."""
-        said = node.get("kind") if node is not None else "ea"  # a place offers EAs
-        own = (node.get("id") if node is not None else "", said or "ea")
-        site = self.site(src, node) if node is not None else None
+    def application(self, src: str, node: Node) -> AnyDocument | None:
+        """An application that an <application> or <area> names, with its problems."""
+        is_area = node.tag == "area"
+        said = "ea" if is_area else node.get("kind")
+        own = ("" if is_area else node.get("id"), said or "ea")
+        site = None if is_area else self.site(src, node)
 
         def take(uri: str, data: bytes) -> None:
             beside = posixpath.join(posixpath.dirname(src), uri)
@@ -115,18 +119,20 @@ class Reading:
                 further = voicexml_problems(path, data, site, self.answered)
             return document, [*problems, *further]
 
-        read = self.read(src, place, made_of)
+        read = self.read(src, node, "application" if is_area else "src", made_of)
         if read is None:
             return None
         document, problems = read
         self.problems += problems
         self.documents.append(document)
-        if node is not None:
-            who = "this scenario says EA" if said == "ea" else "this scenario does not"
-            who = "this scenario says FA" if said == "fa" else who
-            remedy = f'Write kind="{document.node.get("kind")}" here, or change the document.'
-            self.problems += other_kind(document, f'"{src}"', who, place, remedy)
-        if node is not None and isinstance(document, Document):
+        if is_area:
+            return document
+        place = node.attribute_place("src")
+        who = "this scenario says EA" if said == "ea" else "this scenario does not"
+        who = "this scenario says FA" if said == "fa" else who
+        remedy = f'Write kind="{document.node.get("kind")}" here, or change the document.'
+        self.problems += other_kind(document, f'"{src}"', who, place, remedy)
+        if isinstance(document, Document):
             self._voice_alone(src, document, node, site)
         return document
 
@@ -164,8 +170,8 @@ class Reading:
         from prima.sim.map import read_world
 
         root = scenario.node
-        world = self.read(scenario.world, root.attribute_place("world"), read_world)
-        profile = self.read(scenario.robot, root.attribute_place("robot"), read_robot)
+        world = self.read(scenario.world, root, "world", read_world)
+        profile = self.read(scenario.robot, root, "robot", read_robot)
         for made in (world, profile):
             self.problems += made.warnings if made is not None else ()
         return world, profile
@@ -197,8 +203,8 @@ class Reading:
         wrong: set[str] = set()
         for person in scenario.persons:
             if person.user and person.user not in wrong and person.node is not None:
-                place = person.node.attribute_place("user")
-                user = self.read(person.user, place, partial(read_user, person=person.name))
+                made_of = partial(read_user, person=person.name)
+                user = self.read(person.user, person.node, "user", made_of)
                 if user is None:
                     wrong.add(person.user)  # reported once
                 else:
@@ -209,14 +215,14 @@ class Reading:
         for service in scenario.services:
             for reply in service.replies:
                 if reply.src and reply.node is not None:
-                    place = reply.node.attribute_place("src")
-                    reply.body = self.read(reply.src, place, lambda _, data: data) or b""
+                    body = self.read(reply.src, reply.node, "src", lambda _, data: data)
+                    reply.body = body or b""
 
     def offered(self, name: str, area: Area) -> AnyDocument | None:
         """The EA that an area offers."""
-        place = area.node.attribute_place("application")
-        document = self.application(name, place)
+        document = self.application(name, area.node)
         if document is not None:
+            place = area.node.attribute_place("application")
             who, remedy = "a place offers EAs", 'Write kind="ea" in the document.'
             self.problems += other_kind(document, f'"{area.src}"', who, place, remedy)
         return document

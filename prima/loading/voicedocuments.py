@@ -133,7 +133,8 @@ def _not_there(
     for node, name, file in _files_named(page, answered):
         if not file.startswith("../") and exists(folder / file):
             continue
-        spans = value_span(node, name, file.rpartition("/")[2])
+        uri = node.get(name).strip().partition("#")[0].partition("?")[0]
+        spans = value_span(node, name, uri.rpartition("/")[2])
         missing.add(node.index)
         if file.startswith("../") and exists(folder / file):
             yield OUTSIDE.at(node.attribute_place(name), file=file[:80])

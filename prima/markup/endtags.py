@@ -43,6 +43,18 @@ def remedy(source: Source, place: Place, message: str, vocabularies: Sequence[Vo
     return tags.wrong_end() or tags.stray() or tags.empty() or tags.slash() or tags.missing()
 
 
+def innermost(source: Source) -> tuple[int, str]:
+    """The offset and name of the innermost element open where the text is not well-formed."""
+    for one in _opened(source)[-1:]:
+        return _offset(source, one.at), one.tag
+    return 0, ""
+
+
+def _offset(source: Source, count: int) -> int:
+    """The offset after a number of bytes."""
+    return len(source.text.encode()[:count].decode())
+
+
 def _still_open(name: str, line: str, end: str) -> str:
     if not end:
         return f"The <{name}> of line {line} is never closed: write </{name}>."
@@ -152,20 +164,16 @@ class _Tags:
         strange = (one.at for one in children if one.tag in tags - allowed)
         at = self.at if self.end else len(self.source.text.rstrip())
         if (first := next(strange, None)) is not None:
-            at = len(self.source.text[: self._offset(first)].rstrip())
+            at = len(self.source.text[: _offset(self.source, first)].rstrip())
         tag = f"</{self.name}>"
         text = _still_open(self.name, self.line, self.end)
         return replaced(text, tag, self.source.span(at, at), title=f"Write {tag}")
 
     def _start_tag(self) -> tuple[int, int]:
         """Where the start tag of the innermost open element begins and ends."""
-        start = self._offset(self.opened[-1].at)
+        start = _offset(self.source, self.opened[-1].at)
         found = MARKUP.match(self.source.text, start)
         return start, found.end() if found else start + 1
-
-    def _offset(self, count: int) -> int:
-        """The offset after a number of bytes."""
-        return len(self.source.text.encode()[:count].decode())
 
     def _languages(self) -> list[tuple[Vocabulary, str]]:
         """The languages with an element of this name, and its keys."""

@@ -10,7 +10,7 @@ from prima.errors import Edit, Fix, Hint, Span, meant, nearest_word, replaced
 from prima.language.commands import Argument
 from prima.language.values import read_value, written
 from prima.markup.limits import LIMITS
-from prima.markup.tree import MARKUP, NAME, WORD, Node
+from prima.markup.tree import MARKUP, NAME, Node
 from prima.markup.vocabulary import Attribute
 
 LONG = 1_000
@@ -31,16 +31,21 @@ GIVEN = ("id", "name", "item")
 
 
 def value_span(node: Node, attribute: str, word: str = "") -> tuple[Span, ...]:
-    """The value of an attribute as written, or a word in it if present; none if it is missing."""
+    """The value of an attribute as written, or a word in it; none if one of them is missing."""
     source = node.source
     first = source.offset(node.index, attribute, value=True)
     if first <= source.tag(node.index):
         return ()
     last, words = source.words(first)
-    at = words.get(word, -1)
-    if word and at < 0 and last - first <= LONG:
-        at = _found(source.text, word, first, last)
-    return (source.span(*((at, at + len(word)) if at >= 0 else (first, last))),)
+    if not word:
+        return (source.span(first, last),)
+    if word in words:
+        return (source.span(words[word], words[word] + len(word)),)
+    at = _found(node.get(attribute), word) if last - first <= LONG else -1
+    if at < 0:
+        return ()
+    begin, end = (source.inside(node.index, attribute, one) for one in (at, at + len(word)))
+    return (Span(begin.line, begin.column, end.line, end.column),)
 
 
 def nearest_allowed(item: Attribute | Argument, text: str, node: Node, attribute: str) -> Hint:
@@ -53,14 +58,10 @@ def nearest_allowed(item: Attribute | Argument, text: str, node: Node, attribute
     return replaced(f'The nearest is "{right}".', right, *value_span(node, attribute))
 
 
-def _found(text: str, word: str, first: int, last: int) -> int:
+def _found(text: str, word: str) -> int:
     """The position of a word that may begin a longer name, such as ``a`` of ``a.b``; or -1."""
-    at = text.find(word, first, last)
-    while at >= 0 and (
-        WORD.match(text[at - 1]) or re.match(r"[\w\-]", text[at + len(word) : at + len(word) + 1])
-    ):
-        at = text.find(word, at + 1, last)
-    return at
+    match = re.search(rf"(?<![\w.\-]){re.escape(word)}(?![\w\-])", text)
+    return match.start() if match else -1
 
 
 def attribute_span(node: Node, attribute: str) -> Span:
@@ -82,10 +83,14 @@ def name_spans(node: Node) -> tuple[Span, ...]:
     source = node.source
     start = source.tag(node.index)
     names = [start + 1, *([source.closes[node.index]] if node.index in source.closes else [])]
-    begin = NAME.match(source.text, start)
-    written = begin[0][1:] if begin else node.tag
-    prefix = written.find(":") + 1
-    return tuple(source.span(at + prefix, at + len(written)) for at in names)
+    prefix, length = len(prefix_of(node)), len(node.tag)
+    return tuple(source.span(at + prefix, at + prefix + length) for at in names)
+
+
+def prefix_of(node: Node) -> str:
+    """The prefix in an element's tags with its colon, or nothing."""
+    begin = NAME.match(node.source.text, node.source.tag(node.index))
+    return begin[0][1 : begin[0].find(":") + 1] if begin else ""
 
 
 def behind_name(node: Node) -> Span:
@@ -143,7 +148,8 @@ def instead(text: str, node: Node, attribute: str, name: str, value: str) -> Hin
         return Hint(text)
     name_at, value_at = attribute_span(node, attribute), spans[0]
     whole = Span(name_at.line, name_at.column, value_at.end_line, value_at.end_column)
-    return replaced(text, f'{name}="{value}', whole, title=f'Change to {name}="{value}"')
+    quote = node.source.text[node.source.offset(node.index, attribute, value=True) - 1]
+    return replaced(text, f"{name}={quote}{value}", whole, title=f'Change to {name}="{value}"')
 
 
 class Declarations:
@@ -157,7 +163,7 @@ class Declarations:
         self.nodes = root.nodes
         self.starts = [one.index for one in self.nodes]
         self._beginnings: dict[int, tuple[Span, str] | None] = {}
-        """By element: where its content begins, and the space before its first child."""
+        """By element: where its content begins, and what goes there before a variable's name."""
         self._left = LIMITS.problems
 
     def hint(self, text: str, name: str, node: Node) -> Hint:
@@ -173,15 +179,16 @@ class Declarations:
         for where, holder in holders:
             beginning = self._beginning(holder)
             if beginning is not None:
-                span, space = beginning
-                edit = Edit(span, f'\n{space}<var name="{name}"/>')
+                span, begin = beginning
+                edit = Edit(span, f'{begin}"{name}"/>')
                 fixes.append(Fix(f"Declare it in the {where}", (edit,)))
         return Hint(text, tuple(fixes))
 
     def _beginning(self, holder: Node) -> tuple[Span, str] | None:
         if holder.index not in self._beginnings:
             span = first_inside(holder)
-            self._beginnings[holder.index] = span and (span, indent(holder))
+            begin = f"\n{indent(holder)}<{prefix_of(holder)}var name="
+            self._beginnings[holder.index] = span and (span, begin)
         return self._beginnings[holder.index]
 
 

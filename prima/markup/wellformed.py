@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
-from prima.errors import DocumentError, Fix, Hint, Place, Span, nearest_word, replaced
+from prima.errors import DocumentError, Fix, Hint, Place, nearest_word, replaced
 from prima.markup import endtags
 from prima.markup.endtags import MISMATCH, UNCLOSED, line_of, offset_of
 from prima.markup.limits import too_deep
@@ -153,10 +153,12 @@ def _misspelt(
     tags = {tag for one in vocabularies for tag in one.tags}
     if opened in tags or closed not in tags or not nearest_word(opened, [closed]):
         return None
-    line = int(match[2])
-    place = Place(source.file, line, max(line_of(source, line).rfind(f"<{opened}") + 1, 1))
-    name = Span.of(place._replace(column=place.column + 1), opened)
-    remedy = replaced(f'Did you mean "{closed}"? The closing tag is right.', closed, name)
+    start, name = endtags.innermost(source)
+    place, local = source.at(start), start + 1 + len(name) - len(opened)
+    if name.rpartition(":")[2] != opened:
+        return None  # the parsers disagree
+    span = source.span(local, local + len(opened))
+    remedy = replaced(f'Did you mean "{closed}"? The closing tag is right.', closed, span)
     return DocumentError.of(place, "unknown-element", f"There is no <{opened}>.", remedy)
 
 

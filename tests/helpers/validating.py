@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from prima import loading
+from prima.errors import Fix
+from prima.lsp.text import Lines
 from tests import ROOT
 
 
@@ -26,6 +28,23 @@ def told(folder: Path, content: str, attributes: str = "", **others: str) -> lis
     (folder / "main.vxml").write_text(VXML.format(attributes, content))
     found = loading.validate([folder / "main.vxml"])
     return [f"{Path(one.place.file).name} {one.code} {one.message} {one.remedy}" for one in found]
+
+
+def mended(text: str, fix: Fix) -> str:
+    """A text after a fix."""
+    lines = Lines(text)
+    for span, new in sorted(fix.edits, key=lambda one: one.span[:2], reverse=True):
+        start, end = lines.offsets(span)
+        text = text[:start] + new + text[end:]
+    return text
+
+
+def mended_all(path: Path, named: Path | None = None) -> list[str]:
+    """A document, or one that it names, after each of its fixes."""
+    file = named or path
+    text = file.read_text(encoding="utf-8")
+    problems = [one for one in loading.validate([path]) if one.place.file == str(file)]
+    return [mended(text, fix) for one in problems for fix in one.fixes]
 
 
 PASSAGE = (

@@ -18,9 +18,9 @@ from prima.errors import Diagnosis, Fix, Problem, UsageError
 from prima.errors.rendering import TOKEN
 from prima.handbook.examples import FOLDER, Example, beside, data, examples, shown
 from prima.loading.files import GivenFiles, in_place_of_files
-from prima.lsp.text import Lines
 from tests import ROOT
 from tests.helpers.here import prima
+from tests.helpers.validating import mended
 
 MISTAKES = Path(__file__).parent
 EXPECTED: dict[str, dict[str, str]] = tomllib.loads(
@@ -309,7 +309,7 @@ def test_a_closing_tag_that_is_misspelt_is_told_as_that(tmp_path: Path, name: st
     (found,) = written(tmp_path, "tour.xml", text)
     assert found.code == "not-xml" and f"write </speak> instead of </{name}>" in found.remedy
     (fix,) = found.fixes
-    assert mended(tmp_path / "tour.xml", fix) == []
+    assert problems_after(tmp_path / "tour.xml", fix) == []
 
 
 def test_a_closing_tag_of_another_element_is_kept(tmp_path: Path) -> None:
@@ -338,7 +338,9 @@ def test_an_attribute_that_is_added_has_a_right_value(tmp_path: Path, content: s
     text = application(f'<var name="n"/><block>{content}<exit/></block>')
     (found,) = (one for one in written(tmp_path, "tour.xml", text) if one.severity == "error")
     (fix,) = found.fixes
-    assert [one for one in mended(tmp_path / "tour.xml", fix) if one.severity == "error"] == []
+    assert [
+        one for one in problems_after(tmp_path / "tour.xml", fix) if one.severity == "error"
+    ] == []
 
 
 @pytest.mark.parametrize("content", ["<topological-move/>", '<assign expr="1"/>'])
@@ -370,7 +372,7 @@ def test_an_element_that_holds_nothing_ends_by_itself(tmp_path: Path, tag: str) 
     (found,) = written(tmp_path, "tour.xml", text)
     assert found.code == "not-xml" and found.remedy.endswith("end its own tag with />.")
     (fix,) = found.fixes
-    assert mended(tmp_path / "tour.xml", fix) == []
+    assert problems_after(tmp_path / "tour.xml", fix) == []
 
 
 def test_a_device_of_ones_own_is_no_mistake_beside_the_one_it_is_called_like(
@@ -446,13 +448,9 @@ WRONG = [
 ]
 
 
-def mended(path: Path, fix: Fix) -> list[Problem]:
+def problems_after(path: Path, fix: Fix) -> list[Problem]:
     """The problems of a document after a fix."""
-    lines = Lines(path.read_text(encoding="utf-8"))
-    text = lines.text
-    for span, new in sorted(fix.edits, key=lambda one: one.span[:2], reverse=True):
-        start, end = lines.offsets(span)
-        text = text[:start] + new + text[end:]
+    text = mended(path.read_text(encoding="utf-8"), fix)
     with in_place_of_files(GivenFiles({path.resolve(): text.encode()})):
         return problems_of(path)
 
@@ -469,7 +467,7 @@ def test_a_fix_takes_its_problem_away(path: Path) -> None:
             continue
         assert problem.fixes or "Did you mean" not in problem.remedy, problem
         for fix in problem.fixes:
-            left = mended(path, fix)
+            left = problems_after(path, fix)
             assert problem.sentence not in {one.sentence for one in left}, fix
             new = {one.code for one in left} - {one.code for one in before}
             if problem.code not in HIDING:
