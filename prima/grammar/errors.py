@@ -90,6 +90,6 @@ class Problems:
 
 def other_rule(name: str, known: Iterable[str], *spans: Span) -> Hint:
     """The remedy for an unknown rule: the nearest known one, or the first few."""
-    rules = list(known)
+    rules = [one for one in known if one]
     there = Hint(f"Write {one_of(rules, MOST_RULES)}." if rules else "Define it.")
     return suggestion(name, rules, *spans) or there

@@ -153,3 +153,9 @@ def test_a_transcript_tells_which_grammars_its_run_was_made_with(folder: Path) -
     (folder / "sizes.grxml").write_text(SIZES + "<!-- another -->", "utf-8")
     with pytest.raises(UsageError, match=r"sizes\.grxml is not the file"):
         api.replay(made, api.stage([], [path], ["a small"]))
+
+
+def test_a_rule_without_a_name_is_not_offered(folder: Path) -> None:
+    rules = '<rule><ruleref uri="#sweets"/></rule><rule id="drink">tea</rule>'
+    problems = api.validate([written(folder, f'<grammar root="drink">{rules}</grammar>')])
+    assert [one.remedy for one in problems if one.code == "no-such-rule"] == ["Write drink."]
