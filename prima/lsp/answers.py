@@ -172,6 +172,7 @@ def actions(server: Server, params: lsp.CodeActionParams) -> list[lsp.CodeAction
     if found is None:
         return None
     path, text = found
+    server.check_now(path)
     page = text.page
     first, last = (server.offset(page.lines, at) for at in (params.range.start, params.range.end))
     made: list[lsp.CodeAction] = []

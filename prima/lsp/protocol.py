@@ -201,6 +201,14 @@ class Server(LanguageServer):
         loop = asyncio.get_running_loop()
         self.waiting[path] = loop.call_later(delay, self._check, path)
 
+    def check_now(self, file: Path) -> None:
+        """Check the documents that wait for it and have problems in a file: its text has changed."""
+        for path in [
+            one for one in self.waiting if one == file or file in self.reported.get(one, {})
+        ]:
+            self.waiting[path].cancel()
+            self._check(path)
+
     def _check(self, path: Path) -> None:
         self.waiting.pop(path, None)
         if path not in self.documents.open:

@@ -119,6 +119,31 @@ def test_quick_fixes(editor: Editor, case: str) -> None:
     assert any(wanted in one for one in made), made
 
 
+def test_a_quick_fix_is_of_the_text_as_it_is_now(editor: Editor) -> None:
+    text = BEGIN + '<form id="a"><block><speek>Hi.</speek><exit/></block></form></prima>'
+    editor.open("fa/x.xml", text)
+    text = text.replace("<block>", "<block><!-- A word of welcome. -->")
+    change = lsp.TextDocumentContentChangeWholeDocument(text=text)
+    document = lsp.VersionedTextDocumentIdentifier(uri=editor.uri("fa/x.xml"), version=2)
+    editor.client.text_document_did_change(lsp.DidChangeTextDocumentParams(document, [change]))
+    (action,) = (
+        editor.do(
+            editor.client.text_document_code_action_async(
+                lsp.CodeActionParams(
+                    lsp.TextDocumentIdentifier(document.uri),
+                    lsp.Range(lsp.Position(0, 0), lsp.Position(2, 0)),
+                    lsp.CodeActionContext([]),
+                )
+            )
+        )
+        or ()
+    )
+    editor.close("fa/x.xml")
+    assert isinstance(action, lsp.CodeAction) and action.edit and action.edit.changes
+    made = edited(text, list(action.edit.changes[document.uri]))
+    assert made == text.replace("speek", "speak")
+
+
 def test_nothing_is_done_about_a_name_that_is_cut() -> None:
     text = BEGIN + f'<form id="a"><block cond="{"q" * 1_000}"><exit/></block></form></prima>'
     workspace = Workspace()
