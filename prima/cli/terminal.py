@@ -12,6 +12,7 @@ from typing import Protocol
 
 from prima.cli.failures import INTERRUPTED
 from prima.cli.interrupts import PYTHONS
+from prima.cli.printing import clean
 from prima.devices.lines import line_text
 
 GLANCE = 0.1
@@ -91,10 +92,17 @@ class Keyboard:
         self._lines: queue.Queue[str | UnicodeDecodeError | None] = queue.Queue()
         self._asked = threading.Semaphore(1)
         self._typing = True
+        self._prompted = threading.Event()
+        """Set when the prompt is on the screen."""
         self._thread = threading.Thread(target=self._read, daemon=True)
 
     def __enter__(self) -> Keyboard:
+        with suppress(ImportError, AttributeError):
+            import readline
+
+            readline.set_pre_input_hook(self._prompted.set)
         self._thread.start()
+        self._prompted.wait(GLANCE)
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -134,7 +142,9 @@ class Keyboard:
     def ready(self) -> None:
         """See :class:`Typist`."""
         self._typing = True
+        self._prompted.clear()
         self._asked.release()
+        self._prompted.wait(GLANCE)
 
     def clear(self) -> None:
         """Erase the line being typed from the screen."""
@@ -145,7 +155,7 @@ class Keyboard:
     def restore(self) -> None:
         """Show the line being typed again."""
         if self._typing:
-            sys.stdout.write(self._prompt + _typed())
+            sys.stdout.write(self._prompt + clean(_typed()))
             sys.stdout.flush()
 
 
@@ -204,7 +214,8 @@ def ending_well(on_signal: Callable[[], object]) -> Iterator[None]:
             sys.stdout.flush()
         with suppress(Exception):
             on_signal()
-        os.write(2, b"prima: interrupted\n")
+        with suppress(OSError):  # the terminal may be gone
+            os.write(2, b"prima: interrupted\n")
         os._exit(INTERRUPTED)
 
     heeded = [number for number in PYTHONS if signal.getsignal(number) is not signal.SIG_IGN]

@@ -122,6 +122,15 @@ def test_ctrl_c_ends_with_130_and_what_was_saved_is_intact(tmp_path: Path) -> No
             assert any("Ouch" in row.what for row in api.rehearse(saved).rows())
 
 
+def test_a_terminal_that_is_gone_ends_it_as_an_interrupt_does(tmp_path: Path) -> None:
+    words = (str(room(tmp_path, TICKS)), "--save", "visit.xml")
+    terminal = Terminal(*words, folder=tmp_path)
+    terminal.until("Behavior")
+    os.close(terminal.fd)
+    assert os.waitstatus_to_exitcode(os.waitpid(terminal.pid, 0)[1]) == 130
+    assert (tmp_path / "visit.xml").exists()
+
+
 def test_time_stands_still_while_a_line_is_typed(tmp_path: Path) -> None:
     terminal = Terminal(str(room(tmp_path, TICKS)), folder=tmp_path, NO_COLOR="1")
     terminal.until("> ")
@@ -162,6 +171,34 @@ def test_rows_come_above_the_line_that_is_typed(tmp_path: Path) -> None:
     terminal.type("/quit\r")
     assert terminal.end() == 0
     assert Keyboard("> ").begun() is False
+
+
+def test_what_is_typed_is_shown_again_without_what_steers_a_terminal(tmp_path: Path) -> None:
+    terminal = Terminal(str(room(tmp_path, TICKS)), folder=tmp_path, NO_COLOR="1")
+    terminal.until("> ")
+    terminal.type("/note a\r\x16\x1b]0;title\x07 hel")
+    got = terminal.until("a\r\n") + terminal.until("hel")
+    terminal.type("\x15/quit\r")
+    assert terminal.end() == 0
+    assert "\x1b]" not in got + terminal.seen
+
+
+SLOW = """
+import builtins, time
+read = builtins.input
+builtins.input = lambda prompt: (time.sleep(0.05), read(prompt))[1]
+"""
+
+
+def test_the_prompt_is_shown_before_rows_come_above_it(tmp_path: Path) -> None:
+    (tmp_path / "sitecustomize.py").write_text(SLOW)
+    path = os.pathsep.join([str(tmp_path), str(ROOT)])
+    terminal = Terminal(str(room(tmp_path, TICKS)), folder=tmp_path, PYTHONPATH=path)
+    got = terminal.until("Behavior")
+    assert "\n> \r\x1b[K       No. " in got
+    terminal.until("> ")
+    terminal.type("/quit\r")
+    assert terminal.end() == 0
 
 
 @pytest.mark.parametrize("begun", [(), (1, 2, 3)])
