@@ -216,8 +216,9 @@ class _Completion:
         elif use.how == "fixed:":
             sign = use.how
         for found in self._known(path, use.kinds, tag):
-            name = sign + found.mark.name
-            yield Proposal(name, "name", *start, escape(name), "", self._where(found))
+            name = found.mark.name
+            insert = sign + escape(name)  # the sign is written there already
+            yield Proposal(sign + name, "name", *start, insert, "", self._where(found))
 
     def _known(self, path: Path, kinds: tuple[str, ...], tag: ScannedTag) -> list[FoundName]:
         if kinds == ("form",) and tag.key in ("expect", "never"):

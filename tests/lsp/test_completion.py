@@ -189,3 +189,11 @@ def test_a_proposal_of_a_new_document_is_a_good_beginning(editor: Editor) -> Non
     text = item.text_edit.new_text.replace("${1|ea,fa|}", "fa").replace("$0", "<speak>x</speak>")
     assert editor.open("fa/x.xml", text.replace("$2", "x").replace("$3", "main")) == []
     editor.close("fa/x.xml")
+
+
+def test_the_file_before_a_dialog_stays_as_it_is_written(editor: Editor) -> None:
+    text = VOICE + '<form id="a"><block><goto next="R&amp;D.vxml#|"/></block></form></vxml>'
+    (editor.folder / "ea" / "R&D.vxml").write_text(VOICE + '<form id="order"/></vxml>')
+    found = editor.proposals("ea/x.vxml", text)["R&amp;D.vxml#order"].text_edit
+    (editor.folder / "ea" / "R&D.vxml").unlink()
+    assert found is not None and found.new_text == "R&amp;D.vxml#order"
