@@ -127,6 +127,28 @@ def _is_there(path: str) -> UsageError:
     return UsageError(f"{path}: there is a journal already. {hint}")
 
 
+def _opened(path: str, kept: int | None) -> int:
+    """A journal's file, open for appending and locked if it is on a disk."""
+    flags = os.O_WRONLY | os.O_APPEND
+    if kept is None and not os.path.exists(path):
+        flags |= os.O_CREAT | os.O_EXCL
+    elif kept is None and os.path.isfile(path) and os.path.getsize(path):
+        raise _is_there(path)
+    try:
+        file = os.open(path, flags, 0o644)
+        if os.path.isfile(path) and not locked(file):
+            os.close(file)
+            raise UsageError(f"{path}: another run is still writing it. End that one first.")
+        if kept is not None:
+            os.ftruncate(file, kept)
+    except FileExistsError:
+        raise _is_there(path) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise UsageError(f"{path}: cannot be written: {reason}.") from None
+    return file
+
+
 class Journal:
     """A file that grows by each instant's records.
 
@@ -141,24 +163,8 @@ class Journal:
 
     def __init__(self, path: str, sync: bool = False, kept: int | None = None) -> None:
         self.path = path
-        self._sync = sync and (os.path.isfile(path) or not os.path.exists(path))
-        flags = os.O_WRONLY | os.O_APPEND
-        if kept is None and not os.path.exists(path):
-            flags |= os.O_CREAT | os.O_EXCL
-        elif kept is None and os.path.isfile(path) and os.path.getsize(path):
-            raise _is_there(path)
-        try:
-            self._file = os.open(path, flags, 0o644)
-            if os.path.isfile(path) and not locked(self._file):
-                os.close(self._file)
-                raise UsageError(f"{path}: another run is still writing it. End that one first.")
-            if kept is not None:
-                os.ftruncate(self._file, kept)
-        except FileExistsError:
-            raise _is_there(path) from None
-        except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or str(error)
-            raise UsageError(f"{path}: cannot be written: {reason}.") from None
+        self._file = _opened(path, kept)
+        self._sync = sync and os.path.isfile(path)
 
     def write(self, records: list[Record]) -> None:
         """Append records, times in ms.
