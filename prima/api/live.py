@@ -130,8 +130,7 @@ def run_live(
     from prima.transcript.lines import finished, line
 
     def name(path: str | Path | None, argument: str) -> str:
-        check_path("" if path is None else path, argument)
-        return str(path or "")
+        return check_path("" if path is None else path, argument)
 
     chosen = Chosen(
         name(robot, "robot"), name(scenario, "scenario"), name(world, "world"),
@@ -143,7 +142,7 @@ def run_live(
     check_numbers(0, until=until, late=late)
     check_numbers(0, LONGEST_MS, patience=patience)
     if not isinstance(speed, int | float) or not 0 < speed <= FASTEST:
-        raise UsageError(f"The speed is {speed!r}: write a number above 0, up to {FASTEST:g}.")
+        raise UsageError(f"The speed is {speed!r:.80}: write a number above 0, up to {FASTEST:g}.")
     web = fetcher(hosts, len(chosen.fas) + len(chosen.eas) + 1)
     named = tuple(paths_of(drivers, "drivers"))
     settings = LiveSettings(

@@ -193,4 +193,4 @@ def check_numbers(
         if number is None and not needed:
             continue
         if type(number) is not int or number < least or (most is not None and number > most):
-            raise UsageError(f"{name}={number!r}: write a whole number {limits}.")
+            raise UsageError(f"{name}={number!r:.80}: write a whole number {limits}.")

@@ -165,9 +165,12 @@ def read(path: str | Path, partial: bool = False) -> Transcript:
     Raises:
         UsageError: it cannot be read, or is not a transcript; the line is named.
     """
+    from prima.loading.files import check_name
+
     cut: list[str] | None = [] if partial else None
-    records = list(records_of(path, cut))
-    return Transcript(records, str(path), outcome=outcome_of(records), cut=" ".join(cut or ()))
+    name = check_name(path)
+    records = list(records_of(name, cut))
+    return Transcript(records, name, outcome=outcome_of(records), cut=" ".join(cut or ()))
 
 
 def skim(path: str | Path) -> Transcript:
@@ -201,10 +204,9 @@ def skim(path: str | Path) -> Transcript:
 
 def records_of(path: str | Path, cut: list[str] | None) -> Iterator[Record]:
     """A transcript's records one by one; see :func:`read`."""
-    from prima.loading.files import at_once, check_folder, check_name, readable
+    from prima.loading.files import at_once, check_folder, readable
     from prima.transcript.lines import MAX_LINE, read_lines
 
-    check_name(path)
     with readable(path):
         check_folder(path, "Name a transcript in it.")
         with open(path, encoding="utf-8-sig", errors="surrogateescape", opener=at_once) as stream:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from io import TextIOBase
+from os.path import exists, isfile, samefile
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, cast
 
 from prima.api.transcripts import Transcript, check_transcripts, ends_early, read, records_of
 from prima.errors import UsageError, did_you_mean
@@ -14,6 +15,8 @@ from prima.messages import Record
 from prima.version import __version__
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from prima.exports import Exported
     from prima.transcript.diff import Difference
 
@@ -44,13 +47,12 @@ def export(
     from prima.loading.files import check_name, check_text, check_texts
 
     check_text(to, "to")
-    if not hasattr(output, "write"):
-        check_name(output)
-    elif isinstance(output, TextIOBase):
+    if isinstance(output, TextIOBase):
         raise UsageError('output takes bytes: open the file with mode "wb".')
-    tags = checked(to, check_texts(languages or {}, "languages"))
+    path = None if hasattr(output, "write") else check_name(output)
+    tags = checked(to, check_texts({} if languages is None else languages, "languages"))
     held = _in_memory(transcript)
-    name = str(transcript) if held is None else held.name
+    name = held.name if held else check_name(transcript)
     cut = [held.cut] if held and held.cut else []
 
     def records(cuts: list[str]) -> Iterable[Record]:
@@ -58,12 +60,10 @@ def export(
 
     made = timeline(name, records(cut))
     made.check_names(tags)
-    if isinstance(output, str | Path):
-        made.parts()  # may raise, before a file is overwritten
-        with _output(Path(output), name) as stream:
-            write(to, made, records([]), tags, __version__, stream)
-    else:
-        write(to, made, records([]), tags, __version__, output)
+    made.parts()  # may raise, before a file is overwritten
+    stream = cast("IO[bytes]", output)
+    with nullcontext(stream) if path is None else _output(path, name) as stream:
+        write(to, made, records([]), tags, __version__, stream)
     early = ends_early(name, made.end / 1000) if made.head and not made.over and not cut else ""
     return Exported(len(made.tiers), made.marks, made.end / 1000, " ".join(cut), early)
 
@@ -74,11 +74,10 @@ def _in_memory(transcript: Transcript | str | Path) -> Transcript | None:
 
     if isinstance(transcript, Transcript):
         return transcript
-    check_name(transcript)
-    return None if Path(transcript).is_file() else read(transcript, partial=True)
+    return None if isfile(check_name(transcript)) else read(transcript, partial=True)
 
 
-def _output(path: Path, transcript: str) -> AbstractContextManager[IO[bytes]]:
+def _output(path: str, transcript: str) -> AbstractContextManager[IO[bytes]]:
     """A file to write an export to.
 
     Raises:
@@ -86,7 +85,7 @@ def _output(path: Path, transcript: str) -> AbstractContextManager[IO[bytes]]:
     """
     from prima.loading.writing import whole
 
-    if path.exists() and Path(transcript).exists() and path.samefile(transcript):
+    if exists(path) and exists(transcript) and samefile(path, transcript):
         raise UsageError(f"{path}: this is the transcript itself: name another file.")
     return whole(path)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -235,7 +234,7 @@ class ExplorationFolder:
 
 
 def carried_out(
-    exploration: Exploration, pool: Pool, output: str | Path | None, resume: bool
+    exploration: Exploration, pool: Pool, output: str | None, resume: bool
 ) -> Iterator[int]:
     """Make all runs, and write the results into a folder, if one is named.
 
@@ -249,7 +248,7 @@ def carried_out(
         yield 0
         yield from exploration.explore(pool)
         return
-    folder = ExplorationFolder(exploration, os.fspath(output))
+    folder = ExplorationFolder(exploration, output)
     with folder.keeping(resume) as kept:
         yield kept
         yield from exploration.explore(pool)

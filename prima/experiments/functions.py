@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Mapping, Sequence, Set
 from numbers import Real
 from pathlib import Path
@@ -71,7 +70,7 @@ def sweep(
     """
     check_numbers(seeds=seeds, runs=runs, workers=workers, bound=bound)
     check_numbers(0, LONGEST_MS, patience=patience)
-    check_path(output or "", "output")
+    path = None if output is None else check_path(output, "output")
     if isolate is not None:
         check_isolation(isolate)
     question = question_of(
@@ -85,7 +84,7 @@ def sweep(
         patience=patience,
         isolate=isolate,
     )
-    return _table(Sweep(question), output, pool_of(on, workers), resume)
+    return _table(Sweep(question), path, pool_of(on, workers), resume)
 
 
 def explore(
@@ -126,18 +125,18 @@ def explore(
         UsageError: a path does not name a time, or a file cannot be written.
         RunError: no process can be started.
     """
-    check_path(scenario, "scenario")
-    check_path(output or "", "output")
+    name = check_path(scenario, "scenario")
+    path = None if output is None else check_path(output, "output")
     check_numbers(needed=True, within=within, depth=depth, runs=runs)
     check_numbers(workers=workers)
     check_numbers(0, needed=True, step=step)
     check_isolation(isolate)
     moved = tuple(texts_of(moves, "moves"))
-    plan = ExplorationPlan(os.fspath(scenario), moved, within, depth, step, runs, policy, isolate)
+    plan = ExplorationPlan(name, moved, within, depth, step, runs, policy, isolate)
     exploration = Exploration(plan)
     if resume and output is None:
         raise UsageError("resume needs the output that it goes on with.")
-    for _ in carried_out(exploration, pool_of(on, workers), output, resume):
+    for _ in carried_out(exploration, pool_of(on, workers), path, resume):
         pass
     return Explored(exploration).data(written=output is not None)
 
@@ -182,14 +181,14 @@ def _is_level(one: object) -> bool:
     return isinstance(one, str | Path) or (isinstance(one, Real) and one == one)
 
 
-def _table(made: Sweep, output: str | Path | None, pool: Pool, resume: bool) -> pyarrow.Table:
+def _table(made: Sweep, output: str | None, pool: Pool, resume: bool) -> pyarrow.Table:
     if output is None:
         if resume:
             raise UsageError("resume needs the output that it goes on with.")
         names = [one.name for one in made.columns]
         rows = (dict(zip(names, row, strict=True)) for row in made.results(pool))
         return arrow_table(rows, made.columns)
-    out = Output(made, os.fspath(output), pool)
+    out = Output(made, output, pool)
     for _ in out.write(resume):
         pass
     return arrow_table(out.read(), made.columns)

@@ -22,6 +22,7 @@ from prima.experiments.scenariotext import Variant
 from prima.experiments.settings import ExperimentSettings
 from prima.experiments.table import columns, count_runs, dictionary, line, read_rows, write_parquet
 from prima.experiments.variants import Made, Stage, discard
+from prima.loading.files import is_name
 from prima.loading.writing import make_folder, write_whole
 from prima.messages import Json
 from prima.pool import Died
@@ -86,7 +87,7 @@ class Sweep:
         """Refuse a scenario that is named twice: each of its runs would count twice."""
         seen: dict[str, str] = {}
         for name in question.scenarios:
-            if "\0" in name:
+            if not is_name(name):
                 raise UsageError(f"{name}: this is not a file's name.")
             path = os.path.realpath(name)  # Path.resolve fails on loops of links
             if path in seen:

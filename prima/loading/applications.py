@@ -16,7 +16,7 @@ from prima.errors import (
 )
 from prima.interpreter.elements import Document
 from prima.interpreter.reader import read_document
-from prima.loading.files import Folder, absolute, read_file
+from prima.loading.files import Folder, absolute, check_name, read_file
 from prima.loading.kinds import is_voicexml
 from prima.loading.similar import alike
 
@@ -88,7 +88,7 @@ def load(path: str | Path) -> Document:
         DocumentError: with all problems, if any is an error.
         UsageError: the file cannot be read.
     """
-    document, problems = read_native(str(path), read_file(path))
+    document, problems = read_native(check_name(path), read_file(path))
     if has_errors(problems):
         raise DocumentError(problems)
     return document

@@ -64,14 +64,24 @@ def in_place_of_files(files: Files) -> Iterator[None]:
         _files.reset(token)
 
 
-def check_name(path: object) -> None:
-    """Refuse what names no file; a number would be a file that this process has open.
+def check_name(path: object) -> str:
+    """A path as a text; refuses anything else: a number would be a file that is open.
 
     Raises:
         UsageError: it is neither a text nor a path.
     """
-    if not isinstance(path, str | os.PathLike):
-        raise UsageError(f"{path!r} is not a file's name.")
+    name = os.fspath(path) if isinstance(path, os.PathLike) else path
+    if not isinstance(name, str):
+        raise UsageError(f"{path!r:.80} is not a file's name.")
+    return name
+
+
+def is_name(name: str) -> bool:
+    """Whether a file can have this name: not with NUL, or with what the system cannot encode."""
+    try:
+        return b"\0" not in os.fsencode(name)
+    except UnicodeEncodeError:
+        return False
 
 
 def check_folder(path: str | Path, remedy: str) -> None:
@@ -84,16 +94,19 @@ def check_folder(path: str | Path, remedy: str) -> None:
         raise UsageError(f"{path}: cannot be read: it is a folder. {remedy}")
 
 
-def check_path(path: object, argument: str) -> None:
-    """Refuse anything but a path, such as bytes.
+def check_path(path: object, argument: str) -> str:
+    """A path as a text; refuses anything else, such as bytes.
 
     Raises:
-        UsageError: it is neither a text nor a path, and the argument is named; or it holds NUL.
+        UsageError: it is neither a text nor a path, and the argument is named; or no file can
+            have this name.
     """
-    if not isinstance(path, str | os.PathLike):
+    name = os.fspath(path) if isinstance(path, os.PathLike) else path
+    if not isinstance(name, str):
         raise UsageError(f"{argument}={path!r:.80}: write a path, as a text or a Path.")
-    if "\0" in os.fspath(path):
+    if not is_name(name):
         raise UsageError(f"{path!r} is not a file's name.")
+    return name
 
 
 def paths_of(given: str | Path | Iterable[str | Path], argument: str) -> list[str]:
@@ -104,10 +117,7 @@ def paths_of(given: str | Path | Iterable[str | Path], argument: str) -> list[st
     """
     if isinstance(given, str | bytes) or not isinstance(given, Iterable):
         given = [given]
-    paths = list(given)
-    for path in paths:
-        check_path(path, argument)
-    return [str(path) for path in paths]
+    return [str(check_path(path, argument)) for path in given]
 
 
 def texts_of(given: str | Iterable[str], argument: str) -> list[str]:
@@ -170,15 +180,15 @@ def read_file(path: str | Path) -> bytes:
         DocumentError: the file is larger than any document may be.
         UsageError: it cannot be read.
     """
-    check_name(path)
+    path = check_name(path)
     text = _open_text(path)
     if text is not None:
         if len(text) > LIMITS.bytes:
-            raise too_large(str(path), len(text))
+            raise too_large(path, len(text))
         return text
     data = read_bytes(path, LIMITS.bytes + 1)
     if len(data) > LIMITS.bytes:
-        raise too_large(str(path), max(getsize(path), len(data)))
+        raise too_large(path, max(getsize(path), len(data)))
     return data
 
 

@@ -19,7 +19,7 @@ def chosen_policy(name: str, loaded: Loaded) -> Policy:
         UsageError: there is none, or it names a missing application.
     """
     if not isinstance(name, str):
-        raise UsageError(f"policy={name!r}: write the name of one policy.")
+        raise UsageError(f"policy={name!r:.80}: write the name of one policy.")
     chosen = policy_named(name)
     if problem := favourite_problem(name, loaded.cast.documents):
         raise UsageError(f"{problem[0]} {problem[1].text}")

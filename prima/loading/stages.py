@@ -49,13 +49,11 @@ def stage(
         UsageError: a file cannot be read, no application is named, or two have one id.
     """
     given = [*zip(repeat("fa"), paths_of(fas, "fas")), *zip(repeat("ea"), paths_of(eas, "eas"))]
-    for name, one in (("world", world), ("robot", robot)):
-        check_path(one or "", name)
-    for path in (*(path for _, path in given), *filter(None, (robot, world))):
-        read_file(str(path))  # a missing file is a wrong option, not a wrong document
     demo = documents_folder()
-    place = str(world or demo / "worlds" / "room.xml")
-    body = str(robot or demo / "robots" / "papero.xml")
+    place = check_path(demo / "worlds" / "room.xml" if world in (None, "") else world, "world")
+    body = check_path(demo / "robots" / "papero.xml" if robot in (None, "") else robot, "robot")
+    for path in (*(path for _, path in given), place, body):
+        read_file(path)  # a missing file is a wrong option, not a wrong document
     there = _site(place)
     taken_up = _offers(place, there, bool(given), entrances)
     inside = f"{_standing(there)}{_applications(given, maps)}{_answers(says)}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import pickle
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import nan
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from tests import ROOT
 
 DOCUMENTS = ROOT / "documents"
 SCENARIO = DOCUMENTS / "scenarios" / "touched-on-the-way.xml"
+MADE = prima.Transcript([{"time": 0.0, "phase": "run", "actor": "mediator", "data": {}}])
 FOLLOW, MUSEUM = DOCUMENTS / "fa" / "follow.xml", DOCUMENTS / "ea" / "museum.xml"
 
 
@@ -269,21 +271,74 @@ def test_records_of_a_live_run_that_were_not_kept_are_named() -> None:
         ),
         (prima.sweep, {"scenarios": SCENARIO, "policies": [5]}, "policies=5: write a text."),
         (prima.sweep, {"scenarios": SCENARIO, "output": b"x"}, "output=b'x': write a path,"),
+        (prima.sweep, {"scenarios": SCENARIO, "output": 0}, "output=0: write a path,"),
         (prima.sweep, {"scenarios": "a\0b"}, "'a\\x00b' is not a file's name."),
+        (prima.sweep, {"scenarios": "\ud800"}, "'\\ud800' is not a file's name."),
+        (prima.stage, {"fas": FOLLOW, "eas": [], "world": 0}, "world=0: write a path,"),
+        (prima.stage, {"fas": FOLLOW, "eas": [], "robot": []}, "robot=[]: write a path,"),
         (prima.explore, {"scenario": 5}, "scenario=5: write a path,"),
         (prima.explore, {"scenario": SCENARIO, "moves": [5]}, "moves=5: write a text."),
         (prima.explore, {"scenario": SCENARIO, "within": None}, "within=None: write a whole"),
         (prima.explore, {"scenario": SCENARIO, "output": b"x"}, "output=b'x': write a path,"),
+        (prima.explore, {"scenario": SCENARIO, "output": []}, "output=[]: write a path,"),
+        (prima.export, {"to": "csv", "output": "a" * 300}, f"{'a' * 300}: cannot be written:"),
+        (
+            prima.export,
+            {"transcript": "a" * 300, "to": "csv", "output": "a.csv"},
+            f"{'a' * 300}: cannot be read:",
+        ),
     ],
 )
 def test_a_value_of_another_type_is_told_with_its_argument(
     call: Callable[..., object], given: dict[str, Any], told: str
 ) -> None:
     if call is prima.export:
-        given = {"transcript": prima.Transcript([]), **given}
+        given = {"transcript": MADE, **given}
     with pytest.raises(prima.UsageError) as caught:
         call(**given)
     assert str(caught.value).startswith(told)
+
+
+@dataclass
+class Named:
+    """A path of another kind, such as an entry of a folder."""
+
+    name: str | bytes
+
+    def __fspath__(self) -> str | bytes:
+        return self.name
+
+
+def test_a_path_of_any_kind_is_one(tmp_path: Path) -> None:
+    scenario: Any = Named(str(SCENARIO))
+    journal: Any = Named(str(tmp_path / "t.jsonl"))
+    table: Any = Named(str(tmp_path / "t.csv"))
+    app: Any = Named(str(FOLLOW))
+    made = prima.rehearse(scenario, isolate="none")
+    assert made.dumps() == prima.rehearse(SCENARIO, isolate="none").dumps()
+    (tmp_path / "t.jsonl").write_text(made.dumps(), encoding="utf-8")
+    assert prima.read(journal).name == journal.name
+    prima.export(journal, "csv", table)
+    assert prima.load(app).file == str(FOLLOW)
+    assert prima.validate(app) == prima.validate(FOLLOW)
+    assert prima.stage(app, []).files == prima.stage(FOLLOW, []).files
+    prima.run_live(scenario, output=Named(str(tmp_path / "live.jsonl")), speed=1000)  # type: ignore[arg-type]
+    assert {one.name for one in tmp_path.iterdir()} == {"t.jsonl", "t.csv", "live.jsonl"}
+
+
+@pytest.mark.parametrize(
+    "use", [prima.load, prima.rehearse, prima.read, prima.validate, prima.run_live, prima.explore]
+)
+def test_a_path_of_bytes_is_none(use: Callable[[Any], object]) -> None:
+    with pytest.raises(prima.UsageError, match=r"write a path|is not a file's name"):
+        use(Named(b"x"))
+
+
+def test_a_large_value_is_not_told_whole() -> None:
+    for name in ("scenario", "policy", "bound"):
+        with pytest.raises(prima.UsageError) as caught:
+            prima.rehearse(**{"scenario": SCENARIO, name: ["x"] * 1000})
+        assert len(str(caught.value)) < 200
 
 
 @pytest.mark.parametrize("number", ["3", 1.5, None, b"3"])
