@@ -38,6 +38,10 @@ def test_every_package_is_locked_with_hashes_in_a_version_that_is_wanted(name: s
         )
 
 
+def test_type_checkers_of_users_read_the_annotations() -> None:
+    assert (ROOT / "prima" / "py.typed").is_file()
+
+
 def test_developers_have_what_users_get() -> None:
     dev = {one.name: one.version for one in locked("dev")}
     assert {one.name: dev[one.name] for one in locked("runtime")} == {
