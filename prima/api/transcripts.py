@@ -71,6 +71,8 @@ class Transcript:
         Raises:
             UsageError: there is no such row.
         """
+        if type(number) is not int:
+            raise UsageError(f"number={number!r:.80}: write the number of a row.")
         rows = self.rows()
         if 0 <= number < len(rows):
             return rows[number]

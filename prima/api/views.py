@@ -15,7 +15,6 @@ from prima.messages import Record
 from prima.version import __version__
 
 if TYPE_CHECKING:
-    from pathlib import Path
 
     from prima.exports import Exported
     from prima.transcript.diff import Difference
@@ -129,6 +128,4 @@ def explain_row(transcript: Transcript, number: int) -> str:
     from prima.transcript.why import explained
 
     check_transcripts(transcript)
-    if type(number) is not int:
-        raise UsageError(f"number={number!r:.80}: write the number of a row.")
     return "\n".join(explained(transcript.run(), transcript.row(number)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -234,7 +235,7 @@ class ExplorationFolder:
 
 
 def carried_out(
-    exploration: Exploration, pool: Pool, output: str | None, resume: bool
+    exploration: Exploration, pool: Pool, output: str | Path | None, resume: bool
 ) -> Iterator[int]:
     """Make all runs, and write the results into a folder, if one is named.
 
@@ -248,7 +249,7 @@ def carried_out(
         yield 0
         yield from exploration.explore(pool)
         return
-    folder = ExplorationFolder(exploration, output)
+    folder = ExplorationFolder(exploration, os.fspath(output))
     with folder.keeping(resume) as kept:
         yield kept
         yield from exploration.explore(pool)

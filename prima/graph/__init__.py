@@ -56,8 +56,11 @@ def picture(
         UsageError: the file cannot be read or does not fit, or the format is unknown.
         DocumentError: the application or the world has errors.
     """
-    from prima.loading.files import read_file
+    from prima.loading.files import check_name, check_text, read_file
 
+    path = check_name(path)
+    check_text(to, "to")
+    check_text(what, "what")
     for name, word, known in (("to", to, FORMATS), ("what", what or "states", WHATS)):
         if word not in known:
             hint = did_you_mean(word, known) or f"Write {one_of(known)}."

@@ -30,9 +30,11 @@ def make(transcripts: Sequence[Transcript], scenarios: Sequence[Loaded | None] =
     Raises:
         UsageError: too many transcripts, or too long ones; a scenario is not a transcript's.
     """
+    from prima.api.transcripts import check_transcripts
     from prima.report.page import page
     from prima.report.view import view_of
 
+    check_transcripts(*transcripts)
     if not 1 <= len(transcripts) <= 2:
         raise UsageError("A report shows one run or compares two.")
     if len(scenarios) not in (0, 1, len(transcripts)):

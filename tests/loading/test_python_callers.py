@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 import prima
+from prima import graph, report
 from tests import ROOT
 
 DOCUMENTS = ROOT / "documents"
@@ -119,6 +120,7 @@ def test_what_a_sink_raises_is_raised(kind: type[BaseException], rows: bool) -> 
         lambda path: prima.diff(path, path),
         lambda path: prima.replay(path, SCENARIO),
         lambda path: prima.explain_row(path, 1),
+        lambda path: report.make([path]),
     ],
 )
 def test_the_path_of_a_transcript_is_not_one(use: Callable[[str], object]) -> None:
@@ -134,6 +136,7 @@ def test_the_path_of_a_transcript_is_not_one(use: Callable[[str], object]) -> No
         prima.load_scenario,
         prima.read,
         prima.rehearse,
+        graph.picture,
         lambda path: prima.export(path, "csv", "a.csv"),
         lambda path: prima.export(prima.Transcript([]), "csv", path),
     ],
@@ -143,7 +146,7 @@ def test_what_is_no_path_is_told(use: Callable[[Any], object], given: object) ->
         use(given)
 
 
-@pytest.mark.parametrize("use", [prima.load, prima.load_scenario, prima.read])
+@pytest.mark.parametrize("use", [prima.load, prima.load_scenario, prima.read, graph.picture])
 def test_a_number_is_no_file_that_happens_to_be_open(
     use: Callable[[Any], object], tmp_path: Path
 ) -> None:
@@ -219,6 +222,8 @@ def test_records_of_a_live_run_that_were_not_kept_are_named() -> None:
     ("call", "given", "told"),
     [
         (prima.explain, {"code": 5}, "code=5: write a text."),
+        (graph.picture, {"path": FOLLOW, "to": None}, "to=None: write a text."),
+        (graph.picture, {"path": FOLLOW, "what": 5}, "what=5: write a text."),
         (prima.export, {"to": b"csv", "output": "a.csv"}, "to=b'csv': write a text."),
         (
             prima.export,
@@ -336,8 +341,9 @@ def test_a_path_of_bytes_is_none(use: Callable[[Any], object]) -> None:
 
 def test_a_large_value_is_not_told_whole() -> None:
     for name in ("scenario", "policy", "bound"):
+        given: dict[str, Any] = {"scenario": SCENARIO, name: ["x"] * 1000}
         with pytest.raises(prima.UsageError) as caught:
-            prima.rehearse(**{"scenario": SCENARIO, name: ["x"] * 1000})
+            prima.rehearse(**given)
         assert len(str(caught.value)) < 200
 
 
@@ -347,3 +353,6 @@ def test_a_row_has_a_whole_number(number: Any) -> None:
     with pytest.raises(prima.UsageError) as caught:
         prima.explain_row(made, number)
     assert str(caught.value) == f"number={number!r}: write the number of a row."
+    with pytest.raises(prima.UsageError) as again:
+        made.row(number)
+    assert str(again.value) == str(caught.value)
