@@ -15,7 +15,6 @@ from prima.messages import Record
 from prima.version import __version__
 
 if TYPE_CHECKING:
-
     from prima.exports import Exported
     from prima.transcript.diff import Difference
 

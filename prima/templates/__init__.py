@@ -82,8 +82,7 @@ def _fill(kind: str, path: Path, **values: str) -> Path:
     title = escape(path.stem)
     given = {"id": identifier(path.stem, kind), "title": title, **values}
     given["file"] = path.name if "--" not in path.name else "FILE"  # -- is not allowed in comments
-    for key, value in given.items():
-        text = text.replace(f"{{{key}}}", value)
+    text = re.sub(r"\{(\w+)\}", lambda key: given[key[1]], text)  # at once: a value may have braces
     try:
         with path.open("x", encoding="utf-8") as stream:
             stream.write(text)

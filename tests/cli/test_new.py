@@ -117,3 +117,13 @@ def test_either_ending_is_understood(tmp_path: Path, kind: str, name: str) -> No
     assert prima("new", kind, name, cwd=tmp_path).returncode == 0
     (made,) = tmp_path.iterdir()
     assert made.name == ("v.vxml" if kind == "vxml" else "v.xml")
+
+
+def test_names_with_braces_are_kept_as_they_are(tmp_path: Path) -> None:
+    for kind, name in (("ea", "{file}"), ("fa", "{id}"), ("scenario", "{world}")):
+        done = prima("new", kind, name, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+    made = (tmp_path / "{world}.xml").read_text(encoding="utf-8")
+    assert 'title="{world}"' in made
+    assert 'src="{file}.xml"' in made and 'src="{id}.xml"' in made
+    assert prima("validate", ".", cwd=tmp_path).returncode == 0
