@@ -21,8 +21,9 @@ from prima.live.deadlines import run
 from prima.live.devices import LiveDevices
 from prima.live.driver import Driver, why
 from prima.live.drivers import driver_class, drivers_in
-from prima.live.journal import Journal, Redactor
+from prima.live.journal import Journal
 from prima.live.recordings import Recordings
+from prima.live.redaction import Redactor
 from prima.live.services import LiveServices
 from prima.live.shell import LATE_MS, Shell
 from prima.live.signals import handling_signals, heeding_signals

@@ -229,6 +229,7 @@ INSIDE = {
             "deadlines",
             "journal",
             "recordings",
+            "redaction",
             "reports",
             "signals",
             "speaking",
