@@ -26,6 +26,8 @@ Read = TypeVar("Read")
 
 MOST_LEVELS = 100_000
 """Maximum number of levels of a factor."""
+MOST_LETTERS = 10_000
+"""Maximum number of characters of a level; far below what a cell of a table can be read with."""
 SPLIT = re.compile(r"(?<!\\)\|")
 
 
@@ -93,6 +95,9 @@ class _Levels:
         pieces = [one.replace("\\|", "|") for one in SPLIT.split(text)]
         self.count(len(pieces))
         if kind not in MEASURED:
+            if (longest := max(map(len, pieces))) > MOST_LETTERS:
+                most = f"at most {MOST_LETTERS:,} can be run"
+                raise self.wrong(f"A level has {longest:,} characters; {most}.")
             return Factor(path, kind, self.checked(pieces))
         if len(pieces) == 1 and (drawn := self.read_by(self.values.read, pieces[0].strip())):
             return Factor(path, kind, (), drawn)

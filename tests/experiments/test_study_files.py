@@ -145,6 +145,7 @@ def test_large_studies_are_refused_soon_and_with_their_line() -> None:
         (f'touch = "{"0ms..99999ms/1ms|" * 1000}"', "levels; at most 100,000"),
         ("\n".join(f"a{number} = 1" for number in range(60_000)), '"a0" is not a value'),
         (f'touch = "{"s" * 900_000}"', "is not a time. Write a number with its unit"),
+        (f'reply = ["a", "{"s" * 10_001}"]', "A level has 10,001 characters; at most 10,000"),
     ):
         Path("study.toml").write_text(f"{STUDY.partition('touch')[0]}{written}", encoding="utf-8")
         done = command.prima("sweep", "study.toml", "--plan", timeout=60)
