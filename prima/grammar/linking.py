@@ -7,6 +7,7 @@ from functools import partial
 from urllib.parse import urlsplit
 
 from prima.errors import Hint, PrimaError, Span, meant
+from prima.errors.diagnoses.names import RELATIVE
 from prima.grammar.builtin import built_in, uri_mode
 from prima.grammar.errors import (
     GrammarError,
@@ -23,7 +24,6 @@ from prima.grammar.model import GrammarDocument, Mode, Reference, Rule
 from prima.grammar.prefixes import index_choices
 from prima.markup.uris import join, parted
 
-RELATIVE = "Its name is read relative to the document that names it."
 REMOTE = "Only a VoiceXML application fetches it, in a run with --allow-host."
 MOST_DOCUMENTS = 64
 MOST_BYTES = 20_000_000
@@ -107,7 +107,11 @@ class Library:
             message = f'The grammar "{uri[:200]}" cannot be fetched: {error}.'
             remedy = Hint(REMOTE if uri.startswith(("http:", "https:")) else RELATIVE)
             other = error.meant if isinstance(error, NotThere) else ""
-            hint = meant(other, *written(uri.rpartition("/")[2])) if other else remedy
+            folder, slash, last = uri.rpartition("/")
+            if other and (spans := written(uri)):
+                hint = meant(f"{folder}{slash}{other}", *spans)
+            else:
+                hint = meant(other, *written(last)) if other else remedy
             self.problems.note(where, "no-such-file", message, hint)
             return None
         self._bytes += len(data)

@@ -6,7 +6,7 @@ import posixpath
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import partial
-from os.path import normpath
+from os.path import exists, normpath
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -16,10 +16,12 @@ from prima.errors import (
     Place,
     Problem,
     UsageError,
+    meant,
     one_of,
     replaced,
     suggestion,
 )
+from prima.errors.diagnoses.names import RELATIVE
 from prima.interpreter.checks import check_commands
 from prima.interpreter.elements import Document
 from prima.loading.applications import digest, read_application
@@ -36,7 +38,7 @@ from prima.loading.diagnoses import (
 )
 from prima.loading.files import read_file
 from prima.loading.kinds import is_voicexml
-from prima.loading.similar import nearby
+from prima.loading.similar import beside, nearby
 from prima.loading.voicedocuments import voicexml_problems
 from prima.markup.reader import parse
 from prima.markup.roots import kind_of
@@ -89,11 +91,21 @@ class Reading:
             return made_of(str(target), content)
         except UsageError as error:
             wrong = str(error).removeprefix(f"{target}: ")
-            hint = nearby(target, *value_span(node, attribute, target.name), listed=self._listed)
+            hint = self._meant(name, target, node, attribute)
             self.problems.append(UNREADABLE.at(place, hint, name=name, wrong=wrong))
         except DocumentError as error:
             self.problems += [_named_wrongly(name, place, one, content) for one in error.problems]
         return None
+
+    def _meant(self, name: str, target: Path, node: Node, attribute: str) -> Hint:
+        """The remedy for a name of no readable file; a world's are relative to the world."""
+        spans, written = value_span(node, attribute), node.get(attribute)
+        if written == name and (found := beside(self.path.parent, name)):
+            return meant(found, *spans)
+        hint = nearby(target, written, *spans, listed=self._listed)
+        if hint or exists(target):
+            return hint
+        return Hint(RELATIVE)
 
     def applications(self, scenario: Scenario) -> None:
         """The applications that a scenario names."""

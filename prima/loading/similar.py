@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import islice
+from os.path import isfile
 from pathlib import Path
 
 from prima.errors import Hint, Span, meant
@@ -12,9 +13,20 @@ MOST_BESIDE = 300
 """How many files of a folder are considered in a guess."""
 
 
-def nearby(path: Path, *spans: Span, listed: dict[Path, list[Path]]) -> Hint:
-    """A hint that suggests the file that a wrong name most likely means."""
-    return meant(alike(path, listed), *spans)
+def nearby(path: Path, name: str, *spans: Span, listed: dict[Path, list[Path]]) -> Hint:
+    """A hint that suggests the file that a wrong name most likely means.
+
+    ``path`` is where the file would be, ``name`` how a document writes that, in the ``spans``.
+    """
+    other = alike(path, listed)
+    return meant(name.rpartition("/")[0] + "/" + other if other and "/" in name else other, *spans)
+
+
+def beside(folder: Path, name: str) -> str:
+    """The file that a name means with slashes for its backslashes, or in the folder itself."""
+    straight = name.replace("\\", "/")
+    guesses = (straight, straight.rpartition("/")[2])
+    return next((one for one in guesses if one != name and isfile(folder / one)), "")
 
 
 def alike(path: Path, listed: dict[Path, list[Path]]) -> str:

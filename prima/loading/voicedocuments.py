@@ -134,13 +134,13 @@ def _not_there(
         if not file.startswith("../") and exists(folder / file):
             continue
         uri = node.get(name).strip().partition("#")[0].partition("?")[0]
-        spans = value_span(node, name, uri.rpartition("/")[2])
+        spans = value_span(node, name, uri)
         missing.add(node.index)
         if file.startswith("../") and exists(folder / file):
             yield OUTSIDE.at(node.attribute_place(name), file=file[:80])
             continue
         few = len(missing) <= LIMITS.problems  # problems that are not listed need no hint
-        hint = nearby(folder / file, *spans, listed=listed) if few else Hint()
+        hint = nearby(folder / file, uri, *spans, listed=listed) if few else Hint()
         dialog = node.get(name).strip()
         if dialog in page.dialogs and node.key in TARGETS:
             text = f'It is a dialog: write "#{dialog}".'

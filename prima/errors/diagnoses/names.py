@@ -34,6 +34,8 @@ NO_SUCH_ARGUMENT = Diagnosis(
     rule="thesis, Table 4.1",
 )
 
+RELATIVE = "Its name is read relative to the document that names it."
+"""The remedy for a file that is not there, and is like none."""
 NO_SUCH_FILE = Diagnosis(
     "no-such-file",
     "Unreadable file",
