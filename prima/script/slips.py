@@ -1,8 +1,11 @@
-"""Names in code that were most likely meant as something else: values of other languages, texts."""
+"""Slips in code: names meant as texts or as values of other languages, signs of other languages."""
 
 from __future__ import annotations
 
+import re
+
 from prima.errors import Hint, Span, replaced
+from prima.markup.hints import half
 
 ELSEWHERE = {
     **dict.fromkeys(("True", "TRUE"), "true"),
@@ -27,4 +30,61 @@ def is_bare(code: str, name: str, start: int) -> bool:
 
 def or_text(hint: Hint, name: str) -> Hint:
     """The same hint, and how to write a name as a text."""
-    return hint._replace(text=f"{hint.text} For the text itself write '{name}'.")
+    return hint._replace(text=f"{hint.text} For the text itself write '{name}'.".lstrip())
+
+
+STRINGS = re.compile(r"""(["'])(?:\\[\s\S]|(?!\1)[^\\])*(?:\1|(\\?\Z))""")
+"""Strings, the last of which may lack its end; no character is read twice."""
+MISTAKES = (
+    (r"\$\{", "Write the expression alone, without ${ and }."),
+    (r"=\s+=", "Write == without a space."),
+    (r"<>", "Write != for &lt;&gt;."),
+    (r"\b(?:and|AND)\b", "Write &amp;&amp; for and."),
+    (r"\b(?:or|OR)\b", "Write || for or."),
+    (r"\b(?:not|NOT)\b", "Write ! for not."),
+)
+"""Common mistakes, with remedies."""
+STATEMENT = re.compile(r"\s*(?:const|for|if|let|return|var|while)\b")
+"""How code begins that is no expression."""
+WORDS = re.compile(r"\s*(\w+(?:[ .,!?-]+\w+)*[.,!?]*)\s*", re.ASCII)
+"""Words alone, most likely a text without its quotes."""
+LONGEST_TEXT = 60
+"""Characters of code above which it is not guessed to be a text."""
+QUOTES = re.compile("[“”„‟‘’‚‛]")
+"""Typographic quotes."""
+
+
+def code_remedy(code: str, *, statements: bool = False, text: bool = True) -> str:
+    """The remedy for code that does not compile because of a common mistake, or nothing.
+
+    Args:
+        code: The code.
+        statements: Whether it may hold statements, as a script does.
+        text: Whether it may have been meant as a text.
+    """
+    bare = STRINGS.sub(lambda found: "" if found[2] is None else found[1], code)
+    if QUOTES.search(bare):
+        return "This is a typographic quote: write '."
+    if wide := _of_full_width(bare):
+        return f"Write it in characters of half width: {wide}."
+    remedy = "" if statements else _as_expression(bare)
+    remedy = remedy or next((right for sign, right in MISTAKES if re.search(sign, bare)), "")
+    words = WORDS.fullmatch(code) if text and len(code) <= LONGEST_TEXT else None
+    return or_text(Hint(remedy), words[1]).text if words else remedy
+
+
+def _as_expression(bare: str) -> str:
+    """The remedy for statements in place of an expression, whose complete strings are left out."""
+    if STATEMENT.match(bare):
+        return "Write an expression; statements belong in a <script>."
+    if bare.rstrip().endswith(";"):
+        return "Write the expression without the semicolon."
+    return "Write \\' for a ' inside a text." if "'" in bare else ""
+
+
+def _of_full_width(code: str) -> str:
+    """The first few full-width characters of code, as they should be."""
+    if code.isascii():
+        return ""
+    wide = [half(one) for one in code if not one.isascii()]
+    return " ".join([one for one in wide if one.isascii() and one.strip()][:5])

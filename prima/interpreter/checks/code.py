@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import partial
@@ -31,26 +30,13 @@ from prima.interpreter.checks.facts import Facts
 from prima.interpreter.checks.variables import Variables, place_in
 from prima.interpreter.elements import Document, Field, Form, Item, Prompt, Subdialog
 from prima.interpreter.steps import no_step
-from prima.markup.hints import half
 from prima.script.compile import compiled
 from prima.script.conditions import assigning
 from prima.script.data import declared
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.known import Known
+from prima.script.slips import code_remedy
 
-STRINGS = re.compile(r""""(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'""")
-MISTAKES = (
-    (r"\$\{", "Write the expression alone, without ${ and }."),
-    (r"=\s+=", "Write == without a space."),
-    (r"\band\b", "Write &amp;&amp; for and."),
-    (r"\bor\b", "Write || for or."),
-    (r"\bnot\b", "Write ! for not."),
-)
-"""Common mistakes, with remedies."""
-QUOTES = re.compile("[“”„‟‘’‚‛]")
-"""Typographic quotes."""
-MISTAKEN = re.compile("|".join(["[^\\x00-\\x7f]", *(words for words, _ in MISTAKES)]))
-"""Signs of a common mistake in code."""
 CONDITIONS = frozenset({"cond", "when"})
 """Attributes with conditions."""
 WIDEST = 60
@@ -203,26 +189,7 @@ def _compiled(expr: Expression, script: bool) -> Problem | None:
         if isinstance(error, EngineLost):  # perhaps from outside: a run may still succeed
             return NOT_CHECKED.at(place, code=shown, error=error)
         found = NOT_ECMASCRIPT.at(place, code=shown, error=error)
-        remedy = _remedy(expr.code)
+        plain = script or expr.attribute in CONDITIONS
+        remedy = code_remedy(expr.code, statements=script, text=not plain)
         return found._replace(remedy=remedy) if remedy else found
     return None
-
-
-def _remedy(code: str) -> str:
-    """The remedy for a wrong expression with a common mistake."""
-    if not MISTAKEN.search(code):
-        return ""
-    bare = STRINGS.sub("", code)
-    if QUOTES.search(bare):
-        return "This is a typographic quote: write '."
-    if wide := _of_full_width(bare):
-        return f"Write it in characters of half width: {wide}."
-    return next((remedy for words, remedy in MISTAKES if re.search(words, bare)), "")
-
-
-def _of_full_width(code: str) -> str:
-    """The first few full-width characters of code, as they should be."""
-    if code.isascii():
-        return ""
-    wide = [half(one) for one in code if not one.isascii()]
-    return " ".join([one for one in wide if one.isascii() and one.strip()][:5])

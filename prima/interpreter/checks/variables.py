@@ -45,6 +45,10 @@ ABSENT = {
     "fetch": 'Write <send to="..."/>, which asks a service.',
     **{name: f"Write sensor.{name}." for name in ("human", "moving", "position")},
     "require": "Write the functions into a <script>.",
+    **{
+        name: f'There is no browser here. For a variable of your own write <var name="{name}"/>.'
+        for name in ("localStorage", "navigator", "sessionStorage", "window")
+    },
 }
 """Remedies for names that ECMAScript has in other environments."""
 

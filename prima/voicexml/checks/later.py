@@ -19,6 +19,7 @@ from prima.markup.uris import parted
 from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.shared import IsolatedSyntax, syntax
+from prima.script.slips import code_remedy
 from prima.voicexml.arranging import UNIT, items_in, parts_of
 from prima.voicexml.checks.attributes import bad_value, fits, instead_of
 from prima.voicexml.checks.conditions import check_conditions
@@ -284,4 +285,6 @@ def _compile(node: Node, name: str, code: str, checker: IsolatedSyntax) -> Itera
             return
         place = node.code_place(name, error.line, error.column)
         diagnosis = NOT_CHECKED if isinstance(error, EngineLost) else NOT_ECMASCRIPT
-        yield diagnosis.at(place, code=" ".join(code.split())[:LONGEST_CODE], error=error)
+        remedy = code_remedy(code, statements=not name, text=name != "cond")
+        shown = " ".join(code.split())[:LONGEST_CODE]
+        yield diagnosis.at(place, Hint(remedy), code=shown, error=error)
