@@ -73,7 +73,7 @@ def check_tree(root: Node, vocabulary: Vocabulary, problems: list[Problem]) -> N
                 child.key = key
                 stack.append(child)
         if stray:
-            problems.append(_stray_text(node, vocabulary))
+            problems.append(_stray_text(node, vocabulary, rules))
 
 
 class _Rules:
@@ -140,13 +140,21 @@ def _known_instead(child: Node, parent: Node, vocabulary: Vocabulary) -> Hint:
     if hint:
         return Hint(hint)
     inside = vocabulary.children(parent.key)
-    tag = nearest_word(child.tag, inside) or nearest_word(child.tag, vocabulary.tags)
-    return meant(tag, *name_spans(child)) if tag else Hint(hints.held(parent, inside))
+    if tag := nearest_word(child.tag, inside):
+        return meant(tag, *name_spans(child))
+    tag = nearest_word(child.tag, vocabulary.tags)
+    other = meant(tag, *name_spans(child)) if tag else Hint(hints.held(parent, inside))
+    if "command" not in inside:
+        return other
+    added_one = f'A Command that the robot adds is <command type="{child.tag}">.'
+    return other._replace(text=f"{other.text} {added_one}".lstrip())
 
 
-def _stray_text(node: Node, vocabulary: Vocabulary) -> Problem:
+def _stray_text(node: Node, vocabulary: Vocabulary, rules: _Rules) -> Problem:
     shown = node.text if len(node.text) <= 30 else node.text[:27] + "..."
-    hint = Hint(hints.text_remedy(node, "speak" in vocabulary.tags))
+    missing = [] if "speak" in rules.children else rules.lacking(node.attributes)
+    only = missing[0].name if len(missing) == 1 else ""
+    hint = Hint(hints.text_remedy(node, "speak" in vocabulary.tags, only))
     return HOLDS_TEXT.at(_text_place(node), hint, tag=node.tag, text=shown)
 
 
@@ -204,8 +212,6 @@ def _unknown_attribute(node: Node, name: str, rules: _Rules, missing: list[Attri
     if not hint and rules.element.text and name in hints.TEXTS:
         hint = Hint(f"Write the text inside: <{node.tag}>...</{node.tag}>.")
     hint = hint or similar_attribute(node, name, known)
-    if not hint:
-        hint = Hint(f"It may have {one_of(known)}." if known else "It has no attributes.")
     place = node.attribute_place(name, value=False)
     return NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
 

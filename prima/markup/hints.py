@@ -42,14 +42,20 @@ INSIDE = {
         ("var", "assign"), 'Write it as expr="..."; a text in it has quotes of its own.'
     ),
     **dict.fromkeys(("param", "property"), 'Write it as value="...".'),
+    "failure": 'Write it as reason="...".',
+    "walk": 'Write it as to="...".',
 }
 """Where text directly in an element belongs."""
-IN_SCENARIOS = ("when", "reply", "data", "expect", "never")
+IN_SCENARIOS = ("when", "reply", "data", "expect", "never", "failure", "walk")
 """Those of them that scenarios have."""
 INSTEAD = {
     "prompt": "Write <speak>; a <prompt> is what a <field> asks.",
     "option": "It is an answer that a <field> takes.",
 }
+ASKED = (
+    "Write <prompt>: what the field asks. What is said before it belongs in a <block> before it."
+)
+"""The remedy for speech in a question."""
 """Remedies for elements that make no sense in their place."""
 OTHERS = {
     ("active-sensing-human", "timeout"): 'Write patience="...".',
@@ -154,10 +160,16 @@ def _guess_word(kind: str, text: str) -> str:
     return text.removeprefix("#") if kind == "id" else ""
 
 
-def text_remedy(node: Node, spoken: bool) -> str:
-    """Where text that an element may not contain belongs; ``spoken`` in an application."""
+def text_remedy(node: Node, spoken: bool, missing: str) -> str:
+    """Where text that an element may not contain belongs.
+
+    ``spoken`` is whether it is in an application, ``missing`` the only attribute that the element
+    lacks, if it takes no speech.
+    """
     if node.tag in INSIDE and (spoken or node.tag in IN_SCENARIOS):
         return INSIDE[node.tag]
+    if missing:
+        return f'Write it as {missing}="...".'
     return "Say it with <speak>, or remove it." if spoken else "Remove it."
 
 
@@ -211,6 +223,8 @@ def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
         )
     if parent.tag == tag:
         return inside_itself(tag)
+    if tag == "speak" and vocabulary.child(parent.key, "prompt"):
+        return ASKED
     if tag in INSTEAD and vocabulary.child(parent.key, "speak"):
         return INSTEAD[tag]
     if into := put_into(tag, parent, vocabulary, ["block"]):

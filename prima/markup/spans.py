@@ -6,7 +6,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterable
 
-from prima.errors import Edit, Fix, Hint, Span, meant, nearest_word, replaced
+from prima.errors import Edit, Fix, Hint, Span, meant, nearest_word, one_of, replaced
 from prima.language.commands import Argument
 from prima.language.values import read_value, written
 from prima.markup.limits import LIMITS
@@ -71,11 +71,14 @@ def attribute_span(node: Node, attribute: str) -> Span:
 
 
 def similar_attribute(node: Node, name: str, known: Iterable[str]) -> Hint:
-    """The hint for an unknown attribute that resembles a known one; empty if none does."""
+    """The hint for an unknown attribute: the known one that it resembles, or all of them."""
     near = nearest_word(name, known)
     if near in node.attributes:
         return Hint(f'Remove it: there is "{near}" already.')
-    return meant(near, attribute_span(node, name))
+    if near:
+        return meant(near, attribute_span(node, name))
+    every = one_of(known)
+    return Hint(f"It may have {every}." if every else "It has no attributes.")
 
 
 def name_spans(node: Node) -> tuple[Span, ...]:

@@ -45,6 +45,18 @@ HOLDERS = {
 USUAL = ("block", "prompt")
 """Elements that authors forget most often around others."""
 
+TEXTS = {
+    "vxml": "Write it into a <block> of a <form>.",
+    "form": "Write it into a <block>.",
+    "menu": "Write it into a <prompt>.",
+    "subdialog": "Write it into a <prompt>.",
+    **dict.fromkeys(
+        ("else", "elseif"),
+        "It only divides the <if>: end its tag with />, and write this behind it.",
+    ),
+}
+"""Where text directly in an element belongs."""
+
 HOLDS_TEXT = STRAY_TEXT.says('<{tag}> holds text: "{text}".')
 IGNORED = WRONG_NAMESPACE.says(
     '<{tag}> is of another namespace, "{namespace}".', "It is ignored.", "warning"
@@ -84,7 +96,8 @@ def _check_element(node: Node) -> list[Problem]:
         problems += check(node)
     if not entry.text and node.content and node.text:
         text = node.text[:LONGEST_SHOWN]
-        problems.append(HOLDS_TEXT.at(node.place, tag=node.tag, text=text))
+        hint = Hint(TEXTS.get(node.key, "Remove it."))
+        problems.append(HOLDS_TEXT.at(node.place, hint, tag=node.tag, text=text))
     return problems
 
 
