@@ -52,11 +52,11 @@ INSTEAD = {
     "prompt": "Write <speak>; a <prompt> is what a <field> asks.",
     "option": "It is an answer that a <field> takes.",
 }
+"""Remedies for elements that make no sense in their place."""
 ASKED = (
     "Write <prompt>: what the field asks. What is said before it belongs in a <block> before it."
 )
 """The remedy for speech in a question."""
-"""Remedies for elements that make no sense in their place."""
 OTHERS = {
     ("active-sensing-human", "timeout"): 'Write patience="...".',
     ("answer", "delay"): 'Write after="...".',
