@@ -21,11 +21,11 @@ DEAD_CONTENT = Diagnosis(
     " is the first.",
     rule="VoiceXML 2.0, 5.3",
     severity="warning",
-    message="<{tag}> comes after <{leaving}> and is never reached.",
+    message="{what} comes after <{leaving}> and is never reached.",
     remedy="Put it before <{leaving}>, or remove it.",
 )
 BEHIND_IF = DEAD_CONTENT.says(
-    "<{tag}> is never reached: each branch of the <if> before it ends with <goto> or the like.",
+    "{what} is never reached: each branch of the <if> before it ends with <goto> or the like.",
     "Put it before the <if>, or remove it.",
 )
 
@@ -42,20 +42,25 @@ def branches(node: Node) -> Iterator[tuple[Node, list[Node | str]]]:
     yield head, part
 
 
-def dead_content(root: Node) -> Iterator[Problem]:
-    """Warn of content after what leaves it, once in each branch."""
+def dead_content(root: Node, texts: bool = False) -> Iterator[Problem]:
+    """Warn of content after what leaves it, once in each branch; ``texts`` says if text is any."""
     for holder in root.walk():
-        nodes = holder.nodes
-        if len(nodes) > 1 and any(one.key in DIVIDED for one in nodes):
+        if len(holder.content) > 1 and any(one.key in DIVIDED for one in holder.nodes):
             for _, part in branches(holder):
-                yield from _dead(part)
+                yield from _dead([one for one in part if isinstance(one, Node) or texts])
 
 
 def _dead(part: Iterable[Node | str]) -> Iterator[Problem]:
-    for one, behind in pairwise(node for node in part if isinstance(node, Node)):
-        if _leaves(one) and behind.key:  # not unknown, nor misplaced
-            diagnosis = BEHIND_IF if one.key == "if" else DEAD_CONTENT
-            yield diagnosis.at(behind.place, tag=behind.tag, leaving=one.tag)
+    for one, behind in pairwise(one for one in part if isinstance(one, Node) or one.strip()):
+        if isinstance(one, str) or not _leaves(one):
+            continue
+        diagnosis = BEHIND_IF if one.key == "if" else DEAD_CONTENT
+        if isinstance(behind, str):
+            place = one.place_behind(behind) or one.place
+            yield diagnosis.at(place, what="Text", leaving=one.tag)
+            return
+        if behind.key:  # not unknown, nor misplaced
+            yield diagnosis.at(behind.place, what=f"<{behind.tag}>", leaving=one.tag)
             return
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 
 from prima.errors import (
@@ -167,11 +166,7 @@ def _text_place(node: Node) -> Place:
         elif item.strip():
             if before is None:
                 return node.source.inside(node.index, "", len(item) - len(item.lstrip()))
-            source, start = node.source, node.source.tag(before.index)
-            word = item.split()[0]
-            ends = re.compile(rf">\s*({re.escape(word)})")
-            found = ends.search(source.text, start)
-            return source.at(found.start(1)) if found else node.place
+            return before.place_behind(item) or node.place
     return node.place
 
 

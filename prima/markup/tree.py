@@ -235,6 +235,14 @@ class Node:
         found = written.search(self.source.text, begin.end() - 1) if begin and first else None
         return self.source.at(found.start()) if found else self.place
 
+    def place_behind(self, words: str) -> Place | None:
+        """The place of the first of some words right after the element, if it is certain."""
+        source, start = self.source, self.source.tag(self.index)
+        tag = MARKUP.match(source.text, source.closes.get(self.index, start + 2) - 2)
+        word = re.compile(rf">\s*({re.escape(next(iter(words.split()), ''))})")
+        found = word.search(source.text, tag.end() - 1) if tag else None
+        return source.at(found.start(1)) if found else None
+
     @property
     def nodes(self) -> list[Node]:
         """The child elements."""

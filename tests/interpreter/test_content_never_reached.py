@@ -65,3 +65,18 @@ def test_dead_content_of_voicexml_behind_its_own_elements(leaving: str) -> None:
     [found] = warned_in_voicexml(FORM.format(leaving + HERE))
     tag = leaving.split()[0].strip("</>")
     assert found.message == f"<log> comes after <{tag}> and is never reached."
+
+
+@pytest.mark.parametrize("content", [*DEAD, *LIVE])
+def test_dead_text_of_voicexml_is_warned_of_and_never_said(content: str) -> None:
+    body = FORM.format(content.replace("§", "<!-- here -->§")).replace("true", "1 > 0")
+    dead = [vxml(body).index("§") + 1] if content in DEAD else []
+    body = body.replace("§", "here it is")
+    found = warned_in_voicexml(body)
+    assert [one.place.column for one in found] == dead
+    assert all(one.message.startswith("Text ") for one in found)
+    assert ("here it is" in Call(body).play()) == (content in LIVE)
+
+
+def test_text_out_of_place_behind_an_exit_is_one_problem() -> None:
+    assert [one.code for one in read(FORM.format("<exit/>here"))[1]] == ["stray-text"]

@@ -107,7 +107,7 @@ def check_code(root: Node, dialogs: set[str]) -> list[Problem]:
         problems += _targets(node, dialogs)
     for dialog in root.all("form", "menu"):
         problems += _items(dialog, dialogs)
-    problems += dead_content(root)
+    problems += dead_content(root, texts=True)
     return [*problems, *check_conditions(root), *check_failing(root), *_first_prompt(root)]
 
 
