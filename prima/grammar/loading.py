@@ -97,8 +97,9 @@ def _language(library: Library, document: GrammarDocument, languages: Languages 
     spoken = document.lang and document.mode == "voice"
     if spoken and languages is not None and not languages(document.lang):
         message = f'Grammars in "{document.lang}" are not taken.'
+        remedy = "Write another language."
         problems = library.problems
-        problems.unsupported(UnsupportedLanguage, document.where, "language", message)
+        problems.unsupported(UnsupportedLanguage, document.where, "language", message, remedy)
 
 
 # Built-in types

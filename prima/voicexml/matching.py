@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Literal, cast
@@ -26,11 +25,10 @@ from prima.markup.uris import parted
 from prima.messages import Json
 from prima.script.budget import Budget
 from prima.voicexml.document import Page
+from prima.voicexml.platform import listens_in
 
 KEYS = frozenset("0123456789*# ")
 """Characters of telephone keys: an utterance of only these is tried as DTMF first."""
-LANGUAGE = re.compile(r"[A-Za-z]{2,3}(-[A-Za-z0-9]{2,8})*")
-"""Languages of grammars; recognition compares words, so any real language will do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +131,7 @@ def _loaded(node: Node, page: Page, uri: str, fetch: Fetch, refusal: Refusal) ->
             refusal=refusal,
             type=kind,
             rule=rule,
-            languages=lambda tag: LANGUAGE.fullmatch(tag) is not None,
+            languages=listens_in,
             lenient=True,
         )
         if not made.root:

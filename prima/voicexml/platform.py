@@ -10,6 +10,8 @@ FORMATS = frozenset(["audio/basic", "audio/x-alaw-basic", "audio/x-wav", "audio/
 """Formats in which every platform records (appendix E)."""
 TELEPHONE = re.compile(r"tel:\+?[-.() 0-9A-Da-dpw*#]+(;.*)?")
 ADDRESS = re.compile(r"sips?:[^\s@]+(@[^\s@]+)?")
+UNREAL = re.compile(r"(?:[A-Za-z]|[A-Za-z]{4,8})(?:-.*)?")
+"""Tags that no real language has, such as ``x-elvish``: their first part is too short or long."""
 WORDS = {
     "en": {
         "help": "There is no help here.",
@@ -38,6 +40,11 @@ NO_CHOICES = Unsupported("error.semantic", "there are no choices here to enumera
 def own_words(lang: str) -> Mapping[str, str]:
     """What the platform's own handlers say in a language, by their events."""
     return WORDS.get(lang.partition("-")[0].lower(), {})
+
+
+def listens_in(tag: str) -> bool:
+    """Whether grammars may be in a language: words are compared, so any real one will do."""
+    return UNREAL.fullmatch(tag) is None
 
 
 def unrecorded(media_type: str) -> Unsupported | None:

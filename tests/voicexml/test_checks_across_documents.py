@@ -56,6 +56,20 @@ def test_grammars_in_files_that_a_page_names_are_checked(tmp_path: Path) -> None
     ]
 
 
+@pytest.mark.parametrize("lang", ["x-elvish", "i-klingon", "english", "en-x-pirate", "en_GB"])
+def test_a_grammar_that_no_run_loads_for_its_language_is_told(tmp_path: Path, lang: str) -> None:
+    rules = f'<grammar version="1.0" xml:lang="{lang}" root="r"><rule id="r">tea</rule></grammar>'
+    file = rules.replace(" ", ' xmlns="http://www.w3.org/2001/06/grammar" ', 1)
+    (tmp_path / "g.grxml").write_text(file)
+    says = {"en_GB": ["bad-value"], "en-x-pirate": []}.get(lang, ["language"])
+    for written in (rules, '<grammar src="g.grxml"/>'):
+        body = f'<form><field name="f"><prompt>Q?</prompt>{written}</field></form>'
+        assert [one.split()[1] for one in told(tmp_path, body)] == says
+        main = tmp_path / "main.vxml"
+        done = prima("run", "--ea", main, "--say", "tea", cwd=tmp_path)
+        assert (done.returncode == 3) == bool(says)
+
+
 def test_handlers_of_a_root_document_read_variables_of_its_leaves(tmp_path: Path) -> None:
     handler = '<catch event="nomatch"><log expr="topic"/></catch>'
     leads = '<form><block><log expr="wrong"/><goto next="leaf.vxml"/></block></form>'

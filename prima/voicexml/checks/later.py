@@ -32,6 +32,7 @@ from prima.voicexml.checks.names import (
     check_script_names,
 )
 from prima.voicexml.elements import ITEMS, handler_number
+from prima.voicexml.platform import listens_in
 from prima.voicexml.vocabulary import (
     EXPRESSIONS,
     FETCHED_VALUES,
@@ -243,7 +244,16 @@ def grammar_problems(
         if "srcexpr" in node.attributes:
             check_known(media_type(node.get("type")), node.attribute_place("type"), "")
             return []
-        return load(node, base=base, lang=lang, mode=mode, fetch=fetch, lenient=True).warnings()
+        made = load(
+            node,
+            base=base,
+            lang=lang,
+            mode=mode,
+            fetch=fetch,
+            languages=listens_in,
+            lenient=True,
+        )
+        return made.warnings()
     except GrammarError as error:
         return [
             problem._replace(severity="warning", remedy=f"{problem.remedy} {LATER}".strip())
