@@ -94,8 +94,9 @@ def voicexml_problems(
         if is_other_version(page.root):
             yield from page.problems
             continue
-        missing: set[int] = set()
-        yield from (*page.problems, *page.warnings(), *_not_there(page, folder, answered, missing))
+        missing: set[Node] = set()
+        yield from (*page.problems, *page.warnings())
+        yield from _not_there(page, pages.nodes(page), folder, answered, missing)
         yield from _grammars_of(page, folder, missing, answered)
         yield from check_caught(page.root, pages.thrown)
         yield from check_listening(page, pages.root(page))
@@ -121,21 +122,25 @@ SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:|//")
 
 
 def _not_there(
-    page: Page, folder: Path, answered: tuple[str, ...], missing: set[int]
+    page: Page,
+    nodes: Iterable[Node],
+    folder: Path,
+    answered: tuple[str, ...],
+    missing: set[Node],
 ) -> Iterator[Problem]:
-    """Warn of files that a VoiceXML document names but its folder lacks.
+    """Warn of files that elements of a VoiceXML document name but its folder lacks.
 
-    The indices of the elements that name them are put into ``missing``.
+    The elements that name them are put into ``missing``.
     """
     from prima.voicexml.pages import TARGETS
 
     listed: dict[Path, list[Path]] = {}
-    for node, name, file in _files_named(page, answered):
+    for node, name, file in _files_named(page, nodes, answered):
         if not file.startswith("../") and exists(folder / file):
             continue
         uri = node.get(name).strip().partition("#")[0].partition("?")[0]
         spans = value_span(node, name, uri)
-        missing.add(node.index)
+        missing.add(node)
         if file.startswith("../") and exists(folder / file):
             yield OUTSIDE.at(node.attribute_place(name), file=file[:80])
             continue
@@ -148,9 +153,11 @@ def _not_there(
         yield NO_FILE_HERE.at(node.attribute_place(name), hint, file=file[:80])
 
 
-def _files_named(page: Page, answered: tuple[str, ...]) -> Iterator[tuple[Node, str, str]]:
+def _files_named(
+    page: Page, nodes: Iterable[Node], answered: tuple[str, ...]
+) -> Iterator[tuple[Node, str, str]]:
     """The files that elements name, with the attribute, except URIs ``answered`` by services."""
-    for node in page.root.walk():
+    for node in nodes:
         for name, tags in NAMING_FILES.items():
             uri = node.get(name).strip()
             if node.tag not in tags or not uri or uri.startswith("#"):
@@ -162,12 +169,12 @@ def _files_named(page: Page, answered: tuple[str, ...]) -> Iterator[tuple[Node, 
 
 
 def _grammars_of(
-    page: Page, folder: Path, missing: set[int], answered: tuple[str, ...]
+    page: Page, folder: Path, missing: set[Node], answered: tuple[str, ...]
 ) -> Iterator[Problem]:
     """Problems of grammars with files, and of the existing files that a VoiceXML document names."""
     site = page.site
     for node in page.root.walk():
-        if node.tag != "grammar" or node.index in missing:
+        if node.tag != "grammar" or node in missing:
             continue
         for problem in _of_files(node, page, folder, answered):
             if problem.place.file != node.source.file:

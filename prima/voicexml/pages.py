@@ -14,6 +14,7 @@ from prima.markup.tree import Node
 from prima.markup.uris import parted
 from prima.voicexml.caught import thrown_in
 from prima.voicexml.document import Fetch, FetchError, Page
+from prima.voicexml.elements import HANDLERS
 from prima.voicexml.reading import read_page
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, WORDED
 
@@ -46,6 +47,12 @@ class Target:
         return self.name or next(iter(self.page.dialogs if self.page else ()), "")
 
 
+def inherited(root: Node) -> Iterator[Node]:
+    """What a leaf inherits of its root document: handlers and links (1.5.2); grammars stay there."""
+    for part in root.all("link", *HANDLERS):
+        yield from (one for one in part.walk() if one.key != "grammar")
+
+
 class Pages:
     """The documents of an application, the first one first, then as others name them."""
 
@@ -61,7 +68,7 @@ class Pages:
         """Whether something leads to a document that only a run determines."""
         for page in self._read:  # which grows meanwhile
             self.root(page)
-            for node in page.root.walk():
+            for node in self.nodes(page):
                 self.open |= node.key in TARGETS and self._is_open(page, node)
         self.thrown = {name for page in self for name in thrown_in(page.root)}
         """The events that they throw."""
@@ -83,6 +90,18 @@ class Pages:
         """The application root document of a page, if it has one that can be read."""
         uri = page.application
         return self._page(uri) if uri and uri != page.uri else None
+
+    def nodes(self, page: Page) -> Iterator[Node]:
+        """The elements whose URIs are relative to a document: its own, and those it inherits.
+
+        Those that the leaves of a root document without dialogs inherit never run in it.
+        """
+        root = self.root(page)
+        if root is not None and page.dialogs:
+            yield from inherited(root.root)
+        is_root = any(one.application == page.uri for one in self._read if one is not page)
+        given = set(map(id, inherited(page.root) if is_root and not page.dialogs else ()))
+        yield from (one for one in page.root.walk() if id(one) not in given)
 
     def target(self, page: Page, node: Node) -> Target:
         """The dialog that one of ``TARGETS`` names literally; no document if it names none."""
@@ -121,13 +140,13 @@ class Pages:
     def between(self) -> Iterator[Problem]:
         """Dialogs that other documents lack, and params that no called form takes (2.3.4)."""
         for page in self:
-            for node in page.root.walk():
+            for node in self.nodes(page):
                 target = self.target(page, node) if node.key in TARGETS else Target()
                 other, name = target.page, target.name
                 if other is None or target.asked:
                     continue
                 dialog = other.dialog(name)
-                if dialog is None and other is not page:
+                if dialog is None and (other is not page or node.source is not page.root.source):
                     yield _not_there(node, name, other)
                 elif dialog is not None and (node.key, dialog.tag) == ("subdialog", "form"):
                     yield from _untaken(node, dialog)

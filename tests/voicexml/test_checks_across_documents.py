@@ -70,6 +70,55 @@ def test_a_grammar_that_no_run_loads_for_its_language_is_told(tmp_path: Path, la
         assert (done.returncode == 3) == bool(says)
 
 
+LEADS = [
+    '<link next="{}"><grammar version="1.0" root="r"><rule id="r">home</rule></grammar></link>',
+    '<catch event="nomatch"><goto next="{}"/></catch>',
+]
+"""What a leaf inherits, and takes when the user says "home"."""
+ASKS = '<form id="ask"><field name="f" type="boolean"><prompt>Q?</prompt></field></form>'
+GOAL = '<form id="g"><block>There.</block></form>'
+
+
+@pytest.mark.parametrize("leads", LEADS)
+@pytest.mark.parametrize(
+    ("target", "leaf", "root", "files", "says"),
+    [
+        ("#g", GOAL, "", {}, []),
+        ("#g", "", GOAL, {}, ['There is no dialog "g" in main.vxml']),
+        ("#g", "", "", {}, ['There is no dialog "g" in main.vxml']),
+        ("b.vxml", "", "", {"b": GOAL}, []),
+        ("b.vxml#h", "", "", {"b": GOAL, "sub/b": GOAL.replace('"g"', '"h"')}, ['no dialog "h"']),
+        ("b.vxml", "", "", {"sub/b": GOAL}, ['There is no file "b.vxml"']),
+        ("/sub/b.vxml", "", "", {"sub/b": GOAL}, []),
+    ],
+)
+def test_what_a_root_document_leads_to_is_found_as_in_its_leaves(
+    tmp_path: Path,
+    leads: str,
+    target: str,
+    leaf: str,
+    root: str,
+    files: dict[str, str],
+    says: list[str],
+) -> None:  # 1.5.2, 5.2
+    (tmp_path / "sub").mkdir()
+    files = {"sub/root": leads.format(target) + root, "d": GOAL} | files
+    written = {name: VXML.format("", text) for name, text in files.items()}
+    written["d"] = VXML.format(' application="sub/root.vxml"', ASKS + leaf)
+    body = ASKS.replace("Q?</prompt>", 'Q?</prompt><help><goto next="d.vxml"/></help>')
+    found = told(tmp_path, body + leaf, ' application="sub/root.vxml"', **written)
+    here = [one for one in found if "d.vxml" not in one]
+    assert len(here) == len(says) and all(map(str.__contains__, here, says))
+    done = prima("run", "--ea", tmp_path / "main.vxml", "--say", "home")
+    assert (done.returncode, "There." in done.stdout) == ((3, False) if says else (0, True))
+
+
+def test_a_root_document_alone_leads_to_dialogs_of_unknown_leaves(tmp_path: Path) -> None:
+    assert told(tmp_path, LEADS[1].format("#g")) == []
+    [found] = told(tmp_path, LEADS[1].format("b.vxml"))
+    assert 'There is no file "b.vxml" here' in found
+
+
 def test_handlers_of_a_root_document_read_variables_of_its_leaves(tmp_path: Path) -> None:
     handler = '<catch event="nomatch"><log expr="topic"/></catch>'
     leads = '<form><block><log expr="wrong"/><goto next="leaf.vxml"/></block></form>'

@@ -138,7 +138,7 @@ def _targets(node: Node, dialogs: set[str]) -> Iterator[Problem]:
         name = parted(target)[1]
         if attribute in node.attributes and not target.strip() and node.key != "audio":
             yield NO_URI.at(node.attribute_place(attribute), name=attribute)
-        if target.startswith("#") and node.key != "grammar" and name not in dialogs:
+        if dialogs and target.startswith("#") and node.key != "grammar" and name not in dialogs:
             hint = suggestion(name, dialogs, *value_span(node, attribute, target[1:]))
             yield NO_DIALOG.at(node.attribute_place(attribute), hint, name=name)
 
