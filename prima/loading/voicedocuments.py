@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from os.path import dirname, exists
+from os.path import dirname, isfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
@@ -135,13 +135,16 @@ def _not_there(
     from prima.voicexml.pages import TARGETS
 
     listed: dict[Path, list[Path]] = {}
+    whole = folder.resolve()
     for node, name, file in _files_named(page, nodes, answered):
-        if not file.startswith("../") and exists(folder / file):
+        there = isfile(folder / file)
+        inside = not file.startswith("../")
+        if there and inside and (folder / file).resolve().is_relative_to(whole):
             continue
         uri = node.get(name).strip().partition("#")[0].partition("?")[0]
         spans = value_span(node, name, uri)
         missing.add(node)
-        if file.startswith("../") and exists(folder / file):
+        if there:
             yield OUTSIDE.at(node.attribute_place(name), file=file[:80])
             continue
         few = len(missing) <= LIMITS.problems  # problems that are not listed need no hint

@@ -119,6 +119,21 @@ def test_a_root_document_alone_leads_to_dialogs_of_unknown_leaves(tmp_path: Path
     assert 'There is no file "b.vxml" here' in found
 
 
+def test_a_name_that_leads_out_by_a_link_or_to_a_folder_is_told(tmp_path: Path) -> None:
+    folder = tmp_path / "site"
+    (folder / "sub").mkdir(parents=True)
+    for name in (tmp_path / "out.vxml", folder / "sub" / "in.vxml"):
+        name.write_text(VXML.format("", GOAL))
+    (folder / "far.vxml").symlink_to(tmp_path / "out.vxml")
+    (folder / "near.vxml").symlink_to(folder / "sub" / "in.vxml")
+    says = {"near.vxml": "", "far.vxml": "outside of the folder", "sub": "There is no file"}
+    for target, words in says.items():
+        body = f'<form><block><goto next="{target}"/></block></form>'
+        assert [words in one for one in told(folder, body)] == [True] * bool(words)
+        done = prima("run", "--ea", folder / "main.vxml")
+        assert ("error.badfetch" in done.stdout) == bool(words)
+
+
 def test_handlers_of_a_root_document_read_variables_of_its_leaves(tmp_path: Path) -> None:
     handler = '<catch event="nomatch"><log expr="topic"/></catch>'
     leads = '<form><block><log expr="wrong"/><goto next="leaf.vxml"/></block></form>'
