@@ -273,7 +273,7 @@ class Content(Speaker):
         Raises:
             Thrown: ``error.badfetch`` where there is none.
         """
-        uri = self.word(node, "src", context, local)
+        uri = self.word(node, "src", context, local).strip()
         if not uri:
             raise Thrown.at(node, "error.badfetch", "the URI is missing")
         return context.page.resolve(uri, node)

@@ -250,9 +250,11 @@ class Inputs:
     def _grammar(
         self, context: Context, node: Node, owner: Node, page: Page, level: Node
     ) -> Active:
-        uri = node.get("src")
+        uri = node.get("src").strip()
         if "srcexpr" in node.attributes:  # evaluated whenever the grammar listens (2.1, 2)
-            uri = self.content.word(node, "src", context, self.shared.engine.nothing)
+            uri = self.content.word(node, "src", context, self.shared.engine.nothing).strip()
+        if not uri and not node.attributes.keys().isdisjoint(("src", "srcexpr")):
+            raise Thrown.at(node, "error.badfetch", "the URI is missing")
         if uri and not uri.startswith("builtin:"):
             uri = page.resolve(uri, node)
         return Active(self._load(node, page, uri), owner, page, level)

@@ -365,6 +365,7 @@ def test_an_attributes_expression_without_a_value_is_error_semantic(content: str
         ('<submit next="service:keep" namelist="a+a"/>', "error.semantic"),
         ('<goto nextitem=""/>', 'error.badfetch there is no form item ""'),
         ('<goto next=" "/>', "error.badfetch the URI is missing"),
+        ('<data name="d" src=" "/>', "error.badfetch the URI is missing"),
     ],
 )
 def test_names_and_uris_that_are_none_are_events(content: str, event: str) -> None:

@@ -33,6 +33,20 @@ def test_a_uri_that_is_none(tmp_path: Path, body: str, uri: str) -> None:
     assert "app: error." in failure and "app.vxml:1" in failure
 
 
+@pytest.mark.parametrize("written", ['src=""', 'src=" "', "srcexpr=\"''\"", "srcexpr=\"' '\""])
+def test_a_grammar_of_an_empty_uri_is_told_to_lack_it(written: str) -> None:
+    failed = '<catch event="error.badfetch"><log><value expr="_message"/></log><exit/></catch>'
+    [told] = Call(failed + ask(f"<grammar {written}/>")).logs()
+    assert told.endswith("the URI is missing")
+
+
+def test_an_audio_of_null_plays_its_content() -> None:
+    call = Call(
+        '<form><block><audio expr="null">A</audio><audio expr="undefined">B</audio></block></form>'
+    )
+    assert call.play() == ["A"]
+
+
 def test_an_external_grammar_without_a_language_has_the_documents(tmp_path: Path) -> None:
     grammar = (
         '<grammar version="1.0" root="r" xmlns="http://www.w3.org/2001/06/grammar">'
