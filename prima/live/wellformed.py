@@ -63,7 +63,7 @@ def _news(news: News) -> News | None:
         case Sensed():
             return Sensed(_data(news.values))
         case Sees():
-            return Sees(bool(news.visible), _number(news.distance), _number(news.angle))
+            return Sees(_flag(news.visible), _number(news.distance), _number(news.angle))
         case At():
             return _pose(news)
         case Speaks():

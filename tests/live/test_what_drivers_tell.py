@@ -49,6 +49,7 @@ CYCLE.append(CYCLE)
         (Emergency(1), Emergency(True)),  # type: ignore[arg-type]
         (Emergency(np.False_, 1), Emergency(False, True)),  # type: ignore[arg-type]
         (Speaks(np.True_), Speaks(True)),  # type: ignore[arg-type]
+        (Sees(np.False_), Sees(False)),  # type: ignore[arg-type]
     ],
 )
 def test_what_a_driver_tells_is_taken_in_a_form_that_records_can_hold(told: Any, held: Any) -> None:
@@ -91,6 +92,7 @@ def test_what_a_driver_tells_is_taken_in_a_form_that_records_can_hold(told: Any,
         Emergency("no"),  # type: ignore[arg-type]
         Emergency(None),  # type: ignore[arg-type]
         Speaks("begins"),  # type: ignore[arg-type]
+        Sees("no"),  # type: ignore[arg-type]
         "touch.head",
         None,
     ],
