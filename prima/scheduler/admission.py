@@ -109,16 +109,39 @@ def check_number(steps: list[Step], waiting: int) -> None:
     """E3: refuse requests that let too many Commands wait at once, as each is ranked repeatedly.
 
     Args:
-        steps: the request; each step that no other follows counts as one branch.
+        steps: the request; the largest number of its steps beside one another counts.
         waiting: how many of the application's Commands are already waiting.
 
     Raises:
         CommandRefused: there are more than :data:`MOST_AT_ONCE`.
     """
-    branches = len(steps) - len({index for step in steps for index in step.after})
-    if waiting + branches > MOST_AT_ONCE:
+    if waiting + len(steps) > MOST_AT_ONCE and waiting + _width(steps) > MOST_AT_ONCE:
         message = f"At most {MOST_AT_ONCE} Commands of an application wait beside one another."
         raise CommandRefused("error.semantic", message, next(commands_of(steps), None))
+
+
+def _width(steps: list[Step]) -> int:
+    """The largest number of steps none of which follows another.
+
+    It is the number of chains that cover them (Dilworth): a step continues the latest chain
+    whose end comes before it. Sets of steps are the bits of an integer.
+    """
+    ends = 0
+    before: dict[int, int] = {}
+    last = {above: index for index, step in enumerate(steps) for above in step.after}
+    for index, step in enumerate(steps):
+        all_before = 0
+        for above in step.after:
+            all_before |= before[above] | 1 << above
+        for above in step.after:
+            if last[above] == index:
+                before.pop(above, None)
+        if index in last:
+            before[index] = all_before & ends
+        if free := ends & all_before:
+            ends ^= 1 << (free.bit_length() - 1)
+        ends |= 1 << index
+    return ends.bit_count()
 
 
 def commands_of(steps: list[Step]) -> Iterator[Command]:

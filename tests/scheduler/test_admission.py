@@ -8,7 +8,7 @@ import pytest
 
 from prima.language.commands import LETTER_MS, LONGEST_TURN_MS, TABLE_4_2
 from prima.messages import Command, Cue, Group, OpenUnit, Step
-from prima.scheduler.admission import MOST_AT_ONCE, CommandRefused
+from prima.scheduler.admission import MOST_AT_ONCE, CommandRefused, check_number
 from tests.helpers.stage import Stage, ask, chain, command, inserted, move, say
 
 LOUD = dict(TABLE_4_2, speak=replace(TABLE_4_2["speak"], extra=frozenset({"volume"})))
@@ -174,6 +174,39 @@ def test_e3_so_many_commands_wait_beside_one_another_and_no_more() -> None:
     stage.request("ea", say("One more."))
     stage.settle()
     assert stage.told("ea") == ["error.semantic"]
+
+
+def beside(width: int, *, first: bool, last: bool) -> list[Step]:
+    """Branches of two Commands after one Command and before another, where there are such."""
+    start = (0,) if first else ()
+    steps = [Step(say("First."))] * first
+    ends = []
+    for _ in range(width):
+        steps += [Step(say("One."), start), Step(say("Two."), (len(steps),))]
+        ends.append(len(steps) - 1)
+    return steps + [Step(say("Last."), tuple(ends))] * last
+
+
+@pytest.mark.parametrize(
+    ("first", "last"), [(False, False), (False, True), (True, False), (True, True)]
+)
+def test_e3_what_comes_before_and_after_branches_does_not_hide_them(
+    first: bool, last: bool
+) -> None:
+    check_number(beside(MOST_AT_ONCE, first=first, last=last), 0)
+    with pytest.raises(CommandRefused):
+        check_number(beside(MOST_AT_ONCE + 1, first=first, last=last), 0)
+
+
+def test_e3_branches_within_branches_count_together() -> None:
+    halves: list[Step] = []
+    for _ in range(2):
+        at = len(halves)
+        half = beside(MOST_AT_ONCE // 2, first=True, last=True)
+        halves += [Step(one.what, tuple(index + at for index in one.after)) for one in half]
+    check_number(halves, 0)
+    with pytest.raises(CommandRefused):
+        check_number(halves, 1)
 
 
 def test_e6_who_starts_together_with_another_is_beside_it() -> None:
