@@ -45,7 +45,10 @@ def branches(node: Node) -> Iterator[tuple[Node, list[Node | str]]]:
 def dead_content(root: Node, texts: bool = False) -> Iterator[Problem]:
     """Warn of content after what leaves it, once in each branch; ``texts`` says if text is any."""
     for holder in root.walk():
-        if len(holder.content) > 1 and any(one.key in DIVIDED for one in holder.nodes):
+        held = holder.held
+        if not isinstance(held, list):
+            continue  # nothing comes after it
+        if any(isinstance(one, Node) and one.key in DIVIDED for one in held[:-1]):
             for _, part in branches(holder):
                 yield from _dead([one for one in part if isinstance(one, Node) or texts])
 
