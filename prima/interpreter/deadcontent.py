@@ -43,7 +43,7 @@ def branches(node: Node) -> Iterator[tuple[Node, list[Node | str]]]:
 
 
 def dead_content(root: Node, texts: bool = False) -> Iterator[Problem]:
-    """Warn of content after what leaves it, once in each branch; ``texts`` says if text is any."""
+    """Warn of content after what leaves it, once in each branch; with ``texts``, text counts."""
     for holder in root.walk():
         held = holder.held
         if not isinstance(held, list):
@@ -57,14 +57,15 @@ def _dead(part: Iterable[Node | str]) -> Iterator[Problem]:
     for one, behind in pairwise(one for one in part if isinstance(one, Node) or one.strip()):
         if isinstance(one, str) or not _leaves(one):
             continue
-        diagnosis = BEHIND_IF if one.key == "if" else DEAD_CONTENT
         if isinstance(behind, str):
-            place = one.place_behind(behind) or one.place
-            yield diagnosis.at(place, what="Text", leaving=one.tag)
-            return
-        if behind.key:  # not unknown, nor misplaced
-            yield diagnosis.at(behind.place, what=f"<{behind.tag}>", leaving=one.tag)
-            return
+            what, place = "Text", one.place_behind(behind) or one.place
+        elif behind.key:
+            what, place = f"<{behind.tag}>", behind.place
+        else:
+            continue  # it is unknown or misplaced, which is reported
+        diagnosis = BEHIND_IF if one.key == "if" else DEAD_CONTENT
+        yield diagnosis.at(place, what=what, leaving=one.tag)
+        return
 
 
 def _leaves(node: Node) -> bool:

@@ -18,8 +18,9 @@ def nearby(path: Path, name: str, *spans: Span, listed: dict[Path, list[Path]]) 
 
     ``path`` is where the file would be, ``name`` how a document writes that, in the ``spans``.
     """
+    folder, slash, _ = name.rpartition("/")
     other = alike(path, listed)
-    return meant(name.rpartition("/")[0] + "/" + other if other and "/" in name else other, *spans)
+    return meant(f"{folder}{slash}{other}" if other else "", *spans)
 
 
 def beside(folder: Path, name: str) -> str:
