@@ -5,7 +5,7 @@ Code is not run: the effects of ``with`` and ``eval`` are unknown (:attr:`Names.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -66,6 +66,8 @@ class Names:
     """Occurrences of all these names, in the order of the text."""
     opaque: bool = False
     """Whether there may be more names: the code has ``eval``, or is too long to be parsed."""
+    sound: bool = True
+    """Whether the code has no faults that the parser sees."""
 
     @property
     def free(self) -> Mapping[str, int]:
@@ -98,6 +100,14 @@ def _last(code: str, script: bool) -> Names:
     return _names(code, script)
 
 
+def whole_scopes(uses: Sequence[Use]) -> Iterator[str]:
+    """Scopes that code uses as a whole, so that any of their members may be meant."""
+    for scope in OBJECTS:
+        written = sum(use.name == scope and not use.holder for use in uses)
+        if written > sum(use.holder == scope for use in uses):
+            yield scope
+
+
 def bound_names(code: Code, target: Node) -> list[str]:
     """The names that a declaration or a pattern declares, in the order of the text."""
     walk = Walk(code)
@@ -115,7 +125,7 @@ def _names(code: str, script: bool) -> Names:
 
 
 def _of_walk(walk: Walk, script: bool) -> Names:
-    made = Names(set(walk.top.names), called=walk.called, opaque=walk.opaque)
+    made = Names(set(walk.top.names), called=walk.called, opaque=walk.opaque, sound=walk.code.sound)
     for start, name, how, scope in sorted(walk.found, key=lambda one: one[0]):
         if how in OBJECTS:
             made.uses.append(Use(name, start, how, start in walk.given, start in walk.parted))

@@ -49,21 +49,28 @@ class Read(NamedTuple):
 
 def reads(node: Node) -> Iterator[Read]:
     """The variables that an element reads, or changes by their names."""
-    for attribute in node.attributes:
-        if is_code(node, attribute):
-            yield from _in_code(node, attribute, expression_names(node.get(attribute)))
+    for attribute, names in _sound(node):
+        for name, start in names.free.items():
+            at_once = name in names.now
+            yield Read(name, node, attribute, names.now.get(name, start), at_once)
     if node.key == "assign":
         yield from _listed(node, "name")
     elif node.key in LISTING:
         yield from _listed(node, "namelist")
-    elif node.key == "script" and node.attributes.keys().isdisjoint(FILES):
-        yield from _in_code(node, "", script_names(node.own_text))
 
 
-def _in_code(node: Node, attribute: str, names: Names) -> Iterator[Read]:
-    for name, start in names.free.items():
-        at_once = name in names.now
-        yield Read(name, node, attribute, names.now.get(name, start), at_once)
+def _sound(node: Node) -> Iterator[tuple[str, Names]]:
+    """The code of an element without faults, with its attributes (none for a script).
+
+    Code with faults is most likely a text, whose words are not variables.
+    """
+    for attribute, code in node.attributes.items():
+        if is_code(node, attribute) and (names := expression_names(code)).sound:
+            yield attribute, names
+    if node.key == "script" and node.attributes.keys().isdisjoint(FILES):
+        names = script_names(node.own_text)
+        if names.sound:
+            yield "", names
 
 
 def _listed(node: Node, attribute: str) -> Iterator[Read]:
@@ -75,21 +82,14 @@ def _listed(node: Node, attribute: str) -> Iterator[Read]:
 
 def scope_members(node: Node) -> Iterator[Read]:
     """Members of scopes, such as ``document.x``, that must exist."""
-    for attribute, code in node.attributes.items():
-        if is_code(node, attribute):
-            yield from _parted(node, attribute, expression_names(code))
-    if node.key == "script" and node.attributes.keys().isdisjoint(FILES):
-        yield from _parted(node, "", script_names(node.own_text))
+    for attribute, names in _sound(node):
+        for use in names.uses:
+            if use.parted:
+                start = use.start - len(use.holder) - 1
+                yield Read(f"{use.holder}.{use.name}", node, attribute, start)
     changed = {"assign": "name", "clear": "namelist"}.get(node.key, "")
     for whole in LISTED.finditer(node.get(changed)):
         holder, _, rest = whole[0].partition(".")
         name = rest.partition(".")[0]
         if holder in OBJECTS and IDENTIFIER.fullmatch(name):
             yield Read(f"{holder}.{name}", node, changed, whole.start())
-
-
-def _parted(node: Node, attribute: str, names: Names) -> Iterator[Read]:
-    for use in names.uses:
-        if use.parted:
-            start = use.start - len(use.holder) - 1
-            yield Read(f"{use.holder}.{use.name}", node, attribute, start)

@@ -16,7 +16,7 @@ from prima.errors.diagnoses.names import NO_MEMBER, UNDECLARED_VARIABLE
 from prima.markup.spans import Declarations
 from prima.markup.tree import Node
 from prima.script.known import Known, NameScope
-from prima.script.names import Names, Use, expression_names, script_names
+from prima.script.names import Names, Use, expression_names, script_names, whole_scopes
 from prima.script.slips import or_text, value_elsewhere
 from prima.script.walk import OBJECTS
 from prima.voicexml.checks import NAMING, is_code
@@ -236,11 +236,8 @@ class _Look:
 
 def _mentions(uses: list[Use]) -> Iterator[tuple[str, str]]:
     """The members of scopes that some code assigns or tests, and scopes used as a whole."""
-    members = [use for use in uses if use.holder]
-    for scope in OBJECTS:
-        written = sum(use.name == scope and not use.holder for use in uses)
-        if written > sum(use.holder == scope for use in members):
-            yield scope, ""
+    yield from ((scope, "") for scope in whole_scopes(uses))
+    members = (use for use in uses if use.holder)
     yield from ((use.holder, use.name) for use in members if use.declares or not use.parted)
 
 

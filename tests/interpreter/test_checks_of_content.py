@@ -142,3 +142,46 @@ def test_an_assignment_to_a_scope_that_lacks_the_variable_is_warned_of_and_fails
 def test_an_assignment_to_a_scope_with_the_variable_is_not_warned_of(body: str) -> None:
     assert read(f'<form id="m">{body}{ENDS}</form>')[1] == []
     assert not fails(f'<form id="m">{body}</form>')
+
+
+@pytest.mark.parametrize(
+    ("body", "member", "meant"),
+    [
+        ('<var name="who"/><block><log expr="dialog.whom"/></block>', "dialog.whom", "who"),
+        ('<block cond="!document.whom"/>', "document.whom", ""),
+        ('<block><log expr="application.who"/></block>', "application.who", ""),
+        ("<block><script>var a = document.who;</script></block>", "document.who", ""),
+        ('<block><var name="a" expr="[document.who]"/></block>', "document.who", ""),
+    ],
+)
+def test_a_member_that_nothing_declares_is_warned_of_and_undefined(
+    body: str, member: str, meant: str
+) -> None:
+    form = f'<form id="m">{body}{ENDS}</form>'
+    (problem,) = read(form)[1]
+    assert (problem.severity, problem.code) == ("warning", "undeclared-variable")
+    scope, _, name = member.partition(".")
+    says = f'The scope "{scope}" declares no variable "{name}": it is undefined.'
+    assert problem.message == says
+    assert problem.remedy == (f'Did you mean "{meant}"?' if meant else "")
+    head = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="app">'
+    assert problem.place.column == len(head) + form.index(member) + len(scope) + 2
+    bench = Bench(f'<form id="m"><block><log expr="String({member})"/></block>{ENDS}</form>')
+    assert [one["message"] for one in bench.records if one["phase"] == "log"] == ["undefined"]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        '<var name="x"/><block><log expr="dialog.x"/></block>',
+        '<field name="x" type="boolean"><prompt>Is it?</prompt><noinput/></field><block><log expr="dialog.x$"/></block>',
+        '<block><script>dialog.x = 1;</script><log expr="dialog.x"/></block>',
+        "<block><script>document['x'] = 1;</script><log expr=\"document.x\"/></block>",
+        '<block><script>x = 1;</script><log expr="document.x"/></block>',
+        '<block><log expr="application.session.time"/></block>',
+        '<block><var name="document" expr="({})"/><log expr="document.x"/></block>',
+    ],
+)
+def test_a_member_that_something_may_declare_is_not_warned_of(body: str) -> None:
+    told = [one.message for one in read(f'<form id="m">{body}{ENDS}</form>')[1]]
+    assert [one for one in told if "declares no variable" in one] == []

@@ -276,6 +276,20 @@ def test_a_member_of_a_scope_that_nothing_declares_there_is_told(
 
 
 @pytest.mark.parametrize(
+    "content",
+    [
+        '<form><block><log expr="the visitor"/></block></form>',
+        '<form><block><if cond="what is it?"/></block></form>',
+        "<form><script>var a = the visitor;</script></form>",
+        '<form><block><value expr="the document.visitor.name"/></block></form>',
+    ],
+)
+def test_words_of_a_text_in_place_of_code_are_one_mistake(tmp_path: Path, content: str) -> None:
+    (one,) = told(tmp_path, content)
+    assert "bad-expression" in one
+
+
+@pytest.mark.parametrize(
     ("content", "name"),
     [
         ('<var name="a" expr="x"/><var name="x" expr="1"/><form/>', "x"),

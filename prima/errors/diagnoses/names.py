@@ -56,7 +56,8 @@ UNDECLARED_VARIABLE = Diagnosis(
         "document or another scope that is assigned to, or whose own member is read. A "
         "grammar's tag uses a name that no tag of the grammar declares: at run time such an "
         "answer does not match. In VoiceXML and in tags, a variable that typeof tests anywhere "
-        "may be missing. A misspelt part of event.data is undefined."
+        "may be missing. A misspelt part of event.data is undefined; so is in PRIMA's own language "
+        "a member of document, dialog or application that nothing declares."
     ),
     rule="VoiceXML 2.0, 5.1",
 )

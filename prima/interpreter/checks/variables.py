@@ -17,8 +17,8 @@ from prima.interpreter.selection import beginnings
 from prima.markup.spans import Declarations, value_span
 from prima.markup.tree import Node
 from prima.script.globals import HANDLED, IDENTIFIER, RESERVED
-from prima.script.known import Known
-from prima.script.names import Names, expression_names, script_names
+from prima.script.known import Known, NameScope
+from prima.script.names import Names, expression_names, script_names, whole_scopes
 from prima.script.slips import is_bare, or_text, value_elsewhere
 
 PARTS = ("name", "message", "data")
@@ -36,6 +36,8 @@ FIELDS = {
 }
 """What the data of events holds that are raised by the language itself."""
 FIELD = re.compile(r"data\s*\??\.\s*([A-Za-z_$][\w$]*)")
+GIVEN = ("session", "sensor")
+"""The variables of the scope ``application``."""
 SCOPED = ("document", "dialog", "application")
 """Scopes that may prefix the name of a variable."""
 ABSENT = {
@@ -71,6 +73,9 @@ NO_PART = UNDECLARED_VARIABLE.says(
 )
 NO_FIELD = UNDECLARED_VARIABLE.says(
     'The data of {event} has no "{name}"; it has {known}.', severity="warning"
+)
+UNDEFINED = UNDECLARED_VARIABLE.says(
+    'The scope "{scope}" declares no variable "{name}": it is undefined.', severity="warning"
 )
 NO_SENSOR = UNDECLARED_VARIABLE.says(
     "No <watch> is in force here: sensor is there only where one is.",
@@ -157,6 +162,26 @@ class Variables:
             yield from _parts_of_event(expr, names, known, self._handling[id(expr.node)])
         if "sensor" in names.read and not (self._senses or "sensor" in known):
             yield NO_SENSOR.at(place_in(expr, names.read["sensor"]))
+        yield from self._undefined(expr, names)
+
+    def _undefined(self, expr: Expression, names: Names) -> Iterator[Problem]:
+        """Members of scopes that nothing declares anywhere."""
+        for use in names.uses:
+            if not use.holder or use.declares or use.holder in self._whole:
+                continue
+            members = self._members[use.holder]
+            if use.name not in members and (use.holder, use.name) not in self._given_members:
+                place = place_in(expr, use.start)
+                meant = suggestion(use.name, members.written, Span.of(place, use.name))
+                yield UNDEFINED.at(place, meant, scope=use.holder, name=use.name)
+
+    @cached_property
+    def _members(self) -> dict[str, NameScope]:
+        """The variables that each scope may have as members."""
+        every = NameScope(chain.from_iterable(self.facts.known_in(None).scopes))
+        for names in self._names:
+            every |= names.written
+        return {"document": every, "dialog": every, "application": NameScope(GIVEN)}
 
     @cached_property
     def _senses(self) -> bool:
@@ -186,6 +211,7 @@ class Variables:
                 place = place_in(expr, start)
                 every = chain(self._given_at(expr.node), known.written())
                 yield IN_SCRIPT.at(place, _meant(place, name, every), name=name)
+        yield from self._undefined(expr, names)
         yield from _parts_of_event(expr, names, known, self._handling.get(id(expr.node)))
 
     def given(self) -> Iterator[Problem]:
@@ -224,13 +250,21 @@ class Variables:
     @cached_property
     def _given_members(self) -> set[tuple[str, str]]:
         """The variables that code declares in a scope by its name: ``document.x = 1``."""
-        document = self.facts.document
-        names = chain(
-            (expression_names(one.code) for one in document.expressions),
-            map(script_names, document.scripts),
-        )
-        uses = chain.from_iterable(one.uses for one in names)
+        uses = chain.from_iterable(one.uses for one in self._names)
         return {(use.holder, use.name) for use in uses if use.holder and use.declares}
+
+    @cached_property
+    def _whole(self) -> set[str]:
+        """Names of scopes that variables have, or that some code uses as a whole, for any member."""
+        hidden = (scope for scope in SCOPED if scope in self.facts.known_in(None))
+        return {*hidden, *(scope for names in self._names for scope in whole_scopes(names.uses))}
+
+    @property
+    def _names(self) -> Iterator[Names]:
+        """The names in all code."""
+        document = self.facts.document
+        yield from (expression_names(one.code) for one in document.expressions)
+        yield from map(script_names, document.scripts)
 
     def hidden(self) -> Iterator[Problem]:
         """Items of a foreach that have the name of the variable with their array."""
