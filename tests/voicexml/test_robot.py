@@ -205,6 +205,24 @@ def test_a_command_holds_what_a_prompt_holds_and_arguments() -> None:
     assert problems_of(f"<form {P}><block>{said}{waves}</block></form>") == []
 
 
+@pytest.mark.parametrize(
+    ("command", "code"),
+    [
+        ("speak", "nothing-to-say"),
+        ("topological-move", "missing-attribute"),
+        ("turn", "missing-attribute"),
+        ("stop", None),
+    ],
+)
+def test_a_command_by_its_type_is_checked_as_one_by_its_name(
+    command: str, code: str | None
+) -> None:
+    for written in (f"<p:{command}/>", f"<p:command type='{command}'/>"):
+        body = vxml(f"<form {P}><block>{written}</block></form>").encode()
+        found = read_page("d.vxml", "d.vxml", body).warnings()
+        assert [one.code for one in found] == ([code] if code else [])
+
+
 def test_branches_that_share_a_device_are_told() -> None:
     body = (
         "<p:par><p:speak>a</p:speak><p:seq><p:turn angle='1'/><p:speak>b</p:speak></p:seq></p:par>"

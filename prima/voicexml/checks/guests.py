@@ -15,7 +15,7 @@ from prima.language.arguments import excluding_arguments
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.spans import name_spans, similar_attribute, value_span
 from prima.markup.tree import Node
-from prima.voicexml.arranging import arguments_of, check_arranged
+from prima.voicexml.arranging import arguments_of, check_arranged, type_of
 from prima.voicexml.elements import HANDLERS, handler_names
 from prima.voicexml.vocabulary import COMMANDS, HOLDING, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
@@ -102,8 +102,8 @@ def check_commands(
 
 def _asked_for(node: Node) -> str:
     """The Command of Table 4.2 for which an element asks, or nothing."""
-    if node.namespace == PRIMA_NAMESPACE and node.tag in TABLE_4_2:
-        return node.tag
+    if node.namespace == PRIMA_NAMESPACE and type_of(node) in TABLE_4_2:
+        return type_of(node)
     if node.namespace != NAMESPACE:
         return ""
     if node.tag == "block":

@@ -20,7 +20,7 @@ from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.shared import IsolatedSyntax, syntax
 from prima.script.slips import code_remedy
-from prima.voicexml.arranging import UNIT, items_in, parts_of
+from prima.voicexml.arranging import UNIT, items_in, parts_of, type_of
 from prima.voicexml.checks.attributes import bad_value, fits, instead_of
 from prima.voicexml.checks.conditions import check_conditions
 from prima.voicexml.checks.failing import check_failing
@@ -120,8 +120,8 @@ def _check_node(node: Node, lang: str) -> Iterator[Problem]:
         yield NO_EFFECT.at(node.place, tag=node.tag)  # SSML 1.0, 3.2.1 and 3.2.4
     yield from check_name(node)
     yield from _value_problems(node)
-    if node.namespace == PRIMA_NAMESPACE and node.tag in TABLE_4_2:
-        yield from command_problems(node, TABLE_4_2[node.tag])
+    if node.namespace == PRIMA_NAMESPACE and type_of(node) in TABLE_4_2:
+        yield from command_problems(node, TABLE_4_2[type_of(node)])
     if node.key == "property":
         yield from _property_problems(node)
     if node.key == "assign":
