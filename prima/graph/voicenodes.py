@@ -6,6 +6,7 @@ from prima.graph.labels import ASKED, LEAVES_USER, sayings
 from prima.graph.model import clean
 from prima.graph.throws import Taker
 from prima.graph.transitions import Branches
+from prima.interpreter.acts import type_of
 from prima.interpreter.deadcontent import branches
 from prima.markup.tree import Node
 from prima.voicexml.arranging import is_unit, parts_of
@@ -52,7 +53,7 @@ def divided(node: Node) -> Branches[Node]:
 
 def leaves_user(node: Node) -> bool:
     """Whether an element is a Command of the robot that leaves the user."""
-    return node.namespace == PRIMA_NAMESPACE and node.tag in LEAVES_USER
+    return node.namespace == PRIMA_NAMESPACE and type_of(node) in LEAVES_USER
 
 
 def leaves_at_its_end(form: Node) -> bool:

@@ -28,6 +28,7 @@ from prima.graph.voicenodes import (
     said_by,
     takers,
 )
+from prima.interpreter.acts import type_of
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.voicexml.arranging import is_unit, parts_of
@@ -250,7 +251,7 @@ def _describe(box: Box, dialog: Node) -> None:
     questions = list(filter(None, map(asked, asking)))
     blocks = filter(None, (said(one) for one in parts if one.tag == "block"))
     first = "" if asking else next(blocks, "")
-    box.notes = notes(questions, first, [TABLE_4_2[one.tag].title for one in leaving[:1]])
+    box.notes = notes(questions, first, [TABLE_4_2[type_of(one)].title for one in leaving[:1]])
 
 
 def _marks(dialog: Node, parts: list[Node], asks: bool, leaves: bool) -> list[str]:

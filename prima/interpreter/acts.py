@@ -36,6 +36,17 @@ class Expression:
     attribute: str = "expr"
 
 
+def type_of(command: Node) -> str:
+    """The type of a Command's element."""
+    return command.get("type") if command.tag == "command" else command.tag
+
+
+def holder_of(command: Node, name: str) -> tuple[Node, str]:
+    """The element and its attribute that have the value of a Command's argument: a param, or itself."""
+    param = next((one for one in command.all("param") if one.get("name") == name), None)
+    return (command, name) if param is None else (param, "value")
+
+
 @dataclass(slots=True, eq=False)
 class CommandTemplate:
     """A Command element; arguments are values or expressions."""

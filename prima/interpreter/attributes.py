@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from prima.errors import Diagnosis, Hint, Problem
 from prima.errors.diagnosis import NO_HINT
-from prima.interpreter.acts import Expression, Pause, Text, pauses_in
+from prima.interpreter.acts import Expression, Pause, Text, pauses_in, type_of
 from prima.interpreter.diagnoses import (
     BEYOND,
     HAS_BOTH,
@@ -195,7 +195,7 @@ class AttributeReader:
     def is_now(node: Node) -> bool:
         """Whether a Command is wanted now, or the first one of several (O2)."""
         node = leading(node)
-        row = TABLE_4_2.get(node.tag)
+        row = TABLE_4_2.get(type_of(node))
         return node.get("order") == "now" or (row is not None and row.now)
 
     def arguments(self, node: Node, row: CommandType) -> dict[str, Json | Expression]:

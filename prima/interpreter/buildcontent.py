@@ -28,6 +28,7 @@ from prima.interpreter.acts import (
     Throw,
     arrange,
     run_commands,
+    type_of,
 )
 from prima.interpreter.attributes import AttributeReader
 from prima.interpreter.diagnoses import (
@@ -184,7 +185,7 @@ class ContentBuilder(AttributeReader):
 
     def command(self, node: Node) -> CommandTemplate:
         """A Command element."""
-        name = node.get("type") if node.tag == "command" else node.tag
+        name = type_of(node)
         row = TABLE_4_2.get(name)
         args = self.arguments(node, row) if row is not None else {}
         content = self.text(node) or None

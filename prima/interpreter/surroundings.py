@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from prima.errors import Hint, Problem, Span, meant, one_of, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_NAME
 from prima.grammar.text import fold
-from prima.interpreter.acts import Declare, Pause, Text
+from prima.interpreter.acts import Declare, Pause, Text, holder_of
 from prima.interpreter.elements import Document, Field, all_items, document_commands
 from prima.interpreter.events import event_place, handlers_of
-from prima.language.commands import WRITTEN
+from prima.language.commands import TABLE_4_2, WRITTEN
 from prima.markup.spans import instead, value_span
 from prima.markup.tree import Node
 
@@ -46,8 +46,10 @@ def check_surroundings(document: Document, names: Surroundings) -> list[Problem]
     problems = list(_voices(document.node, names.voices)) if names.voices else []
     variables = _variables(document)
     for command in document_commands(document):
-        for name, value in command.args.items():
-            if name in PLACED and isinstance(value, str):
+        row = TABLE_4_2.get(command.type)
+        placed = PLACED.keys() & row.arguments.keys() if row is not None else ()
+        for name, value in (*command.args.items(), *command.extra):
+            if name in placed and isinstance(value, str):
                 problems += check_name(command.node, name, value, names, variables)
     for handler in handlers_of(document):
         for event in handler.events:
@@ -97,12 +99,13 @@ def check_name(
     if value.strip() in known:
         return []
     whose = "The robot knows" if what == "gesture" else "The world has"
-    hint = nearest(value, known, *value_span(node, name))
+    holder, attribute = holder_of(node, name)
+    hint = nearest(value, known, *value_span(holder, attribute))
     if value in variables:
-        hint = instead(
-            f'It is a variable: write {name}-expr="{value}".', node, name, f"{name}-expr", value
-        )
-    return [NOT_THERE.at(node.attribute_place(name), hint, whose=whose, what=what, name=value)]
+        expr = "expr" if attribute == "value" else f"{name}-expr"
+        hint = instead(f'It is a variable: write {expr}="{value}".', holder, attribute, expr, value)
+    place = holder.attribute_place(attribute)
+    return [NOT_THERE.at(place, hint, whose=whose, what=what, name=value)]
 
 
 def nearest(word: str, known: Collection[str], *spans: Span) -> Hint:

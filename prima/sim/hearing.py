@@ -8,6 +8,7 @@ from itertools import chain, product
 from prima.devices.profile import Profile
 from prima.errors import Hint, Place, Problem, Span, meant, suggestion
 from prima.errors.diagnoses.names import UNKNOWN_EVENT, UNSUPPORTED_COMMAND
+from prima.interpreter.acts import type_of
 from prima.interpreter.elements import Document
 from prima.interpreter.events import STANDARD, KnownEvents, event_place, near
 from prima.interpreter.selection import beginnings
@@ -32,6 +33,7 @@ from prima.sim.expected import COMMANDS, check_values
 from prima.sim.map import Map
 from prima.sim.sensed import check_sensors
 from prima.sim.world import room_beside
+from prima.voicexml.arranging import arguments_of
 from prima.voicexml.caught import caught_in, thrown_in
 from prima.voicexml.pages import Pages, spoken_in
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
@@ -153,10 +155,11 @@ def _awaited(nodes: list[Node]) -> Iterator[tuple[Node, str, str]]:
 def _in_voicexml(root: Node, names: Surroundings) -> Iterator[Problem]:
     """Unknown names in a VoiceXML document: in PRIMA's Commands, and touch sensors."""
     commands = (one for one in root.walk() if one.namespace == PRIMA_NAMESPACE)
-    for node in [one for one in commands if one.tag in TABLE_4_2]:
-        placed = PLACED.keys() & TABLE_4_2[node.tag].arguments.keys()
-        for name in [one for one in node.attributes if one in placed]:
-            yield from check_name(node, name, node.get(name), names)
+    for node in [one for one in commands if type_of(one) in TABLE_4_2]:
+        row = TABLE_4_2[type_of(node)]
+        for name, value in arguments_of(node, row).items():
+            if name in PLACED.keys() & row.arguments.keys() and value is not None:
+                yield from check_name(node, name, value, names)
     thrown = {*thrown_in(root)}
     for node, event in caught_in(root):
         if event not in thrown:

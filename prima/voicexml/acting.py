@@ -23,12 +23,13 @@ from prima.interpreter.acts import (
     Text,
     Throw,
     arrange,
+    type_of,
 )
 from prima.interpreter.units import ARRANGING
 from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.messages import Json
-from prima.voicexml.arranging import arguments_of, longest_of, type_of
+from prima.voicexml.arranging import arguments_of, longest_of
 from prima.voicexml.cues import break_ms
 from prima.voicexml.elements import SILENT, says_instead
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, SPOKEN

@@ -11,7 +11,7 @@ from prima.errors.diagnoses.behaviour import SHARED_DEVICE
 from prima.errors.diagnoses.reading import TOO_DEEP
 from prima.errors.diagnoses.structure import EMPTY, MISPLACED_ELEMENT, STRAY_TEXT, UNKNOWN_ATTRIBUTE
 from prima.errors.diagnoses.values import BAD_VALUE
-from prima.interpreter.acts import CommandTemplate, arrange
+from prima.interpreter.acts import CommandTemplate, arrange, type_of
 from prima.interpreter.units import (
     ARRANGING,
     LONGEST_UNIT_MS,
@@ -89,11 +89,6 @@ def holds(item: Node, name: str) -> bool:
 def holds_inside(item: Node, name: str) -> bool:
     """Whether a form item is a unit around the one that has a name."""
     return is_unit(item) and any(one.get("name") == name for one in item.nodes)
-
-
-def type_of(command: Node) -> str:
-    """The type of a Command of PRIMA's namespace."""
-    return command.get("type") if command.tag == "command" else command.tag
 
 
 def arguments_of(command: Node, row: CommandType | None) -> dict[str, str | None]:
@@ -272,7 +267,7 @@ def _fits(child: Node, node: Node, problems: list[Problem]) -> bool:
 def _check_now(node: Node, problems: list[Problem]) -> None:
     """O2: a Command that is wanted now waits for nothing, so it must come first."""
     for command in (leading(one) for one, _ in arrange(node.nodes, lambda one: one)[1:]):
-        row = TABLE_4_2.get(command.tag) if command.namespace == PRIMA_NAMESPACE else None
+        row = TABLE_4_2.get(type_of(command)) if command.namespace == PRIMA_NAMESPACE else None
         if row is not None and row.now:
             problems.append(now_inside(command, "p:"))
 

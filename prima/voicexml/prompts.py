@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from urllib.parse import urldefrag
 
-from prima.interpreter.acts import arrange
+from prima.interpreter.acts import arrange, type_of
 from prima.interpreter.places import source
 from prima.interpreter.transfers import Thrown
 from prima.interpreter.units import ARRANGING
@@ -13,7 +13,7 @@ from prima.language.commands import TABLE_4_2
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Group, Json, Step
 from prima.script.evaluation import Scope
-from prima.voicexml.arranging import Arranged, longest_of, type_of
+from prima.voicexml.arranging import Arranged, longest_of
 from prima.voicexml.cues import MAX_NAME
 from prima.voicexml.document import FetchError, Page, of_web
 from prima.voicexml.elements import numbered, says_instead, words_of

@@ -206,6 +206,7 @@ def test_a_form_that_goes_to_itself_lets_others_in_by_a_pause(content: str, told
         ('<form id="a"><block><iu><speak>x</speak><tracking-human/></iu></block></form>', "not-in-unit"),
         ('<form id="a"><iu><block><topological-move to="x"/></block></iu></form>', "not-in-unit"),
         ('<form id="a"><block><par><speak>x</speak><stop-moving/></par></block></form>', "now-inside"),
+        ('<form id="a"><block><seq><speak>x</speak><command type="stop-moving"/></seq></block></form>', "now-inside"),
         ('<form id="a"><block><if cond="1"><else/><elseif cond="1"/></if></block></form>', "after-else"),
         ('<form id="a"><field name="x" type="text"/><block name="x"/></form>', "duplicate-name"),
         ('<form id="a"><field name="x"><grammar><ruleref uri="#no"/></grammar></field></form>', "no-such-rule"),

@@ -404,6 +404,34 @@ def test_a_place_named_by_a_variable_is_told_to_be_an_expression(tmp_path: Path)
     assert "variable" not in third.remedy
 
 
+BLOCK = "<form id='f'><block>{}<exit/></block></form>"
+GUESTS = VXML.format(' xmlns:p="urn:prima:dialogue:1"', BLOCK)
+HEAD = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a">'
+TO = '<param name="to" value="aisel"/>'
+
+
+@pytest.mark.parametrize(
+    ("name", "document", "command"),
+    [
+        ("a.xml", f"{HEAD}{BLOCK}</prima>", f'<command type="topological-move">{TO}</command>'),
+        ("a.vxml", GUESTS, f'<p:command type="topological-move">{TO}</p:command>'),
+        ("a.vxml", GUESTS, f"<p:topological-move>{TO}</p:topological-move>"),
+    ],
+)
+def test_a_place_in_a_param_is_told_there(
+    name: str, document: str, command: str, tmp_path: Path
+) -> None:
+    text = document.format(command)
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    (tmp_path / "s.xml").write_text(SCENARIO.split("  <robot")[0].format(name, "") + "</scenario>")
+    (one,) = [one for one in api.validate([tmp_path / "s.xml"]) if one.code == "no-such-name"]
+    assert (one.message, one.remedy) == ('The world has no place "aisel".', 'Did you mean "aisle"?')
+    line = text.splitlines()[one.place.line - 1]
+    assert line[one.place.column - 1 :].startswith('aisel"/>')
+    [edit] = one.fixes[0].edits
+    assert (edit.span[:2], edit.text) == ((one.place.line, one.place.column), "aisle")
+
+
 @pytest.mark.parametrize(
     ("read", "told"),
     [

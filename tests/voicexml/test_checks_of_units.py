@@ -97,6 +97,8 @@ def test_a_command_wanted_now_stands_first(arranging: str) -> None:
     assert problem.startswith(
         "now-inside <p:stop-moving> is wanted now; it is not allowed in a <p:par>"
     )
+    [problem] = told("<p:speak>a</p:speak><p:command type='stop-moving'/>")
+    assert problem.startswith("now-inside <p:command> is wanted now")
 
 
 def test_a_roots_handler_that_a_unit_cannot_have_is_warned_of(tmp_path: Path) -> None:

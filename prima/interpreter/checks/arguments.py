@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from prima.errors import Problem
 from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE, STRAY_TEXT
 from prima.errors.diagnoses.values import BAD_VALUE, OUT_OF_RANGE
+from prima.interpreter.acts import holder_of
 from prima.language.arguments import check_argument, missing_argument
 from prima.language.commands import Argument, CommandType
 from prima.language.values import BadValue
@@ -51,9 +52,8 @@ def _lacking(row: CommandType, given: Mapping[str, object]) -> str:
 
 
 def _argument(node: Node, name: str, argument: Argument, text: str) -> Iterator[Problem]:
-    """The problem of a motion argument's value, in a param or an attribute of the element."""
-    param = next((one for one in node.all("param") if one.get("name") == name), None)
-    holder, attribute = (node, name) if param is None else (param, "value")
+    """The problem of a motion argument's value."""
+    holder, attribute = holder_of(node, name)
     place = holder.attribute_place(attribute)
     try:
         check_argument(name, argument, text)

@@ -8,6 +8,7 @@ from prima.errors import Problem, few, suggestion
 from prima.errors.diagnoses.names import UNSUPPORTED_COMMAND
 from prima.errors.diagnoses.structure import MISPLACED_ELEMENT, UNKNOWN_ATTRIBUTE, UNKNOWN_ELEMENT
 from prima.errors.diagnoses.values import EXCLUSIVE, NOTHING_TO_SAY
+from prima.interpreter.acts import type_of
 from prima.interpreter.checks import given_to
 from prima.interpreter.checks.robot import Ability
 from prima.interpreter.units import ARRANGING, QUESTION
@@ -15,7 +16,7 @@ from prima.language.arguments import excluding_arguments
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.spans import name_spans, similar_attribute, value_span
 from prima.markup.tree import Node
-from prima.voicexml.arranging import arguments_of, check_arranged, type_of
+from prima.voicexml.arranging import arguments_of, check_arranged
 from prima.voicexml.elements import HANDLERS, handler_names
 from prima.voicexml.vocabulary import COMMANDS, HOLDING, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 

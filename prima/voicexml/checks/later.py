@@ -10,6 +10,7 @@ from prima.errors import Hint, Problem, meant, nearest_word, one_of, suggestion
 from prima.errors.diagnoses.names import BAD_EXPRESSION, NO_SUCH_FORM, NO_SUCH_ITEM, NO_SUCH_NAME
 from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE
 from prima.errors.diagnoses.values import ASKED_LATER, BAD_VALUE, EXCLUSIVE
+from prima.interpreter.acts import type_of
 from prima.interpreter.deadcontent import dead_content
 from prima.interpreter.steps import no_step
 from prima.language.commands import TABLE_4_2
@@ -20,7 +21,7 @@ from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.shared import IsolatedSyntax, syntax
 from prima.script.slips import code_remedy
-from prima.voicexml.arranging import UNIT, items_in, parts_of, type_of
+from prima.voicexml.arranging import UNIT, items_in, parts_of
 from prima.voicexml.checks.attributes import bad_value, fits, instead_of
 from prima.voicexml.checks.conditions import check_conditions
 from prima.voicexml.checks.failing import check_failing
