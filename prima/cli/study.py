@@ -5,14 +5,14 @@ from __future__ import annotations
 import click
 from click.exceptions import Exit
 
-from prima.cli.options import PathName, formats_option
+from prima.cli.options import PathName, formats_option, policy_option
 from prima.cli.printing import print_json, put, write_for_programs
 from prima.cli.progress import show_count
 
 
 @click.command()
 @click.argument("scenarios", nargs=-1, type=PathName())
-@click.option("--policy", "policies", multiple=True, help="Only this policy; may be repeated.")
+@policy_option("Only this policy; may be repeated: {}.", many=True)
 @formats_option("text", "json", "csv")
 def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> None:
     """Run situations under every policy and measure the effects on units, streams and channel.

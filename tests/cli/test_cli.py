@@ -456,6 +456,7 @@ def test_a_voicexml_document_may_be_of_either_kind() -> None:
     [
         ("prima run --policy f", ["fifo", "fair", "fixed"]),
         ("prima diff --policy pri", ["prima"]),
+        ("prima study --policy fi", ["fifo", "fixed"]),
         ("prima export a.jsonl --to te", ["textgrid"]),
         ("prima explain undec", ["undeclared-variable"]),
     ],
