@@ -161,11 +161,12 @@ def _vary(varied: tuple[str, ...]) -> dict[str, str]:
     vary: dict[str, str] = {}
     for text in varied:
         path, equals, levels = text.partition("=")
+        path = path.strip()
         if not equals or not path:
             raise UsageError(f'--vary "{text}": write PATH=LEVELS, as "person.speed=0.5|1".')
         if path in vary:
             raise UsageError(f"--vary: {path} is there twice; join the levels with |.")
-        vary[path.strip()] = levels
+        vary[path] = levels
     return vary
 
 

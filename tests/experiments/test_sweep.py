@@ -278,6 +278,16 @@ def test_the_function_of_python_gives_the_same_table() -> None:
         package.sweep([])
 
 
+def test_a_path_is_varied_once() -> None:
+    """The later levels would replace the earlier ones."""
+    for again in ("touch", " touch", "touch "):
+        done = prima("sweep", "visit.xml", "--vary", "touch=1s", "--vary", f"{again}=2s")
+        told = "prima: --vary: touch is there twice; join the levels with |.\n"
+        assert (done.returncode, done.stderr) == (2, told)
+    done = prima("sweep", "visit.xml", "--vary", " =2s")
+    assert done.returncode == 2 and "write PATH=LEVELS" in done.stderr
+
+
 def test_a_scenario_is_named_once() -> None:
     """Its runs would count twice, in every mean and test."""
     for again, also in (("visit.xml", ""), ("./visit.xml", ', as "visit.xml"')):
