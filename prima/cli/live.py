@@ -163,13 +163,18 @@ def live(
 def _tell_unused(context: click.Context) -> None:
     """Tell what is given beside --check, which has no effect."""
     given = [
-        one.opts[-1] if isinstance(one, click.Option) else one.human_readable_name
+        _long_name(one) if isinstance(one, click.Option) else one.human_readable_name
         for one in context.command.params
         if context.get_parameter_source(one.name or "") is ParameterSource.COMMANDLINE
         and one.name not in FOR_CHECKS
     ]
     if given:
         tell(f"prima: --check tries the robot alone; it ignores {', '.join(given)}.")
+
+
+def _long_name(option: click.Option) -> str:
+    """An option's first name that is a word."""
+    return next(name for name in option.opts if name.startswith("--"))
 
 
 def _run(visit: Visit, why: bool, as_json: bool) -> None:

@@ -307,8 +307,8 @@ def test_a_command_that_no_driver_carries_out_is_told_before_it_fails(
     assert before is not None, ran.stderr
     assert told in before[1]
     assert (ran.returncode, told in ran.stderr.partition(before[0])[2]) == (3, True)
-    checked = live(stage, drivers, "--check")
-    assert "prima: --check tries the robot alone; it ignores --ea.\n" in checked.stderr
+    checked = live(stage, drivers, "--check", "--why")
+    assert "prima: --check tries the robot alone; it ignores --ea, --why.\n" in checked.stderr
     assert re.search(rf"FAILS +turn +no driver carries it out: {re.escape(told)}", checked.stdout)
 
 
