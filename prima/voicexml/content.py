@@ -127,18 +127,14 @@ class Content(Speaker):
         self, scope: Scope, name: str, node: Node, attribute: str, context: Context, local: Scope
     ) -> None:
         """Give a variable of a scope the value of an expression."""
-        try:
+        with self.failing(node, attribute):
             self.engine.assign(scope, name, self.code(node, attribute), context.scopes(local))
-        except ScriptError as error:
-            raise self.failure(error, node, attribute) from None
 
     def assign(self, node: Node, context: Context, local: Scope) -> None:
         """Give a declared variable a value (5.3.2)."""
-        try:
+        with self.failing(node, "expr"):
             code = self.code(node, "expr")
             self.engine.assign_declared(node.get("name"), code, context.scopes(local))
-        except ScriptError as error:
-            raise self.failure(error, node, "expr") from None
 
     def clear(self, node: Node, context: Context, local: Scope) -> None:
         """Undefine variables, and reset what counts visits of form items (5.3.3)."""
@@ -154,10 +150,8 @@ class Content(Speaker):
             self.forget(item, context)
         for whole in names:
             scope, name = self._declared(node, whole, context, local)
-            try:
+            with self.failing(node, "namelist"):  # as the session's do
                 self.engine.unset(scope, name)
-            except ScriptError as error:  # the session's
-                raise self.failure(error, node, "namelist") from None
             for item in named[name] if scope is context.dialog else ():
                 self.forget(item, context)
 
@@ -184,11 +178,9 @@ class Content(Speaker):
         """Variables as plain data."""
         found: dict[str, Json] = {}
         for name in names:
-            try:
+            with self.failing(node, "namelist"):
                 check_variable(name)
                 found[name] = self.engine.value(name, context.scopes(local))
-            except ScriptError as error:
-                raise self.failure(error, node, "namelist") from None
             self.shared.app.count_value(found[name], node)
         return found
 
@@ -241,12 +233,10 @@ class Content(Speaker):
             raise Thrown.at(node, "error.semantic", "there is no subdialog to return from")
         values = self.engine.scope()
         for name in node.get("namelist").split():
-            try:
-                self.shared.app.count_step(node)
+            self.shared.app.count_step(node)
+            with self.failing(node, "namelist"):
                 self.engine.assign(values, name, name, context.scopes(local))
                 self.engine.detach(values, name)
-            except ScriptError as error:
-                raise self.failure(error, node, "namelist") from None
         event = self.event(node, context, local)
         message = self.word(node, "message", context, local)
         raise GoBack(values, event, message, is_worded(node))
@@ -296,12 +286,10 @@ class Content(Speaker):
             raise Thrown.at(node, "error.noauthorization", message)
         held = self.engine.scope({"tree": tree})
         nothing = self.engine.nothing
-        try:
+        with self.failing(node, "src"):
             self.engine.put(held, "dom", self._dom())
             scopes = (nothing, nothing, nothing, nothing, held)
             self.engine.assign(scope, node.get("name"), "dom.whole(tree)", scopes)
-        except ScriptError as error:
-            raise self.failure(error, node, "src") from None
 
     def _dom(self) -> Scope:
         """The factory of documents; its classes exist once there is a document (2.1, D)."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from prima.interpreter.content import MAX_REPEATS
 from prima.interpreter.places import short, source
 from prima.interpreter.transfers import Thrown, failure
@@ -60,25 +63,29 @@ class VoiceEvaluator:
         code = node.get(attribute) if attribute else node.tag
         return failure(error, code, short(node.code_place(attribute, line, column)))
 
+    @contextmanager
+    def failing(self, node: Node, attribute: str) -> Iterator[None]:
+        """Raise the failure of what the engine evaluates meanwhile, by :meth:`failure`."""
+        try:
+            yield
+        except ScriptError as error:
+            raise self.failure(error, node, attribute) from None
+
     def code(self, node: Node, attribute: str) -> str:
         """An attribute's expression; several statements, as other platforms take them, give one."""
         return self.engine.lenient(node.get(attribute))
 
     def value(self, node: Node, attribute: str, context: Context, local: Scope) -> Json:
         """An attribute's expression as plain data."""
-        try:
+        with self.failing(node, attribute):
             return self.engine.value(self.code(node, attribute), context.scopes(local))
-        except ScriptError as error:
-            raise self.failure(error, node, attribute) from None
 
     def holds(self, node: Node, context: Context, local: Scope) -> bool:
         """An element's condition; one without holds."""
         if "cond" not in node.attributes:
             return True
-        try:
+        with self.failing(node, "cond"):
             found = self.engine.condition(node.get("cond"), context.scopes(local))
-        except ScriptError as error:
-            raise self.failure(error, node, "cond") from None
         self.shared.app.note(node, "true" if found else "false")
         return found
 
@@ -119,21 +126,17 @@ class VoiceEvaluator:
     def said(self, node: Node, attribute: str, how: str, context: Context, local: Scope) -> Json:
         """Apply a function of the engine to the value of an attribute's expression."""
         code = self.code(node, attribute)
-        try:
+        with self.failing(node, attribute):
             self.engine.compile(code)  # code that does not compile is reported at its own place
             return self.engine.value(f"({how})(({code}\n))", context.scopes(local))
-        except ScriptError as error:
-            raise self.failure(error, node, attribute) from None
 
     def elements(self, node: Node, context: Context, local: Scope) -> list[Json]:
         """The elements of a foreach's array, as values of the engine."""
         self.check_name(node, "item")
-        try:
+        with self.failing(node, "array"):
             found = self.engine.elements(
                 self.code(node, "array"), context.scopes(local), MAX_REPEATS
             )
-        except ScriptError as error:
-            raise self.failure(error, node, "array") from None
         for _ in found:
             self.shared.app.count_step(node)
         return found
@@ -148,8 +151,6 @@ class VoiceEvaluator:
     def text(self, node: Node, context: Context, local: Scope) -> str:
         """The text of a value (4.1.4)."""
         code, scopes = self.code(node, "expr"), context.scopes(local)
-        try:
+        with self.failing(node, "expr"):
             self.engine.compile(code)  # code that does not compile is reported at its own place
             return self.engine.text(f"({SHOWN})(({code}\n))", scopes)
-        except ScriptError as error:
-            raise self.failure(error, node, "expr") from None
