@@ -8,16 +8,14 @@ is :mod:`prima.interpreter.form`; how it finds handlers, :mod:`prima.interpreter
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 
 from prima.grammar.answers import Answers
 from prima.interpreter.acts import SendOut
-from prima.interpreter.content import Executor
-from prima.interpreter.elements import Document, Field, Form, Link, Unit, Watch
-from prima.interpreter.form import Algorithm, confidence_level
+from prima.interpreter.elements import Field, Form, Link, Unit, Watch
+from prima.interpreter.form import confidence_level
 from prima.interpreter.frame import Fiber, Frame, GoForm
-from prima.interpreter.handling import Handling
 from prima.interpreter.places import source
 from prima.interpreter.sensors import NOTHING_READ, sensors_read
 from prima.interpreter.states import States, Timer
@@ -39,24 +37,12 @@ from prima.messages import (
     Understood,
 )
 from prima.script.evaluation import ScriptError
-from prima.script.isolated import Engines
 
 MAX_TIMERS = 256
 
 
 class Interpreter(States):
     """Runs one document."""
-
-    def __init__(
-        self,
-        document: Document,
-        arguments: Mapping[str, frozenset[str]] | None = None,
-        engines: Engines | None = None,
-    ) -> None:
-        super().__init__(document, arguments, engines)
-        self.execute = Executor(self)
-        self.handling = Handling(self)
-        self.algorithm = Algorithm(self)
 
     def start(self, now: int) -> None:
         """Begin with the first form."""

@@ -56,6 +56,9 @@ class States(Owner):
         self.document = document
         self.arguments = arguments or {}
         super().__init__(document.id, document.kind, evaluator_of(document, engines or Engines()))
+        self.execute = Executor(self)
+        self.handling = Handling(self)
+        self.algorithm = Algorithm(self)
         self.application = self.engine.named("application")
         self.visits.append(ElementVisit(self.name, 0, "document", document.node, document.file))
         self.waiting: dict[int, Fiber] = {}
