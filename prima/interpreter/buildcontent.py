@@ -31,6 +31,7 @@ from prima.interpreter.acts import (
     type_of,
 )
 from prima.interpreter.attributes import AttributeReader
+from prima.interpreter.deadcontent import branches
 from prima.interpreter.diagnoses import (
     BEHIND_ELSE,
     EMPTY_UNIT,
@@ -252,20 +253,13 @@ class ContentBuilder(AttributeReader):
 
     def condition(self, node: Node) -> If:
         """An if, divided by its elseif and else."""
-        branches: list[tuple[Expression | None, tuple[Act, ...]]] = []
-        cond: Expression | None = self.code(node.get("cond"), node, "cond")
-        part: list[Node] = []
-        for child in node.nodes:
-            if child.tag not in ("elseif", "else"):
-                part.append(child)
-                continue
-            if cond is None:
-                self.problem(BEHIND_ELSE, child, tag=child.tag)
-            branches.append((cond, self.acts(part)))
-            part = []
-            cond = self.code(child.get("cond"), child, "cond") if child.tag == "elseif" else None
-        branches.append((cond, self.acts(part)))
-        return If(tuple(branches), node)
+        made: list[tuple[Expression | None, tuple[Act, ...]]] = []
+        for head, part in branches(node):
+            if made and made[-1][0] is None:
+                self.problem(BEHIND_ELSE, head, tag=head.tag)
+            cond = None if head.tag == "else" else self.code(head.get("cond"), head, "cond")
+            made.append((cond, self.acts([one for one in part if isinstance(one, Node)])))
+        return If(tuple(made), node)
 
     def goto(self, node: Node) -> Goto:
         """A goto, to a form or to an item."""
