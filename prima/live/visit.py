@@ -6,9 +6,9 @@ import asyncio
 import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import partial
 
 from prima.devices.loop import Loop
 from prima.devices.profile import Profile
@@ -27,6 +27,7 @@ from prima.live.redaction import Redactor
 from prima.live.services import LiveServices
 from prima.live.shell import LATE_MS, Shell
 from prima.live.signals import handling_signals, heeding_signals
+from prima.live.threads import call_in
 from prima.loading import Loaded
 from prima.loading.heads import chosen_policy, run_record
 from prima.loading.reading import STAGE
@@ -147,14 +148,7 @@ class Visit:
 
     async def _run(self, warn: Callable[[str], None]) -> None:
         shell = Shell(self.loop, self.clock, warn, self.settings.late)
-
-        running = asyncio.get_running_loop()
-
-        def stop() -> None:
-            with suppress(RuntimeError):  # the run is over
-                running.call_soon_threadsafe(shell.stop)
-
-        self._stop = stop
+        self._stop = partial(call_in, asyncio.get_running_loop(), shell.stop)
         with heeding_signals(self.stop):
             if self.stopped:
                 return
