@@ -11,11 +11,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from prima.errors import RunError, UsageError
-from prima.journal import replay_instants
 from prima.loading.files import read_bytes
 from prima.loading.writing import locked
 from prima.messages import Emergency, Inbound, Json, Narrated, Order, Record
-from prima.session import Session
 from prima.transcript.lines import check_head, finished, line, read_lines
 
 CHANGED = (
@@ -129,18 +127,6 @@ def read_broken(path: str) -> CutJournal:
     if "live" not in records[0].get("data", {}):
         raise UsageError(f"{path}: this is not the journal of a live run.")
     return CutJournal(path, records, kept)
-
-
-def catch_up(broken: CutJournal, session: Session) -> list[Record]:
-    """Bring a new session to the point where a journal was cut off.
-
-    Returns:
-        Records (times in ms) of the last instant that are missing in the journal.
-
-    Raises:
-        UsageError: the session does not reproduce the journal's records: other documents made it.
-    """
-    return lacking(broken, replay_instants(session, broken.records, broken.path))
 
 
 def lacking(broken: CutJournal, made: Iterable[Record]) -> list[Record]:

@@ -6,11 +6,12 @@ from dataclasses import replace
 
 from prima.devices.loop import Loop
 from prima.errors import UsageError
+from prima.journal import replay_instants
 from prima.language.commands import PATIENCE_MS
 from prima.live.chosen import Chosen, chosen_then, reloaded
 from prima.live.clock import Clock
 from prima.live.devices import LiveDevices
-from prima.live.journal import CutJournal, Journal, catch_up, going_on, known, lacking
+from prima.live.journal import CutJournal, Journal, going_on, known, lacking
 from prima.live.services import LiveServices
 from prima.live.visit import LiveSettings, Visit, in_simulation, on_robot, record_beside
 from prima.loading import Loaded
@@ -89,7 +90,7 @@ def _robot(
     services: LiveServices = chosen.answering(settings.web)
     loop = on_robot(loaded, policy, settings, services, start)
     try:
-        missed = catch_up(broken, loop.session)
+        missed = lacking(broken, replay_instants(loop.session, broken.records, broken.path))
     except BaseException:
         loop.session.close()
         raise

@@ -16,7 +16,7 @@ from prima.devices.loop import Loop
 from prima.errors import RunError, UsageError
 from prima.journal import replay_instants
 from prima.live.devices import LiveDevices
-from prima.live.journal import Journal, catch_up, going_on, known, read_broken
+from prima.live.journal import Journal, going_on, known, lacking, read_broken
 from prima.messages import Record
 from prima.sim.devices import Cast
 from prima.transcript.lines import finished
@@ -46,7 +46,8 @@ def gone_on(cast: Cast, path: Path) -> list[Record]:
     """The whole journal of a run that goes on after it was cut off."""
     broken = read_broken(str(path))
     loop = live_loop(cast, start=broken.time)
-    missed = [finished(record) for record in catch_up(broken, loop.session)]
+    again = replay_instants(loop.session, broken.records)
+    missed = [finished(record) for record in lacking(broken, again)]
     loop.go_on(broken.time)
     assert isinstance(loop.devices, LiveDevices)
     state = known(broken.records)
