@@ -183,17 +183,13 @@ class RosDriver(MappedDriver):
 
         It is tried even over a link that seems to be lost: perhaps only answers are.
         """
-        if self._link is None:
+        if (link := self._link) is None:
             return
+        stops = sorted({does.stop for does in self.settings.does if does.stop})
         with suppress(Exception) if self.gone else nullcontext():
-            await self._stop_all(self._link)
-
-    async def _stop_all(self, link: RosLink) -> None:
-        link.cancel_all()
-        self._halt(link)
-        stops = {does.stop for does in self.settings.does if does.stop}
-        calls = [link.call(RosUse("service", name, ""), {}) for name in sorted(stops)]
-        await self.end_all(calls)
+            link.cancel_all()
+            self._halt(link)
+            await self.end_all([link.call(RosUse("service", name, ""), {}) for name in stops])
 
     def stand(self) -> None:
         """Publish a zero velocity, and do what ``stop-moving`` does."""

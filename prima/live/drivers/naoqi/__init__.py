@@ -204,11 +204,7 @@ class NaoqiDriver(MappedDriver):
         if (does := self.settings.how("stop-moving")) is not None:
             named.add(does.by)
         with suppress(Exception) if self.gone else nullcontext():
-            await self._stop_all(named)
-
-    async def _stop_all(self, named: set[str]) -> None:
-        calls = [self._ask_method(name, [])[0] for name in sorted(named)]
-        await self.end_all(calls)
+            await self.end_all([self._ask_method(name, [])[0] for name in sorted(named)])
 
     # Calls ----------------------------------------------------------------------------------
 
