@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from prima.invariants.model import (
     AB,
@@ -249,14 +249,12 @@ class Memory:
         """X5: a free motion carries a faithful one, so both may use the same devices."""
         return "x5" in self.extensions and {ab.motion, other.motion} == COMPOSED
 
-    def occupant(self, ab: AB) -> AB | None:
-        """S1, U5: a running AB, outside of its own unit, that has one of its devices."""
+    def occupants(self, ab: AB) -> Iterator[AB]:
+        """S1, U5: the running ABs, outside of its own unit, that have one of its devices."""
         for other in self.running.values():
-            if other is ab or not ab.devices & other.devices:
-                continue
-            if not ab.inside(other) and not other.inside(ab) and not self.composes(ab, other):
-                return other
-        return None
+            apart = not (other is ab or ab.inside(other) or other.inside(ab))
+            if apart and ab.devices & other.devices and not self.composes(ab, other):
+                yield other
 
     @property
     def holder(self) -> Tree | None:

@@ -114,7 +114,7 @@ def could_start(memory: Memory, ab: AB, winner: AB, surely: bool = True) -> bool
 
 def kept_by_s3(memory: Memory, ab: AB) -> bool:
     """Whether nothing but S3 can keep a waiting AB from starting."""
-    return memory.occupant(ab) is None and free_to_go(memory, ab)
+    return not any(memory.occupants(ab)) and free_to_go(memory, ab)
 
 
 def busy(memory: Memory, ab: AB) -> bool:
@@ -255,7 +255,7 @@ def _decides(memory: Memory, rule: str, ab: AB, rival: AB) -> bool:
 def waits_rightly(memory: Memory, ab: AB) -> None:
     """Invariant 5: no waiting AB waits while it may start."""
     if ab.unit is not None:
-        if ab.unit.phase == RUNNING and (memory.policy == "none" or memory.occupant(ab) is None):
+        if ab.unit.phase == RUNNING and (memory.policy == "none" or not any(memory.occupants(ab))):
             memory.report(5, "U5", f"{ab.shown} waits in {ab.unit.shown} on free devices")
     elif memory.policy == "none":
         memory.report(5, "none", f"{ab.shown} waits, though nothing mediates")
@@ -273,7 +273,7 @@ def waits_rightly(memory: Memory, ab: AB) -> None:
 def late(memory: Memory, ab: AB) -> None:
     """Invariants 5 and 6: an AB that could start by now does not wait."""
     if free_to_go(memory, ab) and not held_back(memory, ab) and not busy(memory, ab):
-        if memory.occupant(ab) is None:
+        if not any(memory.occupants(ab)):
             memory.report(5, "S1", f"{ab.shown} waits while its devices are free")
         if ab.cause is not None and not ab.leaves:
             memory.report(6, "S1", f"the reaction {ab.shown} is late")

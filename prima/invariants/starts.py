@@ -114,13 +114,9 @@ def _may_run(memory: Memory, ab: AB, record: Record) -> None:
 
 def _devices_free(memory: Memory, ab: AB, shown: str) -> None:
     """Invariant 1; a unit's own Commands run on its devices."""
-    for other in memory.running.values():
-        both = ab.devices & other.devices
-        if both and memory.composes(ab, other):
-            continue
-        if both and other is not ab and not ab.inside(other) and not other.inside(ab):
-            what = ", ".join(sorted(both))
-            memory.report(1, "S1", f"{shown} starts while {other.shown} runs on {what}")
+    for other in memory.occupants(ab):
+        what = ", ".join(sorted(ab.devices & other.devices))
+        memory.report(1, "S1", f"{shown} starts while {other.shown} runs on {what}")
 
 
 def _reaction_of(memory: Memory, ab: AB, record: Record) -> int | None:
