@@ -55,7 +55,7 @@ from prima.transcript import lines
 from prima.transcript.phases import PHASES
 from prima.transcript.record import model
 from prima.voicexml.arranging import UNIT, UNIT_HOLDS
-from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, VALUES, VOICEXML
+from prima.voicexml.vocabulary import COMMANDS, EXPRESSIONS, VOICEXML, kind_of
 from tools.guests import Guests, OpenVocabulary
 from tools.rnc import make_rnc
 from tools.xsd import (
@@ -709,7 +709,7 @@ VOICEXML_KINDS = {
 
 def _voicexml_attribute(element: Element, item: Attribute) -> Attribute:
     doc = VOICEXML_ATTRIBUTES.get(item.name, "")
-    values = VALUES.get(f"{element.key} {item.name}") or VALUES.get(item.name, "")
+    values = kind_of(element.key, item.name)
     if item.name in EXPRESSIONS:
         return replace(item, kind="expression", doc=doc)
     if values in VOICEXML_KINDS:

@@ -22,8 +22,8 @@ from prima.voicexml.vocabulary import (
     EXPRESSIONS,
     HOLDING,
     PROPERTY_NAMES,
-    VALUES,
     VOICEXML,
+    kind_of,
 )
 
 LISTED: dict[tuple[str, str, str], tuple[str, ...]] = {
@@ -154,7 +154,7 @@ def values(vocabulary: Vocabulary, element: Element, name: str) -> tuple[str, ..
     if listed := LISTED.get((vocabulary.name, element.key, name)):
         return listed
     if vocabulary is VOICEXML:
-        kind = VALUES.get(f"{element.key} {name}") or VALUES.get(name, "")
+        kind = kind_of(element.key, name)
         return tuple(kind.split()) if kind not in ("time", "integer", "rate") else ()
     return ()
 

@@ -175,7 +175,14 @@ VALUES = {
     "connecttimeout": _TIME,
 }
 """Kinds of attribute values: keywords, a time, a rate of speech, a weight, or a whole number
-from 1; an element's own come first."""
+from 1; an element's own come first: see :func:`kind_of`."""
+
+
+def kind_of(element: str, attribute: str) -> str:
+    """The kind of an attribute's value, by the element's key; empty for any text."""
+    return VALUES.get(f"{element} {attribute}") or VALUES.get(attribute, "")
+
+
 EXPRESSIONS = frozenset(
     [
         *("expr", "cond", "eventexpr", "messageexpr", "srcexpr"),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 
 from prima.errors import Hint, Problem, one_of, replaced
 from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE, UNKNOWN_ATTRIBUTE
@@ -13,9 +12,8 @@ from prima.language.values import NUMBER, read_value
 from prima.markup.hints import meant_value
 from prima.markup.spans import added, similar_attribute, value_span
 from prima.markup.tree import Node
-from prima.markup.vocabulary import Element
 from prima.voicexml.cues import is_rate
-from prima.voicexml.vocabulary import ALTERNATIVES, VALUES, VOICEXML
+from prima.voicexml.vocabulary import ALTERNATIVES, VOICEXML, kind_of
 
 WORDS = frozenset(
     [
@@ -36,55 +34,35 @@ NEEDS_ONE = MISSING_ATTRIBUTE.says("<{tag}> needs {names}.")
 HAS_BOTH = EXCLUSIVE.says('<{tag}> has both "{name}" and {other}.', "Keep one of them.")
 
 
-@dataclass(frozen=True, slots=True)
-class ElementEntry:
-    """The tables' entry for an element, ready for use."""
-
-    known: frozenset[str]
-    required: tuple[str, ...]
-    kinds: dict[str, str]
-    alternatives: tuple[tuple[str, ...], ...]
-    text: bool
-
-
-def _entry(element: Element) -> ElementEntry:
-    names = [item.name for item in element.attributes]
-    kinds = {name: VALUES.get(f"{element.key} {name}") or VALUES.get(name, "") for name in names}
-    kinds["xml:lang"] = "" if element.key == "grammar" else "language"  # a grammar checks its own
-    return ElementEntry(
-        frozenset(names),
-        tuple(item.name for item in element.attributes if item.required),
-        {name: kind for name, kind in kinds.items() if kind},
-        tuple(tuple(line.split()) for line in ALTERNATIVES.get(element.key, ())),
-        element.text,
-    )
-
-
-ENTRIES = {key: _entry(element) for key, element in VOICEXML.elements.items()}
-
-
-def check_attributes(node: Node, entry: ElementEntry) -> Iterator[Problem]:
+def check_attributes(node: Node) -> Iterator[Problem]:
     """Attributes that are unknown, wrong or missing."""
     for name in node.attributes:
-        yield from _check_attribute(node, name, entry)
-    for name in entry.required:
-        if name not in node.attributes and node.key != "vxml":  # its version is checked elsewhere
-            yield missing(node, name)
-    for names in entry.alternatives:
-        yield from _check_alternatives(node, names)
+        yield from _check_attribute(node, name)
+    for item in VOICEXML.elements[node.key].attributes:
+        if item.required and item.name not in node.attributes and node.key != "vxml":
+            yield missing(node, item.name)  # a document's version is checked elsewhere
+    for line in ALTERNATIVES.get(node.key, ()):
+        yield from _check_alternatives(node, line.split())
 
 
-def _check_attribute(node: Node, name: str, entry: ElementEntry) -> Iterator[Problem]:
-    text, kind = node.attributes[name], entry.kinds.get(name)
+def _kind(node: Node, name: str) -> str:
+    """The kind of an attribute's value; empty for any text."""
+    if name == "xml:lang":
+        return "" if node.key == "grammar" else "language"  # a grammar checks its own
+    return kind_of(node.key, name) if name in VOICEXML.attributes[node.key] else ""
+
+
+def _check_attribute(node: Node, name: str) -> Iterator[Problem]:
+    text, kind, known = node.attributes[name], _kind(node, name), VOICEXML.attributes[node.key]
     if (kind or name in WORDS) and text != text.strip():
         node.attributes[name] = text = text.strip()  # as XML Schema collapses it
     if kind and name == "method" and text != text.lower():
-        yield _capitals(node, name)
+        yield _capitals(node, name, kind)
     elif kind:
         if not fits(kind, text):
             yield bad_value(node, name, text, kind)
-    elif name not in entry.known and not name.startswith(("xml:", "xsi:", "{")):
-        hint = similar_attribute(node, name, entry.known)
+    elif name not in known and not name.startswith(("xml:", "xsi:", "{")):
+        hint = similar_attribute(node, name, known)
         place = node.attribute_place(name, value=False)
         yield NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
 
@@ -95,11 +73,10 @@ def missing(node: Node, name: str) -> Problem:
     return NEEDS.at(node.place, hint, tag=node.tag, name=name)
 
 
-def _capitals(node: Node, name: str) -> Problem:
+def _capitals(node: Node, name: str, kind: str) -> Problem:
     """Accept keywords of HTTP in capitals, as other platforms do: they are read as lower case."""
     text = node.attributes[name]
     node.attributes[name] = small = text.lower()
-    kind = ENTRIES[node.key].kinds[name]
     if not fits(kind, small):
         return bad_value(node, name, text, kind)
     hint = replaced(f'Write "{small}".', small, *value_span(node, name))
@@ -202,7 +179,7 @@ def instead_of(node: Node, name: str, text: str, kind: str) -> Hint:
     return Hint(REMEDIES.get(kind, f"Write {one_of(kind.split())}."))
 
 
-def _check_alternatives(node: Node, names: tuple[str, ...]) -> Iterator[Problem]:
+def _check_alternatives(node: Node, names: list[str]) -> Iterator[Problem]:
     """Check attributes that exclude each other, and those of which one is required."""
     needed = names[-1] == "!"
     names = names[:-1] if needed else names

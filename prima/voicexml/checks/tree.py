@@ -15,7 +15,7 @@ from prima.markup.spans import name_spans, renamed
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Instead
 from prima.voicexml.arranging import check_items, is_unit
-from prima.voicexml.checks.attributes import ENTRIES, check_attributes
+from prima.voicexml.checks.attributes import check_attributes
 from prima.voicexml.checks.elements import RULES
 from prima.voicexml.checks.guests import check_guest
 from prima.voicexml.upgrade import is_other_version, version_problem
@@ -87,14 +87,11 @@ def check_tree(root: Node) -> list[Problem]:
 
 def _check_element(node: Node) -> list[Problem]:
     """Check an element itself."""
-    entry = ENTRIES[node.key]
-    problems: list[Problem] = []
-    if node.attributes or entry.required or entry.alternatives:
-        problems += check_attributes(node, entry)
+    problems = [*check_attributes(node)]
     check = RULES.get(node.key)
     if check is not None:
         problems += check(node)
-    if not entry.text and node.content and node.text:
+    if not VOICEXML.elements[node.key].text and node.content and node.text:
         text = node.text[:LONGEST_SHOWN]
         hint = Hint(TEXTS.get(node.key, "Remove it."))
         problems.append(HOLDS_TEXT.at(node.place, hint, tag=node.tag, text=text))
