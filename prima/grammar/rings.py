@@ -1,4 +1,4 @@
-"""Cycles in graphs."""
+"""Graphs of nodes of any kind: what leads where, and cycles."""
 
 from __future__ import annotations
 
@@ -7,6 +7,22 @@ from collections.abc import Callable, Hashable, Iterable, Iterator
 from typing import TypeVar
 
 Node = TypeVar("Node", bound=Hashable)
+
+
+def led_to(starts: Iterable[Node], ways: Callable[[Node], Iterable[Node]]) -> set[Node]:
+    """The nodes that some lead to, directly or not, themselves included.
+
+    Args:
+        starts: the nodes to begin with.
+        ways: returns the successors of a node.
+    """
+    found = set(starts)
+    waiting = [*found]
+    while waiting:
+        new = set(ways(waiting.pop())) - found
+        found |= new
+        waiting += new
+    return found
 
 
 def rings(starts: Iterable[Node], ways: Callable[[Node], Iterable[Node]]) -> Iterator[list[Node]]:

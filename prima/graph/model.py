@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from prima.errors import UsageError
 from prima.errors.visible import visible
+from prima.grammar.rings import led_to
 
 LONGEST = 300
 """Maximum length of a text in a picture."""
@@ -145,14 +146,11 @@ def short(text: str, letters: int) -> str:
 
 def reach(graph: Graph, starts: Iterable[str], kinds: tuple[str, ...] = INWARD) -> set[str]:
     """All nodes reachable by edges of some kinds, including the start nodes."""
-    found = {key for key in starts if key in graph.nodes}
-    open_ends = list(found)
-    while open_ends:
-        for edge in graph.out(open_ends.pop()):
-            if edge.kind in kinds and edge.target and edge.target not in found:
-                found.add(edge.target)
-                open_ends.append(edge.target)
-    return found
+
+    def targets(key: str) -> Iterator[str]:
+        return (one.target for one in graph.out(key) if one.kind in kinds and one.target)
+
+    return led_to((key for key in starts if key in graph.nodes), targets)
 
 
 def settle(graph: Graph, everywhere: dict[str, list[str]]) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from html import escape
 from itertools import accumulate
 
+from prima.grammar.rings import led_to
 from prima.graph.layout import THREAD, LayoutEdge, arrange, depths
 from prima.graph.model import Graph, GraphNode
 from prima.graph.svg import box, fit, head, measure, picture, text, wrap
@@ -85,19 +86,9 @@ def _trees(graph: Graph, nodes: list[GraphNode]) -> list[list[GraphNode]]:
     root: dict[str, str] = {}
     for node in nodes:
         if node.key not in root:
-            root |= dict.fromkeys(_linked(node.key, near), node.key)
+            root |= dict.fromkeys(led_to([node.key], near.__getitem__), node.key)
         trees.setdefault(root[node.key], []).append(node)
     return list(trees.values())
-
-
-def _linked(key: str, near: dict[str, list[str]]) -> set[str]:
-    """All nodes that a node is linked with, and itself."""
-    found, waiting = {key}, [key]
-    while waiting:
-        new = set(near[waiting.pop()]) - found
-        found |= new
-        waiting += new
-    return found
 
 
 def _tree(graph: Graph, nodes: list[GraphNode]) -> Drawn:

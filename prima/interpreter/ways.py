@@ -6,7 +6,7 @@ from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 
-from prima.grammar.rings import rings
+from prima.grammar.rings import led_to, rings
 from prima.interpreter.entering import ContentFacts, EnteredDocument, Entering, FormTarget
 
 Onward = Mapping[FormTarget, Sequence[FormTarget]]
@@ -48,11 +48,7 @@ class Ways:
     def _reach(self, target: FormTarget, guess: bool) -> set[FormTarget]:
         onward = self._guessed if guess else self._known
         found = [target] if target in onward else self._matching(target) if guess else []
-        reached = set(found)
-        for one in found:  # grows meanwhile
-            more = [to for to in onward[one] if to not in reached] if one in onward else ()
-            found += more
-            reached.update(more)
+        reached = led_to(found, lambda one: onward.get(one, ()))
         self.contents.left -= len(reached)
         return reached
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from prima.grammar.rings import led_to
 from prima.invariants.memory import Memory
 from prima.invariants.model import AB, LINKED, WAITING, Record, Tree, base
 
@@ -41,14 +42,9 @@ def _soon_over(ab: AB) -> bool:
     return not (lasts or ab.spans) and ab.cause is None
 
 
-def _way_to(memory: Memory, ab: AB) -> list[AB]:
+def _way_to(memory: Memory, ab: AB) -> set[AB]:
     """An AB and all that has to end before it may start."""
-    found = [ab]
-    for one in found:  # the list grows
-        found += [
-            parent for name in sorted(one.parents) if (parent := memory.abs[name]) not in found
-        ]
-    return found
+    return led_to([ab], lambda one: map(memory.abs.__getitem__, one.parents))
 
 
 def third_turn(memory: Memory, ab: AB) -> bool:

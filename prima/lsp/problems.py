@@ -7,6 +7,7 @@ from pathlib import Path
 
 from prima import loading
 from prima.errors import DocumentError, Problem, UsageError, nearest_word
+from prima.grammar.rings import led_to
 from prima.loading.files import GivenFiles, in_place_of_files
 from prima.lsp.scan import ScannedText
 from prima.lsp.tables import BY_NAMESPACE, BY_ROOT
@@ -55,14 +56,8 @@ def check(workspace: Workspace, path: Path) -> dict[Path, list[Problem]]:
 
 
 def files_read(workspace: Workspace, path: Path) -> set[Path]:
-    """The files that are read to check a document: those that it names, and what these name."""
-    found: set[Path] = set()
-    waiting = [path]
-    while waiting:
-        named = {target for target, *_ in workspace.named(waiting.pop())} - found
-        found |= named
-        waiting += named
-    return found
+    """The files that are read to check a document: itself, those that it names, and so on."""
+    return led_to([path], lambda one: {target for target, *_ in workspace.named(one)})
 
 
 def _resolved(path: Path, file: str) -> Path:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from prima.errors import Diagnosis, Problem
 from prima.errors.diagnoses.behaviour import SHARED_DEVICE
 from prima.errors.diagnoses.values import NOTHING_TO_SAY
+from prima.grammar.rings import led_to
 from prima.interpreter.acts import CommandRun, StepTemplate, Text, run_commands
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Field, Form, Prompt, Unit
@@ -92,25 +93,13 @@ def check_branches(facts: Facts) -> Iterator[Problem]:
 
 
 def _shared(steps: Sequence[StepTemplate]) -> Iterator[Problem]:
+    before = [led_to([index], lambda one: steps[one].after) for index in range(len(steps))]
     for index, step in enumerate(steps):
         for second, other in enumerate(steps[index + 1 :], index + 1):
-            both = _devices(step) & _devices(other) if _parallel(steps, index, second) else ()
+            both = _devices(step) & _devices(other) if index not in before[second] else ()
             if both:
                 yield ONE_AFTER_THE_OTHER.at(other.what.node.place, devices=", ".join(sorted(both)))
                 return
-
-
-def _parallel(steps: Sequence[StepTemplate], first: int, second: int) -> bool:
-    """Whether neither of two steps waits for the other."""
-    waiting, seen = [second], set()
-    while waiting:
-        index = waiting.pop()
-        if index == first:
-            return False
-        if index not in seen:
-            seen.add(index)
-            waiting += steps[index].after
-    return True
 
 
 def _devices(step: StepTemplate) -> frozenset[str]:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from prima.errors import Diagnosis, Problem
 from prima.errors.diagnoses.behaviour import UNREACHABLE
+from prima.grammar.rings import led_to
 from prima.interpreter.acts import Exit, Goto, Handler, Return, Throw, all_acts
 from prima.interpreter.checks.facts import Facts, name_of
 from prima.interpreter.deadcontent import DEAD_CONTENT
@@ -78,18 +79,9 @@ def _returning(facts: Facts, uncalled: set[str]) -> Iterator[Problem]:
 
 def _reached(facts: Facts, names: Iterable[str], calls: bool) -> set[str]:
     """The forms that some forms lead to, themselves included; with subdialogs or without."""
-    forms, leads = facts.document.forms, facts.leads
-    reached: set[str] = set()
-    waiting = list(names)
-    while waiting:
-        name = waiting.pop()
-        if name in reached or name not in forms:
-            continue
-        reached.add(name)
-        if name in leads.anywhere:
-            return set(forms)
-        waiting += leads.of(name) if calls else leads.targets.get(name, ())
-    return reached
+    forms, leads = set(facts.document.forms), facts.leads
+    reached = led_to(names, leads.of if calls else lambda name: leads.targets.get(name, ()))
+    return forms & reached if leads.anywhere.isdisjoint(reached) else forms
 
 
 def _left(facts: Facts) -> set[str]:
@@ -149,13 +141,7 @@ def _exiting(facts: Facts) -> set[str]:
     for name in forms:
         for target in leads.of(name):
             leading.setdefault(target, []).append(name)
-    found: set[str] = set()
-    while waiting:
-        name = waiting.pop()
-        if name not in found:
-            found.add(name)
-            waiting += leading.get(name, [])
-    return found
+    return led_to(waiting, lambda name: leading.get(name, ()))
 
 
 def check_handlers(facts: Facts) -> Iterator[Problem]:
