@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from prima.sim.vocabulary.scenario import NAMING_APPLICATIONS
+from prima.voicexml.arranging import UNIT
+from prima.voicexml.checks import NAMING
+from prima.voicexml.reads import LISTING
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,14 +65,7 @@ DEFINES: dict[tuple[str, str, str], str] = {
     ("scenario", "sensor", "name"): "reading",
     ("voicexml", "form", "id"): "form",
     ("voicexml", "menu", "id"): "form",
-    **{
-        ("voicexml", key, "name"): "variable"
-        for key in (
-            *("var", "field", "block", "initial", "record", "object", "subdialog"),
-            *("transfer", "data"),
-        )
-    },
-    **{("voicexml", key, "item"): "variable" for key in ("foreach", "said-foreach")},
+    **{("voicexml", *one): "variable" for one in NAMING.items() if one[0] != UNIT},
     **{("voicexml", key, "event"): "event" for key in ("throw", "link", "return", "choice")},
     ("srgs", "rule", "id"): "rule",
 }
@@ -119,12 +115,7 @@ REFERS: dict[tuple[str, str, str], ReferenceUse] = {
     ("voicexml", "subdialog", "src"): _DIALOG,
     ("voicexml", "goto", "nextitem"): ReferenceUse(("variable",)),
     ("voicexml", "assign", "name"): ReferenceUse(("variable",), "code"),
-    **{
-        ("voicexml", key, "namelist"): _VARIABLES
-        for key in (
-            *("clear", "return", "filled", "submit", "subdialog", "exit", "disconnect", "data"),
-        )
-    },
+    **{("voicexml", key, "namelist"): _VARIABLES for key in (*LISTING, "filled")},
     ("voicexml", "catch", "event"): ReferenceUse(("event",), "list"),
     ("srgs", "ruleref", "uri"): _RULE,
     ("voicexml", "grammar", "root"): ReferenceUse(("rule",)),
