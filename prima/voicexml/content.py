@@ -314,7 +314,7 @@ class Content(Speaker):
     def log(self, node: Node, context: Context, local: Scope) -> None:
         """Write a log entry to the transcript (5.3.13)."""
         label = f"{node.get('label')}: " if node.get("label") else ""
-        parts = [self.spoken(node, context, local)]
+        parts = [self.read_whole(node, context, local).take()[0]]
         if "expr" in node.attributes:
             parts.append(self.text(node, context, local))
         self.write(label + " ".join(part for part in parts if part), node)

@@ -64,13 +64,6 @@ class Speaker(VoiceEvaluator):
         """The language of a prompt: its own, or its document's."""
         return node.get("xml:lang") or context.page.lang
 
-    def spoken(self, node: Node, context: Context, local: Scope) -> str:
-        """The spoken text of an element: SSML is read for its words (4.1.1).
-
-        What precedes a Command, or is in another language, has been queued already.
-        """
-        return self.read_whole(node, context, local).take()[0]
-
     def read_whole(self, node: Node, context: Context, local: Scope) -> Speech:
         """Read a spoken element; gives the part that has not been queued."""
         speech = Speech(self.lang(node, context), source(node), base=node.get("xml:base"))
