@@ -10,14 +10,7 @@ from prima.interpreter.acts import type_of
 from prima.interpreter.deadcontent import branches
 from prima.markup.tree import Node
 from prima.voicexml.arranging import is_unit, parts_of
-from prima.voicexml.elements import (
-    HANDLERS,
-    ITEMS,
-    LEAVING,
-    handler_names,
-    handler_number,
-    leaves,
-)
+from prima.voicexml.elements import HANDLERS, ITEMS, LEAVING, handler_names, handler_number, leaves
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, WORDED
 
 MOST_DEEP = 40

@@ -31,15 +31,7 @@ from prima.interpreter.elements import all_items
 from prima.interpreter.expressions import Evaluator
 from prima.interpreter.frame import Abandoned, Content, Fiber, GoForm
 from prima.interpreter.places import source
-from prima.interpreter.transfers import (
-    GoBack,
-    GoItem,
-    GoOut,
-    Thrown,
-    Transfer,
-    no_item,
-    undeclared,
-)
+from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, Transfer, no_item, undeclared
 from prima.language.values import quoted, read_value, shown
 from prima.markup.tree import Node
 from prima.messages import Command, Group, Json, Notice, Say, Step

@@ -80,12 +80,7 @@ class Fiber:
     began = 0
     """When it started to wait (ms)."""
 
-    def __init__(
-        self,
-        frame: Frame,
-        main: bool = False,
-        local: Scope = None,
-    ) -> None:
+    def __init__(self, frame: Frame, main: bool = False, local: Scope = None) -> None:
         self.frame = frame
         self.main = main
         self.local = local

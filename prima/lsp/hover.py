@@ -9,13 +9,7 @@ from pathlib import Path
 from prima.interpreter.selection import prefixes
 from prima.language.commands import TABLE_4_2
 from prima.language.values import KINDS
-from prima.lsp.descriptions import (
-    EVENTS,
-    RULES,
-    SESSION,
-    VOICEXML_ATTRIBUTES,
-    VOICEXML_EVENTS,
-)
+from prima.lsp.descriptions import EVENTS, RULES, SESSION, VOICEXML_ATTRIBUTES, VOICEXML_EVENTS
 from prima.lsp.names import FoundName, Mark, mark_at
 from prima.lsp.scan import ScannedTag
 from prima.lsp.workspace import Workspace

@@ -33,15 +33,7 @@ from prima.markup.tree import Node
 from prima.markup.uris import parted
 from prima.messages import Json
 from prima.script.choices import PossibleText, choices
-from prima.voicexml.acting import (
-    ACTS,
-    code_of,
-    runs_in,
-    saying,
-    speak,
-    spoken_pieces,
-    text_of,
-)
+from prima.voicexml.acting import ACTS, code_of, runs_in, saying, speak, spoken_pieces, text_of
 from prima.voicexml.arranging import is_unit, longest_of
 from prima.voicexml.document import Page
 from prima.voicexml.elements import HANDLERS, ITEMS, handler_names, handler_number

@@ -7,15 +7,7 @@ from collections.abc import Iterable, Sequence
 from functools import cached_property
 
 from prima.interpreter.acts import Declare, Exit, Foreach, Goto, Handler, Script
-from prima.interpreter.elements import (
-    Acts,
-    Document,
-    Form,
-    Item,
-    Link,
-    Subdialog,
-    all_items,
-)
+from prima.interpreter.elements import Acts, Document, Form, Item, Link, Subdialog, all_items
 from prima.interpreter.events import handlers_of
 from prima.script.known import Known, NameScope
 from prima.script.names import script_names

@@ -6,15 +6,7 @@ from collections.abc import Iterator
 
 from prima.errors import Diagnosis, Problem
 from prima.errors.diagnoses.values import ASKED_LATER
-from prima.interpreter.acts import (
-    Exit,
-    Goto,
-    Handler,
-    Return,
-    Throw,
-    all_acts,
-    commands_of,
-)
+from prima.interpreter.acts import Exit, Goto, Handler, Return, Throw, all_acts, commands_of
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Field, Form, Prompt
 from prima.interpreter.events import DEFAULTS, silent_fields

@@ -59,8 +59,7 @@ NO_VARIABLE = UNDECLARED_VARIABLE.says(
     'No variable can be named "{name}": ECMAScript reserves this word.', "Choose another name."
 )
 NOT_ASSIGNED = UNDECLARED_VARIABLE.says(
-    '"{name}" cannot be assigned: a run tells it to the document.',
-    "Assign a variable of your own.",
+    '"{name}" cannot be assigned: a run tells it to the document.', "Assign a variable of your own."
 )
 NO_FUNCTION = UNDECLARED_VARIABLE.says('There is no function "{name}".', "Define it in a <script>.")
 NO_EVENT_HERE = UNDECLARED_VARIABLE.says(
@@ -68,8 +67,7 @@ NO_EVENT_HERE = UNDECLARED_VARIABLE.says(
     "Keep what you need of it in a variable: the handler can <assign> it.",
 )
 NO_PART = UNDECLARED_VARIABLE.says(
-    'An event has no "{name}" of its own; it has name, message and data.',
-    severity="warning",
+    'An event has no "{name}" of its own; it has name, message and data.', severity="warning"
 )
 NO_FIELD = UNDECLARED_VARIABLE.says(
     'The data of {event} has no "{name}"; it has {known}.', severity="warning"

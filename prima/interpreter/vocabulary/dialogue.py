@@ -130,9 +130,5 @@ watch | Raises an event when a condition on sensor values turns true. | thesis 2
 {ACTS}
 """
 DIALOGUE = Vocabulary(
-    NAMESPACE,
-    "dialogue",
-    "prima",
-    (*elements(TABLE), *COMMANDS, *elements(EVENTS)),
-    HINTS,
+    NAMESPACE, "dialogue", "prima", (*elements(TABLE), *COMMANDS, *elements(EVENTS)), HINTS
 )

@@ -26,12 +26,7 @@ from prima.voicexml.checks.attributes import bad_value, fits, instead_of
 from prima.voicexml.checks.conditions import check_conditions
 from prima.voicexml.checks.failing import check_failing
 from prima.voicexml.checks.guests import command_problems
-from prima.voicexml.checks.names import (
-    check_assigned,
-    check_listed,
-    check_name,
-    check_script_names,
-)
+from prima.voicexml.checks.names import check_assigned, check_listed, check_name, check_script_names
 from prima.voicexml.elements import ITEMS, handler_number
 from prima.voicexml.platform import listens_in
 from prima.voicexml.vocabulary import (
@@ -246,13 +241,7 @@ def grammar_problems(
             check_known(media_type(node.get("type")), node.attribute_place("type"), "")
             return []
         made = load(
-            node,
-            base=base,
-            lang=lang,
-            mode=mode,
-            fetch=fetch,
-            languages=listens_in,
-            lenient=True,
+            node, base=base, lang=lang, mode=mode, fetch=fetch, languages=listens_in, lenient=True
         )
         return made.warnings()
     except GrammarError as error:
