@@ -106,7 +106,7 @@ def seconds(milliseconds: float) -> str:
 
 def range_of(kind: str, low: float | None, high: float | None) -> str:
     """The range of a number, in words."""
-    shown: Callable[[float], str] = seconds if kind == "duration" else "{:g}".format
+    shown: Callable[[float], str] = seconds if kind == "duration" else "{:.12g}".format
     if low is not None and high is not None:
         return f"From {shown(low)} to {shown(high)}."
     if low is not None:

@@ -325,7 +325,7 @@ def outside(kind: str, low: float | None, high: float | None) -> str:
 def written(kind: str, value: float) -> str:
     """A number, or a time in ms with its unit."""
     if DRAWABLE.get(kind, kind) != "duration":
-        return f"{value:g}"
+        return f"{value:.12g}"
     return f"{value / 1000:g}s" if value >= 1000 or not value else f"{value:g}ms"
 
 
