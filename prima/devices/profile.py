@@ -88,19 +88,9 @@ def _check_twice(reader: Reader) -> None:
     """Duplicate entries, of which only one would count."""
     reader.only("camera")
     for tag, key in NAMED:
-        _check_names(reader, reader.root.all(tag), key)
+        reader.check_twice(reader.root.all(tag), key, fold=key == "lang")
     for adds in reader.root.all("adds"):
-        _check_names(reader, adds.all("argument"), "name")
-
-
-def _check_names(reader: Reader, nodes: list[Node], key: str) -> None:
-    seen: set[str] = set()
-    for node in nodes:
-        name = node.get(key).lower() if key == "lang" else node.get(key)
-        if name in seen:
-            message = f'"{name}" is there twice.'
-            reader.problem(node, "duplicate-name", message, key, "Keep one.")
-        seen.add(name)
+        reader.check_twice(adds.all("argument"), "name")
 
 
 def read_robot(file: str, data: bytes) -> Profile:

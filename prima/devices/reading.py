@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, Any
 
 from prima.errors import DocumentError, Hint, Problem, Severity, has_errors
@@ -114,6 +114,19 @@ class Reader:
             self.problem(node, "duplicate-id", f'{what}"{name}" is there twice.', "id", RENAME)
         seen.update({name} - {""})
         return name
+
+    def check_twice(self, nodes: Iterable[Node], key: str, fold: bool = False) -> None:
+        """Note a problem for each element that is named as an earlier one: only one would count.
+
+        ``key`` is the attribute with the name; ``fold`` ignores its case.
+        """
+        seen: set[str] = set()
+        for node in nodes:
+            name = node.get(key).lower() if fold else node.get(key)
+            if name in seen:
+                message = f'"{node.get(key)}" is there twice.'
+                self.problem(node, "duplicate-name", message, key, "Keep one.")
+            seen.add(name)
 
     def only(self, tag: str) -> Node | None:
         """The root's child of a tag that may occur once; another one is a problem."""

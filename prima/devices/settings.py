@@ -164,7 +164,8 @@ class DriverSettings:
             UsageError: there is one.
         """
         if unknown := sorted(self.options.keys() - {*known}):
-            message = f'there is no option "{unknown[0]}". Write {one_of(known)}.'
+            remedy = f"Write {one_of(known)}." if known else "Remove it."
+            message = f'there is no option "{unknown[0]}". {remedy}'
             raise UsageError(f"{self.place}: {message}")
 
     def choice(self, name: str, *allowed: str) -> str:
@@ -198,6 +199,7 @@ class DriverSettings:
 
 def read_driver(reader: Reader, node: Node) -> DriverSettings:
     """Read a ``driver`` element."""
+    _check_twice(reader, node)
     return DriverSettings(
         kind=node.get("kind"),
         address=node.get("address"),
@@ -218,6 +220,19 @@ def read_driver(reader: Reader, node: Node) -> DriverSettings:
         },
         options={child.get("name"): child.get("value") for child in node.all("option")},
     )
+
+
+def _check_twice(reader: Reader, node: Node) -> None:
+    """Duplicate entries, of which only one would count."""
+    for tag in ("option", "place"):
+        reader.check_twice(node.all(tag), "name")
+    does = node.all("does")
+    commands = [one for one in does if not one.get("gesture")]
+    gestures = [one for one in does if one.get("gesture")]
+    reader.check_twice((one for one in commands if one.get("command")), "command")
+    reader.check_twice((one for one in gestures if not one.get("command")), "gesture")
+    for one in does:
+        reader.check_twice(one.all("set"), "name")
 
 
 def _limits(reader: Reader, node: Node) -> DriverLimits:

@@ -113,8 +113,9 @@ def uses(settings: DriverSettings) -> list[RosUse]:
     """The interfaces that a robot's document uses, once each.
 
     Raises:
-        UsageError: it does not say what that is.
+        UsageError: it does not say what that is, or has options.
     """
+    settings.check_options()
     for senses in settings.senses:
         if _kind(senses.type) != "topic":
             message = f'<senses by="{senses.by}"> needs the type of the topic.'

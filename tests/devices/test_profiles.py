@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from prima.devices.profile import read_robot
+from prima.errors import DocumentError
 
 HEAD = '<robot xmlns="urn:prima:robot:1" version="1.0" id="r"><device name="arm"/>'
 
@@ -18,3 +19,29 @@ def test_a_duration_is_what_is_written(duration: str, gesture: int) -> None:
     profile = read_robot("r.xml", text.encode())
     assert profile.gestures["nod"] == gesture
     assert profile.lasts("wave") == max(gesture, 1), "an AB takes an instant"
+
+
+@pytest.mark.parametrize(
+    ("inside", "name"),
+    [
+        ('<option name="ear" value="a"/><option name="ear" value="b"/>', "ear"),
+        ('<place name="p" x="1" y="1"/><place name="p" x="2" y="1"/>', "p"),
+        ('<does command="say" by="a"/><does command="say" by="b"/>', "say"),
+        ('<does gesture="bow" by="a"/><does gesture="bow" by="b"/>', "bow"),
+        ('<does command="say"><set name="x" value="1"/><set name="x" value="2"/></does>', "x"),
+    ],
+)
+def test_what_a_driver_would_drop_is_told(inside: str, name: str) -> None:
+    more = f'<device name="neck"/><device name="speaker"/><gesture name="bow"/><driver kind="sim">{inside}</driver>'
+    with pytest.raises(DocumentError) as error:
+        read_robot("r.xml", f"{HEAD}{more}</robot>".encode())
+    assert [one.message for one in error.value.problems] == [f'"{name}" is there twice.']
+
+
+def test_a_gesture_and_other_gestures_are_carried_out_apart() -> None:
+    does = (
+        '<does command="gesture" by="a"/><does gesture="bow" by="b"/><does command="say" by="a"/>'
+    )
+    more = f'<device name="neck"/><device name="speaker"/><gesture name="bow"/><driver kind="sim">{does}</driver>'
+    (driver,) = read_robot("r.xml", f"{HEAD}{more}</robot>".encode()).drivers
+    assert [getattr(driver.how("gesture", one), "by", "") for one in ("bow", "nod")] == ["b", "a"]

@@ -39,6 +39,12 @@ def test_a_method_is_named_with_its_service(by: str, monkeypatch: pytest.MonkeyP
         asyncio.run(driver(f'<does command="say" {written}/>').open())
 
 
+def test_it_has_no_options(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "qi", ModuleType("qi"))
+    with pytest.raises(UsageError, match=r'there is no option "port"\. Remove it'):
+        asyncio.run(driver('<option name="port" value="1"/>').open())
+
+
 @pytest.mark.parametrize(
     ("address", "url"),
     [

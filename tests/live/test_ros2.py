@@ -72,6 +72,12 @@ def test_what_is_sensed_needs_the_type_of_its_topic() -> None:
         asyncio.run(made.open())
 
 
+def test_it_has_no_options() -> None:
+    made = driver('<option name="domain" value="1"/>')
+    with pytest.raises(UsageError, match=r'there is no option "domain"\. Remove it'):
+        asyncio.run(made.open())
+
+
 # Messages -----------------------------------------------------------------------------------
 
 

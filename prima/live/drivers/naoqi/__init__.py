@@ -84,6 +84,7 @@ class NaoqiDriver(MappedDriver):
 
     def _methods(self) -> list[tuple[str, str]]:
         """The services and methods that the robot's document names."""
+        self.settings.check_options()
         named = {name: does for does in self.settings.does for name in (does.by, does.stop) if name}
         for does in self.settings.does:
             if not does.by:
