@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import re
 import subprocess
 import sys
 from collections.abc import Sized
 from pathlib import Path
 from time import process_time
+from types import SimpleNamespace
 
 import pytest
 
@@ -28,13 +30,14 @@ from prima.devices.settings import DriverSettings
 from prima.errors import UsageError
 from prima.grammar import load
 from prima.grammar.answers import Answers
-from prima.live.driver import Unusable
+from prima.live.driver import Refused, Unreachable, Unusable
 from prima.live.drivers.speech import SpeechDriver, SpokenPiece, heard, pieces, read_options
 from prima.live.drivers.speech.jsgf import jsgf, spelt
 from prima.live.drivers.speech.nearest import hypotheses, likeness
 from prima.live.drivers.speech.segments import BEFORE_S, Segments
-from prima.live.drivers.speech.sound import CHUNK, CHUNK_S, beep, seconds
+from prima.live.drivers.speech.sound import CHUNK, CHUNK_S, SoundCard, beep, seconds
 from prima.live.drivers.speech.sounds import arpabet
+from prima.live.drivers.speech.voices import Voices
 from prima.live.recordings import Recordings
 from prima.messages import Command, Cue, Heard, Hypothesis
 from prima.sim.map import read_world
@@ -54,6 +57,8 @@ def settings_with(*options: tuple[str, str]) -> DriverSettings:
     made = "".join(f'<option name="{name}" value="{value}"/>' for name, value in options)
     text = ROBOT.read_text(encoding="utf-8")
     assert "</driver>" in text
+    for name, _ in options:
+        text = re.sub(f'<option name="{name}".*/>', "", text)
     source = text.replace("</driver>", f"{made}</driver>", 1)
     return next(one for one in read_robot("r.xml", source.encode()).drivers if one.kind == "speech")
 
@@ -442,6 +447,37 @@ def test_what_is_not_installed_is_named_with_the_line_that_installs_it() -> None
 
     with pytest.raises(Unusable, match=r"pip install 'prima\[speech\]'"):
         asyncio.run(play())
+
+
+@pytest.mark.parametrize(
+    ("lang", "module", "extra"),
+    [("en", "hibari", "speech"), ("ja", "pyopenjtalk", "speech,speech-ja")],
+)
+def test_a_voice_that_is_not_installed_is_named_with_its_extra(
+    lang: str, module: str, extra: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(Refused, match=re.escape(f"pip install 'prima[{extra}]'")):
+        Voices().say("a", lang)
+
+
+def test_a_microphone_is_named_by_digits_or_by_anything_else(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[object] = []
+
+    class Absent:
+        def __init__(self, device: object, **_: object) -> None:
+            asked.append(device)
+            raise ValueError("none")
+
+    monkeypatch.setitem(
+        sys.modules, "sounddevice", SimpleNamespace(RawInputStream=Absent, RawOutputStream=Absent)
+    )
+    for name in ("", "3", "USB", "\u00b2"):
+        with pytest.raises(Unreachable, match="microphone"):
+            SoundCard(name).open(lambda _: None, lambda _: None)
+    assert asked == [None, 3, "USB", "\u00b2"]
 
 
 def test_the_command_says_so_as_well(tmp_path: Path) -> None:

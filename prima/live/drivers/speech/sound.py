@@ -92,7 +92,7 @@ class SoundCard:
             data[:] = self._take(len(data))
 
         form = {"samplerate": RATE, "channels": 1, "dtype": "int16", "blocksize": CHUNK // 2}
-        source, sink = (int(name) if name.isdigit() else name or None for name in self._names)
+        source, sink = (int(name) if name.isdecimal() else name or None for name in self._names)
         names = ("microphone", "loudspeaker")
         ended = lambda: lost("the sound card is gone")  # noqa: E731
         made = (

@@ -89,6 +89,8 @@ MADE: Mapping[str, Callable[[], Voice]] = {
     "espeak": espeak,
 }
 """The voices by name."""
+EXTRAS = {"hibari": "speech", "open-jtalk": "speech,speech-ja"}
+"""What installs a voice."""
 LANGUAGES = {"en": "hibari", "ja": "open-jtalk"}
 """Languages with a voice of their own."""
 
@@ -125,7 +127,7 @@ class Voices:
             try:
                 self._made[name] = MADE[name]()
             except ImportError as error:
-                line = "pip install 'prima[speech]'"
+                line = f"pip install 'prima[{EXTRAS[name]}]'"
                 raise Refused(
                     f"the voice {name} is not there ({error}): {line}", "speaker"
                 ) from None
