@@ -183,6 +183,7 @@ def read_services(file: str, data: bytes, grammars: Grammars) -> list[Endpoint]:
 
 def _endpoint(reader: Reader, node: Node, grammars: Grammars) -> Endpoint:
     chats = node.tag == "language-model"
+    reader.check_twice(node.all("slot"), "name")
     _check_url(reader, node)
     method = "post" if chats else reader.get(node, "method") or "post"
     made = Endpoint(
@@ -234,6 +235,9 @@ def _check_url(reader: Reader, node: Node) -> None:
 def _slot(reader: Reader, node: Node) -> Slot:
     name, kind = node.get("name"), node.get("kind", "text")
     choices = tuple(one.strip() for one in node.get("choices").split("|") if one.strip())
+    if "choices" in node.attributes and not choices:
+        message = "There is nothing to choose."
+        reader.problem(node, "empty", message, "choices", 'Write as in "happy | sad".')
     if choices and kind != "text":
         message = "Only texts have choices."
         reader.problem(node, "exclusive", message, "choices", "Remove choices, or the kind.")
@@ -244,11 +248,16 @@ def _slot(reader: Reader, node: Node) -> Slot:
 
 
 def _read_headers(reader: Reader, node: Node, made: Endpoint) -> None:
-    if node.get("key"):
+    headers = node.all("header")
+    reader.check_twice(headers, "name", fold=True)
+    if "key" in node.attributes:
         made.variables["Authorization"] = ("Bearer ", node.get("key"))
         _check_variable(reader, node, "key")
-    for child in node.all("header"):
+    for child in headers:
         name = child.get("name")
+        if name.lower() == "authorization" and "key" in node.attributes:
+            message = "The key is sent as this header already."
+            reader.problem(child, "exclusive", message, "name", "Keep one.")
         if not HEADER.fullmatch(name):
             message = f'"{name}" is not the name of a header.'
             reader.problem(child, "bad-value", message, "name", 'Write as in "X-Api-Key".')
@@ -257,13 +266,13 @@ def _read_headers(reader: Reader, node: Node, made: Endpoint) -> None:
             reader.problem(
                 child, "exclusive", message, "value", 'Write variable="..." for secrets.'
             )
-        elif child.get("variable"):
+        elif "variable" in child.attributes:
             made.variables[name] = ("", child.get("variable"))
             _check_variable(reader, child, "variable")
         elif child.get("value").isprintable() and child.get("value").isascii():
             made.headers[name] = child.get("value")
         else:
-            message = "A header's value may contain only ASCII characters."
+            message = "A header's value may contain only printable ASCII characters."
             reader.problem(child, "bad-value", message, "value", "Write others.")
 
 
@@ -286,7 +295,8 @@ def _read_fallback(reader: Reader, node: Node, made: Endpoint, grammars: Grammar
         try:
             made.fallback = Fallback(grammars(child.get("grammar")), child.get("of"))
         except LookupError as error:
-            message = f'The grammar "{child.get("grammar")}" cannot be read: {error.args[0]}.'
+            why = str(error.args[0]).removeprefix("cannot be read: ")
+            message = f'The grammar "{child.get("grammar")}" cannot be read: {why}.'
             reader.problem(
                 child, "no-such-file", message, "grammar", "Name a file beside this one."
             )

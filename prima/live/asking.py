@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
-from http.client import HTTPException, HTTPResponse
+from http.client import HTTPException, HTTPResponse, IncompleteRead
 from typing import TypeVar
 from urllib.error import HTTPError, URLError
 from urllib.parse import urlsplit
@@ -69,8 +69,10 @@ class ServiceRequests:
             raise (_Busy if error.code in BUSY else Unfit)(why) from None
         except URLError as error:
             raise _Busy(silence(error.reason)) from None
-        except (OSError, HTTPException):
+        except (OSError, IncompleteRead):
             raise _Busy("the answer breaks off") from None
+        except HTTPException:
+            raise _Busy("the answer is not HTTP") from None
         except ValueError as error:
             raise Unfit(str(error)) from None
         for _, secret in self.secrets.values():

@@ -8,6 +8,7 @@ the other. Simulated time never waits.
 from __future__ import annotations
 
 import socket
+import string
 import threading
 import time
 from collections import Counter, defaultdict
@@ -25,7 +26,7 @@ from http.client import (
 )
 from typing import IO, NoReturn
 from urllib.error import HTTPError, URLError
-from urllib.parse import urlencode, urljoin, urlsplit
+from urllib.parse import quote, urldefrag, urlencode, urljoin, urlsplit
 from urllib.request import (
     HTTPDefaultErrorHandler,
     HTTPErrorProcessor,
@@ -239,7 +240,10 @@ def read_plain(response: HTTPResponse, most: int) -> bytes:
     """
     if (coding := response.headers.get("Content-Encoding", "identity")) != "identity":
         _refuse(f"the host sends it compressed, as {coding[:20]}")
-    data: bytes = response.read(most)
+    try:
+        data: bytes = response.read(most)
+    except ValueError:  # the length of a chunk is negative
+        raise IncompleteRead(b"") from None
     if response.length and len(data) < most:  # the length announced, less what has come
         raise IncompleteRead(data, response.length)
     return data
@@ -298,8 +302,19 @@ def _opener(held: list[socket.socket]) -> OpenerDirector:
 
 
 def _moved(request: Request, status: int, where: str) -> Request:
-    """The request for a redirection's target (RFC 9110, 15.4)."""
-    uri = urljoin(request.full_url, where)
+    """The request for a redirection's target (RFC 9110, 15.4).
+
+    Raises:
+        ValueError: the target is not an address.
+    """
+    try:
+        uri = urljoin(request.full_url, quote(where, string.punctuation, "latin-1"))
+        parts = urlsplit(uri)
+        wrong = parts.port == 0 or "@" in parts.netloc
+    except ValueError:
+        wrong = True
+    if wrong:
+        _refuse(f"it is moved to {where[:200]}, which is not an address")
     if status in (307, 308):
         return Request(uri, request.data, HEADERS, method=request.get_method())
     return Request(uri, headers=HEADERS)
@@ -311,6 +326,7 @@ def _refuse(message: str) -> NoReturn:
 
 def form_request(uri: str, method: str, values: Data) -> Request:
     """A request that sends values as a form does."""
+    uri = urldefrag(uri).url  # it would take the values along, and is never sent
     encoded = urlencode({name: _text(value) for name, value in values.items()})
     if method == "post":
         return Request(uri, encoded.encode(), HEADERS, method="POST")

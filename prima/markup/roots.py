@@ -19,7 +19,7 @@ DOCUMENTS = {
     "urn:prima:robot:1": "a robot",
     "urn:prima:scenario:1": "a scenario",
     "urn:prima:user:1": "a user",
-    "urn:prima:services:1": "a file of services",
+    "urn:prima:services:1": "a list of services",
     "http://www.w3.org/2001/06/grammar": GRAMMAR,
 }
 """Kinds of documents by their namespaces."""

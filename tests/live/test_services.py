@@ -78,6 +78,13 @@ class Handler(BaseHTTPRequestHandler):
             self.send_response(302)
             self.send_header("Location", host.moved)
             self.end_headers()
+        elif path == "/minus":
+            self.send_response(200)
+            self.send_header("Transfer-Encoding", "chunked")
+            self.end_headers()
+            self.wfile.write(b"-5\r\n{}")
+        elif path == "/status":
+            self.wfile.write(b"SSH-2.0-OpenSSH_9.6\r\n")
         elif path == "/short":
             self.send_response(200)
             self.send_header("Content-Length", "100")
@@ -221,6 +228,8 @@ def test_slots_are_taken_out_of_an_answer(host: Host, tmp_path: Path) -> None:
         ('url="URL/b"><slot name="author"/></service>', 'the answer lacks "author"'),
         ('url="URL/b"><slot name="shelf"/></service>', '"shelf" is not a text'),
         ('url="URL/b"><slot name="title" choices="A | B"/></service>', "is not one of A, B"),
+        ('url="URL/minus"/>', "the answer breaks off"),
+        ('url="URL/status"/>', "the answer is not HTTP"),
         ('url="http://127.0.0.1:1/"/>', "the host does not answer"),
     ],
 )
@@ -251,6 +260,26 @@ def test_a_service_is_not_moved_to_a_file(host: Host, tmp_path: Path) -> None:
     host.moved = "file:///etc/hostname"
     reason = why(send(document(tmp_path, host, 'url="URL/away"/>')))
     assert "it is moved to a URI that is neither http nor https" in reason
+
+
+@pytest.mark.parametrize("where", ["http://[::1", "http://127.0.0.1:x/", "http://me@127.0.0.1/"])
+def test_a_service_is_not_moved_to_what_is_no_address(
+    where: str, host: Host, tmp_path: Path
+) -> None:
+    host.moved = where
+    reason = why(send(document(tmp_path, host, 'url="URL/away"/>')))
+    assert reason == f"it is moved to {where}, which is not an address"
+
+
+def test_a_service_is_moved_to_an_address_of_other_letters(host: Host, tmp_path: Path) -> None:
+    host.moved = "/caf\u00e9 1%20"
+    assert send(document(tmp_path, host, 'url="URL/away"/>')).name == "reply.library"
+    assert host.asked[-1][1] == "/caf%E9%201%20"
+
+
+def test_a_fragment_does_not_take_the_values_along(host: Host, tmp_path: Path) -> None:
+    send(document(tmp_path, host, 'url="URL/books#new" method="get"/>'), about="a")
+    assert host.asked == [("GET", "/books?about=a", b"")]
 
 
 def test_a_service_that_is_not_named_is_none(host: Host, tmp_path: Path) -> None:
@@ -331,6 +360,7 @@ def test_voicexml_gets_no_secret_back(host: Host, tmp_path: Path) -> None:
     assert found.body == '{"title": "***"}'
 
 
+HEADERS = '<header name="A" value="x"/><header name="a" value="x"/>'
 MODEL = """url="URL/{}" model="small" deadline="500ms"><prompt>It is {{text}}.</prompt>
 <slot name="mood" choices="happy | sad"/>{}</language-model>"""
 
@@ -374,6 +404,14 @@ def test_a_grammar_fills_them_where_the_model_does_not(
         ('url="http://x/"/><service name="library" url="http://x/"/>', "there twice"),
         ('url="http://x/" dedline="1s"/>', "dedline"),
         ('url="http://x/"><header name="A"/></service>', "exactly one of value, variable"),
+        ('url="http://x/" key=""/>', "environment variable"),
+        ('url="http://x/"><header name="A" variable=""/></service>', "environment variable"),
+        ('url="http://x/"><header name="A" value="&#10;"/></service>', "only printable ASCII"),
+        ('url="http://x/" key="K"><header name="authorization" value="x"/></service>', "The key"),
+        (f'url="http://x/">{2 * HEADERS}</service>', '"a" is there twice'),
+        ('url="http://x/"><slot name="s"/><slot name="s"/></service>', '"s" is there twice'),
+        ('url="http://x/"><slot name="s" choices=" | "/></service>', "nothing to choose"),
+        ('url="http://x/" most="10000001"/>', "from 1 to 10000000."),
     ],
 )
 def test_a_wrong_document_is_diagnosed(host: Host, tmp_path: Path, more: str, told: str) -> None:
