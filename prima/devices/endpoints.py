@@ -11,6 +11,7 @@ from urllib.parse import urlsplit
 from prima.devices.reading import RENAME, Reader, part_of
 from prima.devices.vocabulary.services import SERVICES
 from prima.errors import DocumentError, Place
+from prima.language.values import shown
 from prima.markup.tree import Node
 from prima.messages import Data, Json
 
@@ -157,7 +158,7 @@ def _written(template: str, params: Data) -> str:
     def value(slot: re.Match[str]) -> str:
         if slot[1] not in params:
             raise Unfit(f'the prompt needs the value "{slot[1]}": send it as a <param>')
-        return str(params[slot[1]])
+        return shown(params[slot[1]])
 
     return NAMED.sub(value, template)
 
@@ -288,6 +289,10 @@ def _read_fallback(reader: Reader, node: Node, made: Endpoint, grammars: Grammar
         if not have:
             message = f"<language-model> needs a <{tag}>."
             reader.problem(node, "empty", message, "", f"Add one: <{tag}>.")
+    for slot in node.all("slot"):
+        if "field" in slot.attributes:
+            message = "A language model is asked for the slot by its name."
+            reader.problem(slot, "exclusive", message, "field", "Remove field.")
     for extra in node.all("fallback")[1:]:
         message = "<language-model> has one <fallback>."
         reader.problem(extra, "exclusive", message, "", "Remove this one.")

@@ -35,7 +35,7 @@ slot | A value of the answer. If there are slots, the rest of an answer is ignor
   name*: id | its name in the reply
   kind: text(text number boolean) = text | its type
   choices: text | the texts that it may be, separated by `|`
-  field: text | the part of the answer, by default its name; dots lead into objects and lists
+  field: text | the part of a service's answer, by default its name; dots lead into objects and lists
   required: boolean = true | whether it is needed
   doc: text | what it means, for the model
 fallback | A grammar that fills the slots if the model does not.
