@@ -133,6 +133,16 @@ why_option = click.option(
 )
 
 
+def check_why(why: bool, table: bool) -> None:
+    """Refuse --why where no table is printed.
+
+    Raises:
+        UsageError: it is.
+    """
+    if why and not table:
+        raise UsageError("--why works only with a table: prima show TRANSCRIPT --why.")
+
+
 def check_source(scenarios: bool, applications: bool) -> None:
     """Check that a scenario or applications are named, and not both.
 

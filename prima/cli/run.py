@@ -16,6 +16,7 @@ from prima.cli.options import (
     Whole,
     bound_option,
     check_source,
+    check_why,
     ea_option,
     fa_option,
     format_option,
@@ -128,6 +129,7 @@ def run(
         return
     from prima import api
 
+    check_why(why, output is None and form != "json")
     scenario = next(iter(scenarios), "")
     loaded = api.load_scenario(scenario) if scenario else api.stage(fas, eas, says, maps=maps)
     if output == "-":
@@ -168,8 +170,7 @@ def _check_batch(applications: bool, why: bool, resume: bool, output: str | None
     """
     if applications:
         raise UsageError("--fa and --ea name one run; for several, write scenarios.")
-    if why:
-        raise UsageError("--why works only with one run: prima show TRANSCRIPT --why.")
+    check_why(why, False)
     if resume and output is None:
         raise UsageError("--resume needs the folder of the transcripts: -o FOLDER.")
     is_file = output is not None and output.endswith(".jsonl") and not os.path.isdir(output)

@@ -13,6 +13,7 @@ from prima.cli.options import (
     MAPS,
     PathName,
     check_source,
+    check_why,
     ea_option,
     fa_option,
     format_option,
@@ -93,6 +94,7 @@ def talk(
     from prima.talk import Conversation, Game
 
     raise_limits(limits)
+    check_why(why, form != "json")
     _check_options(scenario, bool(fas or eas), bool(world or robot), bool(maps), step and real_time)
     loaded = _loaded(scenario, fas, eas, world, robot, maps)
     tell_problems(loaded.problems)

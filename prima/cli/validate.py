@@ -81,6 +81,8 @@ def validate(
             raise UsageError("--with works only with --robot and --format text or json.")
         _certify(fas, files, robot or "", form)
         return
+    if watch and strict:
+        raise UsageError("--watch has no exit code of its own; leave out --strict.")
     if watch:
         _watch(files, form, notes, maps)
     unread, errors, warnings = _check(files, form, notes, maps)

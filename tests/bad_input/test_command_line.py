@@ -98,6 +98,10 @@ USAGES: list[Any] = [
     (["run", "s.xml", "-o", "s.xml"], 2, "s.xml"),
     (["run", "s.xml", "-o", "/dev/full"], 2, "No space left"),
     (["replay", "good.jsonl", "s.xml", "-o", "/dev/full"], 2, "No space left"),
+    *(([*words, "--why"], 2, "--why works only with a table: prima show TRANSCRIPT --why.")
+      for words in (["run", "s.xml", "-o", "t"], ["run", "s.xml", "-o", "-"], ["run", "s.xml", "s.xml"],
+                    *([verb, "s.xml", "--format", "json"] for verb in ("run", "talk", "live")))),
+    (["validate", "s.xml", "--watch", "--strict"], 2, "leave out --strict."),
 ]  # fmt: skip
 
 
