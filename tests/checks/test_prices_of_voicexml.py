@@ -9,6 +9,7 @@ import pytest
 from prima.checks.prices import Price, outline
 from prima.loading import read_application
 from prima.loading.files import read_file
+from prima.voicexml.pages import MOST_PAGES
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 from tests.helpers.certified import faults
 from tests.helpers.certifying import (
@@ -23,6 +24,7 @@ from tests.helpers.certifying import (
     voiced,
     waited,
 )
+from tests.helpers.spoken import recording
 
 COMMANDS = {
     "a block": '<form><block><p:gesture name="bow"/></block></form>',
@@ -217,3 +219,77 @@ def test_what_is_played_during_fetches_of_voicexml_is_priced_with_each(tmp_path:
     tune = lasting("[tune.wav]")
     fetched = [("subdialog", tune), ("goto", lasting("[a.wav]")), ("menu", 6515), ("choice", tune)]
     assert found == fetched
+
+
+PROMPTS = {
+    "another language": '<prompt>Good day. <s xml:lang="ja">おはよう</s> Bye then.</prompt>',
+    "a mark": '<prompt>Good<mark name="m"/>morning.</prompt>',
+    "a recording": '<prompt>Listen. <audio src="a.wav"/> Nice.</prompt>',
+    "its own base": '<prompt xml:base="sub/"><audio src="b.wav"/></prompt>',
+    "a recording with a text": '<audio src="a.wav">This is not said.</audio>',
+    "none": '<audio src="none.wav"/>',
+    "none, with a text": '<audio src="none.wav">This is said instead.</audio>',
+    "none of a folder": '<audio src="http://a.example/a.wav"/>',
+}
+
+
+@pytest.mark.parametrize("prompt", PROMPTS.values(), ids=PROMPTS)
+def test_a_prompt_of_voicexml_costs_what_it_lasts(tmp_path: Path, prompt: str) -> None:
+    (tmp_path / "sub").mkdir()
+    recording(tmp_path / "a.wav", 4)
+    recording(tmp_path / "sub/b.wav", 7)
+    _, fa, ea = voiced(tmp_path, f"<form><block>{prompt}</block></form>")
+    document, _ = read_application(ea, read_file(Path(ea)))
+    (part,) = outline(document, PROFILE).parts
+    ended = [one["time"] for one in run(tmp_path, fa, ea, "") if one["phase"] == "end"]
+    assert (part.lasts, part.known) == (round(ended[-1] * 1000), True)
+
+
+CHOICES = '<choice next="#m">tea</choice><choice next="#m">black coffee</choice>'
+
+
+@pytest.mark.parametrize(
+    "prompt, said, why",
+    [
+        ("Say <enumerate/>", "Say tea; black coffee", ""),
+        (
+            "Say <enumerate>this: </enumerate>",
+            "Say this:",
+            "a part of it is said for each choice",
+        ),
+        (
+            '<foreach item="i" array="[1, 2]">Again. </foreach>',
+            "Again.",
+            "an expression says how often a part of it is said",
+        ),
+        ("<audio expr=\"'a.wav'\"/>", "x" * 20, "an expression says what is played"),
+    ],
+)
+def test_a_prompt_that_is_said_piece_by_piece(
+    tmp_path: Path, prompt: str, said: str, why: str
+) -> None:
+    _, _, ea = voiced(tmp_path, f'<menu id="m"><prompt>{prompt}</prompt>{CHOICES}</menu>')
+    document, _ = read_application(ea, read_file(Path(ea)))
+    (part,) = (one for one in outline(document, PROFILE).parts if one.what == "speak")
+    assert (part.lasts, part.unknown) == (lasting(said), why)
+
+
+def test_documents_of_voicexml_that_are_not_read_are_a_gap(tmp_path: Path) -> None:
+    more = {f"m{one}": "<form/>" for one in range(MOST_PAGES)}
+    gotos = "".join(f'<goto next="{name}.vxml"/>' for name in more)
+    found, _, _ = voiced(tmp_path, f"<form><block>{gotos}</block></form>", **more)
+    told = [(gap.reason, gap.place.file) for gap in found.gaps]
+    reason = f"only {MOST_PAGES} documents of an application are read"
+    assert told == [(reason, str(tmp_path / "theirs.vxml"))]
+
+
+@pytest.mark.parametrize(
+    "kind, listens", [("bridge", True), ("consultation", True), ("blind", False)]
+)
+@pytest.mark.parametrize("grammar", ["", '<grammar src="builtin:boolean"/>'])
+def test_a_call_of_voicexml_listens_for_the_words_of_its_grammars(
+    tmp_path: Path, kind: str, listens: bool, grammar: str
+) -> None:
+    transfer = f'<transfer name="t" dest="tel:+1-555" type="{kind}">{grammar}</transfer>'
+    found, _, _ = voiced(tmp_path, f"<form>{transfer}</form>")
+    assert ("speech-recognition" in {*found.both, *found.only_ea}) == (listens and bool(grammar))

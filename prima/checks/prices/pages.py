@@ -41,10 +41,13 @@ class PricedPages(Pages):
             return [], Gap(node.place, f"only {MOST_PAGES} documents of an application are read")
         return [], None  # a run throws error.badfetch
 
-    def recording(self, page: Page, name: str) -> int | None:
-        """How long (ms) a recording of the application's folder plays, if it can be played."""
+    def recording(self, page: Page, base: str, name: str) -> int | None:
+        """How long (ms) a recording of the application's folder plays, if it can be played.
+
+        ``name`` is relative to a prompt's own ``base``, and that to the page's.
+        """
         try:
-            uri = urldefrag(page.join(page.base(), name))[0]
+            uri = urldefrag(page.join(page.join(page.base(), base), name))[0]
             return self.document.recording_ms(uri)
         except (FetchError, ValueError):
             return None

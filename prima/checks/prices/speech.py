@@ -16,6 +16,7 @@ from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 SAYS = "an expression gives a part of what it says"
 REPEATED = "an expression says how often a part of it is said"
+OF_EACH = "a part of it is said for each choice"
 
 
 @dataclass(slots=True)
@@ -41,14 +42,19 @@ class Said:
 
 
 class SpeechReader:
-    """Reads the speech of elements; ``recording`` returns a recording's duration (ms), if known."""
+    """Reads the speech of elements.
 
-    def __init__(self, recording: Callable[[str], int | None]) -> None:
+    ``recording`` returns a recording's duration (ms), if known, by its prompt's base and its name.
+    """
+
+    def __init__(self, recording: Callable[[str, str], int | None]) -> None:
         self._recording = recording
 
-    def read(self, pieces: Iterable[Node | str], lang: str, menu: Node | None = None) -> Said:
-        """Read pieces of a prompt, or of speech without one."""
-        said = Said(Speech(lang, ""))
+    def read(
+        self, pieces: Iterable[Node | str], lang: str, base: str, menu: Node | None = None
+    ) -> Said:
+        """Read pieces of a prompt with a language and a base, or of speech without one."""
+        said = Said(Speech(lang, "", base=base))
         for piece in pieces:
             self._piece(piece, said, menu)
         return said
@@ -80,8 +86,6 @@ class SpeechReader:
                 self._inner(node, said, menu)
             case "audio":
                 self._audio(node, said, menu)
-            case "mark":
-                said.speech.parts.append(" ")
             case _:
                 read_markup(node, said.speech, lambda: self._inner(node, said, menu))
 
@@ -91,18 +95,19 @@ class SpeechReader:
         said.speech.parts.append("x" * UNKNOWN_LETTERS)
 
     def _enumerate(self, node: Node, said: Said, menu: Node | None) -> None:
-        choices = menu.all("choice", "option") if menu is not None else []
         if node.content:
-            said.unknown = REPEATED
+            said.unknown = OF_EACH
             self._inner(node, said, menu)
-        said.speech.parts.append("; ".join(filter(None, map(words_of, choices))))
+        elif menu is not None:
+            choices = menu.all("choice", "option")
+            said.speech.parts.append("; ".join(filter(None, map(words_of, choices))))
 
     def _audio(self, node: Node, said: Said, menu: Node | None) -> None:
         if "expr" in node.attributes:
             self._guess(said, "an expression says what is played")
             self._inner(node, said, menu)
             return
-        ms, speech = self._recording(node.get("src")), said.speech
+        ms, speech = self._recording(said.speech.base, node.get("src")), said.speech
         spoken = says_instead(node)
         opened = speech.open(UNKNOWN_MS if ms is None and not spoken else ms)
         if spoken:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import chain
 
 from prima.checks.prices.dialogue import DialoguePrices
@@ -86,7 +86,7 @@ class PagePrices(DialoguePrices):
         self.everything: list[Price] = []
         """The parts of all documents of the application."""
         self.sketch = Sketch(page, pages.root(page))
-        self._reader = SpeechReader(lambda name: pages.recording(page, name))
+        self._reader = SpeechReader(partial(pages.recording, page))
         self._units: dict[int, Unit] = {}
         """The units around items, by those items' identities."""
         self._heard: dict[int, list[Price]] = {}
@@ -118,7 +118,8 @@ class PagePrices(DialoguePrices):
         holder = command.holder
         choices = holder if holder is not None and holder.tag in ("menu", "field") else None
         lang = command.node.get("xml:lang") or self.page.lang
-        said = self._reader.read(command.pieces, lang, choices)
+        base = command.node.get("xml:base")
+        said = self._reader.read(command.pieces, lang, base, choices)
         return max(said.lasts(self.profile.voices), 1), said.unknown
 
     def question(self, field: Field, form: Form) -> Price:
