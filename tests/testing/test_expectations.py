@@ -43,6 +43,7 @@ TRUE = [
     '<expect says="Going up" asked="Which floor?"/>',
     '<expect says="Mind the step." done="gesture" within="0s"/>',
     '<expect says="Floor 3" doing="speak" count="1" before="x"/>',
+    '<expect state="ask" before="x"/>',
     '<never says="Going up" doing="speak"/>',
     '<never says="Going down"/>',
     '<never says="Going up" on="touch"/>',
@@ -79,6 +80,7 @@ FALSE = {
     '<never says="Floor 3"/>': "It does at",
     '<never state="ride"/>': "desk is in it from",
     '<never finishes="gesture" on="reply"/>': "It does at",
+    '<expect event="touch" by="desk"/>': "It does for all, at",
 }
 
 
@@ -129,6 +131,45 @@ def test_what_does_not_happen_is_told_where_it_is_expected(
     assert expected in shown and "^~~" in shown
 
 
+BEFORE = {
+    '<never says="Going up" before="x"/>': 'the robot says "Going up", before "x". It does at',
+    '<never state="ride" before="x"/>': "desk is in it from 2.699 s on.",
+    '<expect says="Going down" before="x"/>': 'before "x". It never does.',
+}
+
+
+@pytest.mark.parametrize(("expected", "told"), BEFORE.items())
+def test_what_is_expected_before_something_else(expected: str, told: str, tmp_path: Path) -> None:
+    found = outcome(tmp_path, '<expect id="x" says="Mind the step"/>\n' + expected)
+    assert [told in one.message for one in found.failures] == [True]
+
+
+def test_a_state_that_comes_later_is_not_before(tmp_path: Path) -> None:
+    never = '<expect id="x" says="Which floor?"/><never state="ride" before="x"/>'
+    assert outcome(tmp_path, never).status == "passed"
+
+
+@pytest.mark.parametrize(
+    ("expected", "told"),
+    [
+        ('<expect state="ask" by="late" at="0s" within="0s"/>', "late has not begun then."),
+        ('<expect logs="floor 3" by="late"/>', "desk does, at 2.699 s"),
+    ],
+)
+def test_where_another_application_is_is_told(expected: str, told: str, tmp_path: Path) -> None:
+    (tmp_path / "late.xml").write_text(DESK.replace('"desk"', '"late"').replace("Which", "What"))
+    found = outcome(tmp_path, '<application src="late.xml" start="5s"/>\n' + expected)
+    assert [told in one.message for one in found.failures] == [True]
+
+
+@pytest.mark.parametrize(("value", "status"), [("true", "passed"), ("false", "failed")])
+def test_a_value_may_be_true_or_false(value: str, status: str, tmp_path: Path) -> None:
+    sure = DESK.replace("</send>", '<param name="sure" expr="floor == 3"/></send>')
+    data = f'<data name="sure" value="{value}"/>'
+    found = outcome(tmp_path, f'<expect sends="lift">{data}</expect>', sure)
+    assert found.status == status, format_result(found)
+
+
 def test_a_trigger_that_never_comes_is_a_failure_of_a_never_too(tmp_path: Path) -> None:
     assert outcome(tmp_path, '<never says="x" on="touch.back"/>').status == "failed"
 
@@ -136,7 +177,8 @@ def test_a_trigger_that_never_comes_is_a_failure_of_a_never_too(tmp_path: Path) 
 def test_one_error_for_what_follows_something_that_is_not_found(tmp_path: Path) -> None:
     found = outcome(
         tmp_path,
-        '<expect id="a" says="Going down"/>\n<expect says="Floor 3" after="a"/>\n'
+        '<expect id="a" says="Going down"/>\n'
+        '<expect says="Floor 3" after="a"/><expect says="Floor 3" before="a"/>\n'
         '<in-order><expect says="Nothing like it"/><expect says="Floor 3"/></in-order>',
     )
     assert [one.place.line - FIRST for one in found.failures] == [0, 2]

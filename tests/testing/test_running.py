@@ -231,6 +231,14 @@ def endless(folder: Path) -> None:
         (folder / f"{name}.xml").write_bytes(data)
 
 
+def test_a_run_that_makes_too_many_records_is_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("prima.devices.loop.MAX_RECORDS", 20)
+    done = prima("test", write(tmp_path, '<expect says="Which floor?"/>'), cwd=tmp_path)
+    assert done.returncode == 3 and "lift.xml:1:1: The run made more records" in done.stdout
+
+
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="needs groups of processes")
 def test_interrupted_tests_leave_no_process_behind(tmp_path: Path) -> None:
     endless(tmp_path)
