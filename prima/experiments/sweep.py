@@ -75,8 +75,6 @@ class Sweep:
             UsageError: a factor, level, policy or design is wrong.
         """
         self.question = question
-        if not question.scenarios:
-            raise UsageError("Name a scenario to run.")
         try:
             self._check_scenarios(question)
             self._plan(question)

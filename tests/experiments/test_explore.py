@@ -15,7 +15,10 @@ import pytest
 
 import prima as package
 from prima.errors import UsageError
-from prima.experiments.explore import Exploration, ExplorationPlan
+from prima.experiments.examine import Examiner, Seen
+from prima.experiments.explore import MOST_MOVES, Exploration, ExplorationPlan
+from prima.experiments.scenariotext import Variant
+from prima.experiments.settings import ExperimentSettings
 from prima.experiments.sweep import Sweep, SweepQuestion
 from tests.helpers.batches import files, until
 from tests.helpers.here import prima
@@ -107,6 +110,23 @@ def test_a_policy_that_cuts_is_told_by_the_invariants(visit: Path) -> None:
     assert done.returncode == 0, done.stdout
     done = prima("explore", "visit.xml", "--policy", "nun")
     assert done.returncode == 2 and 'There is no policy "nun"' in done.stderr
+
+
+def test_a_run_that_goes_wrong_is_a_problem(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In this process, as another one would not have so few records."""
+    Path("visit.xml").write_text(VISIT.replace("Welcome", "Bonjour"))
+    guide = Path("guide.xml").read_text().replace("<exit/>", '<throw event="bored"/>')
+    Path("guide.xml").write_text(guide)
+    stage = Examiner.of(["visit.xml"], ["touch"], ExperimentSettings())
+    seen = stage.run(Variant(0, 0, "", 0, ("1s",)))
+    assert isinstance(seen, Seen)
+    error, expect = seen.found
+    assert (error.kind, expect.kind) == ("error", "expect") and "bored" in error.text
+    assert expect.where == f"visit.xml:{VISIT[: VISIT.index('<expect')].count(chr(10)) + 1}"
+    monkeypatch.setattr("prima.devices.loop.MAX_RECORDS", 5)
+    seen = stage.run(Variant(0, 0, "", 0, ("1s",)))
+    assert isinstance(seen, Seen)
+    assert ("endless", "the run exceeds a limit") in [(one.kind, one.text) for one in seen.found]
 
 
 def test_a_broken_rule_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -275,6 +295,15 @@ def test_mistakes(words: list[str], why: str) -> None:
 
 
 def test_scenarios_that_cannot_be_explored() -> None:
+    touches = '<when at="2s"><touch sensor="head"/></when>' * MOST_MOVES
+    Path("many.xml").write_text(VISIT.replace("<expect", f"{touches}<expect"))
+    done = prima("explore", "many.xml")
+    assert done.returncode == 2 and "33 events are too many to move; name some" in done.stderr
+    Path("drawn.xml").write_text(VISIT.replace('after="1s"', 'after="normal(2s,1s)"'))
+    done = prima("explore", "drawn.xml", "--move", "reply.after")
+    assert done.returncode == 2 and '"normal(2s,1s)" is drawn' in done.stderr, done.stderr
+    with pytest.raises(UsageError, match="depth: write a number from 1 to 4"):
+        package.explore("visit.xml", depth=9)
     Path("none.xml").write_text(VISIT.replace("<when", "<!--").replace("</when>", "-->"))
     done = prima("explore", "none.xml")
     assert done.returncode == 2 and "nothing to move" in done.stderr, done.stderr

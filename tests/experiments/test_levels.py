@@ -72,6 +72,8 @@ def test_levels(path: str, levels: str, made: tuple[str, ...]) -> None:
         ("touch", "empirical(none.csv)", "none.csv cannot be read: No such file"),
         ("person.speed", "0|-3", "out of range"),
         ("person.x", "1e400", "is not|out of range"),
+        ("entrances", "open|close", 'There is no "close" here. Did you mean "closed"?'),
+        ("entrances", "open|both", 'There is no "both" here. Write open.closed.'),
     ],
 )
 def test_what_is_wrong_with_levels(path: str, levels: str, why: str) -> None:
@@ -91,6 +93,22 @@ def test_distributions_have_their_parameters() -> None:
         assert min(made) == pytest.approx(1, abs=0.01)
         assert max(made) == pytest.approx(3, abs=0.01)
         assert mean(made) == pytest.approx(2, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("limit", "why"),
+    [
+        ("MOST_BYTES", "many.csv cannot be read: it is larger than 4 bytes."),
+        ("MOST_VALUES", "many.csv has more than 4 values."),
+    ],
+)
+def test_files_with_too_many_values(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limit: str, why: str
+) -> None:
+    monkeypatch.setattr(f"prima.language.distributions.{limit}", 4)
+    (tmp_path / "many.csv").write_text("1\n2\n3\n4\n5\n", encoding="utf-8")
+    with pytest.raises(UsageError, match=why):
+        factor("touch", "empirical(many.csv)", str(tmp_path))
 
 
 def test_what_is_drawn_stays_in_the_range_of_the_value() -> None:

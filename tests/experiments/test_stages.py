@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from prima.errors import UsageError
+from prima.errors import RunError, UsageError
 from prima.experiments import kept
 from prima.experiments.scenariotext import Variant
 from prima.experiments.settings import ExperimentSettings
@@ -56,14 +56,26 @@ def test_a_packed_stage_needs_no_file(folder: Path, monkeypatch: pytest.MonkeyPa
     assert pickle.loads(unpacked).run(HERE) != here
 
 
-def test_a_run_without_memory_is_no_defect(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("error", "code", "failures"),
+    [
+        (MemoryError(), 3, "out of memory"),
+        (UsageError("It is not there."), 2, "It is not there."),
+        (RunError("It broke."), 3, "It broke."),
+        (KeyError("x"), 3, "this is a defect of prima: KeyError: 'x'"),
+    ],
+)
+def test_a_run_that_cannot_be_made_says_why(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, error: Exception, code: int, failures: str
+) -> None:
     stage = Stage.of(["visit.xml"], ["touch"], ExperimentSettings())
 
-    def full(*_: object) -> None:
-        raise MemoryError
+    def fails(*_: object) -> None:
+        raise error
 
-    monkeypatch.setattr(Stage, "rehearsed", full)
-    assert stage.run(HERE) == Made(3, failures="out of memory")
+    monkeypatch.delenv("PRIMA_DEBUG", raising=False)
+    monkeypatch.setattr(Stage, "rehearsed", fails)
+    assert stage.run(HERE) == Made(code, failures=failures)
 
 
 def test_too_much_to_pack(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -78,6 +78,8 @@ def test_options_come_before_the_file(folder: Path) -> None:
         ("seeds = 2", "seeds = 0", ":4", "seeds: write a whole number from 1"),
         ("seeds = 2", 'seeds = "2"', ":4", "seeds: write a whole number from 1"),
         ('"site/visit.xml"', "", ":2", 'scenarios: write a list of files, as ["visit.xml"]'),
+        ('"site/visit.xml"', "1", ":2", 'scenarios: write a list of files, as ["visit.xml"]'),
+        ('"prima", "fifo"', "1", ":3", 'policies: write a list of policies, as ["prima", "fifo"]'),
         ("scenarios", "#", "", 'a study needs scenarios: write scenarios = ["visit.xml"]'),
         ("seeds = 2", "seeds = ", ":4:9", "not TOML"),
         ("seeds = 2", 'design = "cube"', ":4", 'design: write "full", "random" or "lhs"'),

@@ -16,6 +16,7 @@ from prima.experiments.pools import local
 from prima.experiments.scenariotext import Variant
 from prima.experiments.sweep import Output, Sweep, SweepQuestion, estimate
 from prima.experiments.variants import Made, Stage, signature
+from tests import ROOT
 from tests.helpers.batches import files
 from tests.helpers.here import prima
 from tests.helpers.sweeps import VISIT, write_visit
@@ -252,6 +253,23 @@ def test_a_run_that_fails_is_a_row() -> None:
     assert fine["exit"] == 0
     done = prima("sweep", "visit.xml", "--vary", "reply=Yes.|", "-o", "t.csv")
     assert (done.returncode, done.stdout) == (3, "t.csv: 2 runs, 2 orders, 1 not fine\n")
+
+
+def test_levels_that_do_not_fit_together_are_a_row() -> None:
+    room = (ROOT / "documents" / "worlds" / "room.xml").read_text(encoding="utf-8")
+    Path("hall.xml").write_text(room.replace('"door"', '"gate"'), encoding="utf-8")
+    found = rows(
+        vary={"world": f"{ROOT}/documents/worlds/room.xml|hall.xml", "robot.at": "middle|door"}
+    )
+    assert [one["exit"] for one in found] == [0, 0, 0, 1]
+    assert 'There is no place "door"' in found[-1]["failures"]
+
+
+def test_a_path_is_of_one_kind_in_all_scenarios() -> None:
+    other = VISIT.replace('id="touch"', 'id="other"').replace('id="reply"', 'id="touch"')
+    Path("other.xml").write_text(other)
+    with pytest.raises(UsageError, match="touch: it is of another kind in each scenario"):
+        Sweep(SweepQuestion(("visit.xml", "other.xml"), {"touch": "1s"}))
 
 
 def test_the_folder_has_all_of_it() -> None:
