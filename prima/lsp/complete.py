@@ -30,11 +30,18 @@ IS = re.compile(r"\s*=")
 WORD_BEFORE = re.compile(r"(?:(?P<of>[\w$.]+)\.)?(?P<word>(?:[^\W\d]|\$)[\w$]*)?$")
 WORD_AFTER = re.compile(r"[\w$]*")
 MEMBERS = {
-    "event": ("name", "data", "message"),
-    "session": ("connection",),
-    "application": ("lastresult$",),
+    "dialogue": {
+        "event": ("name", "data", "message"),
+        "session": ("time",),
+        "$": ("utterance", "confidence"),
+    },
+    "voicexml": {
+        "session": ("connection", "event"),
+        "application": ("lastresult$",),
+        "$": ("utterance", "confidence", "inputmode", "interpretation"),
+    },
 }
-SHADOWS = ("utterance", "confidence", "inputmode", "interpretation")
+"""Members of variables, by vocabulary; ``$`` stands for an item's result."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -319,14 +326,13 @@ class _Completion:
         if of is None:
             known = visible(self.text.marks, tag) | given(self.page, tag)
         elif of in ("dialog", "document"):
-            known = visible(self.text.marks, tag)
+            known = visible(self.text.marks, tag, of=of)
         elif of == "sensor":
             readings = self.workspace.known(self.path, ("reading",))
             known = {one.mark.name: self._where(one) for one in readings}
-        elif of in MEMBERS:
-            known = dict.fromkeys(MEMBERS[of], of)
-        elif of.endswith("$"):
-            known = dict.fromkeys(SHADOWS, of)
+        else:
+            members = MEMBERS.get(dialect(self.page), {})
+            known = dict.fromkeys(members.get("$" if of.endswith("$") else of, ()), of)
         for name, detail in known.items():
             yield Proposal(name, "variable", start, end, name, detail=detail)
 

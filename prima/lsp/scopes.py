@@ -8,7 +8,7 @@ from prima.interpreter.events import OWN
 from prima.interpreter.selection import takes
 from prima.language.commands import TABLE_4_2
 from prima.lsp.descriptions import SESSION
-from prima.lsp.names import Mark
+from prima.lsp.names import Mark, dialect
 from prima.lsp.scan import ScannedTag, ScannedText
 from prima.script.globals import HANDLED
 from prima.voicexml.arranging import UNIT
@@ -25,16 +25,20 @@ UNFIT = {
 """Elements whose variables do not fit an attribute, by element and attribute."""
 
 
-def visible(marks: Iterable[Mark], tag: ScannedTag, attribute: str = "") -> dict[str, str]:
+def visible(
+    marks: Iterable[Mark], tag: ScannedTag, attribute: str = "", of: str = ""
+) -> dict[str, str]:
     """Variables visible in an element, with their declarations, or those that fit an attribute.
 
-    ``marks`` are those of the document.
+    ``marks`` are those of the document; ``of`` is ``dialog`` or ``document`` for members of
+    that scope alone.
     """
     form, unfit = tag.inside("form", "menu"), UNFIT.get((tag.key, attribute), ())
-    home, content = form.start if form else -1, _content_of(tag)
+    home, content = form.start if form else -1, None if of else _content_of(tag)
+    scopes = {"dialog": {home} - {-1}, "document": {-1}}.get(of, {home, -1})
     found: dict[str, str] = {}
     for mark in marks:
-        if not (mark.defines and mark.kind == ("variable",) and mark.scope in (home, -1)):
+        if not (mark.defines and mark.kind == ("variable",) and mark.scope in scopes):
             continue
         if mark.tag.key not in unfit and _content_of(mark.tag) in (None, content):
             owner = form.get("id") if form and mark.scope == home else "the document"
@@ -45,6 +49,8 @@ def visible(marks: Iterable[Mark], tag: ScannedTag, attribute: str = "") -> dict
 def given(page: ScannedText, tag: ScannedTag) -> dict[str, str]:
     """The predefined variables that there are in an element."""
     absent = set() if tag.inside(*HANDLERS) else {*HANDLED}
+    if dialect(page) == "voicexml":
+        absent.add("event")
     if not any(one.key == "watch" for one in page.tags):
         absent.add("sensor")
     return {name: text for name, text in SESSION.items() if name not in absent}

@@ -65,11 +65,20 @@ class Editor:
         self.client = LanguageClient("test", "1")
         self.told: dict[str, list[lsp.PublishDiagnosticsParams]] = {}
         self.versions: dict[str, int] = {}
+        self.watched: list[str] = []
+
+        def registered(params: lsp.RegistrationParams) -> None:
+            self.watched += [
+                watcher["globPattern"]
+                for one in params.registrations
+                for watcher in one.register_options["watchers"]
+            ]
 
         def published(params: lsp.PublishDiagnosticsParams) -> None:
             self.told.setdefault(params.uri, []).append(params)
 
         self.client.feature(lsp.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)(published)
+        self.client.feature(lsp.CLIENT_REGISTER_CAPABILITY)(registered)
 
         self.do(self.client.start_io(sys.executable, "-m", "prima", "lsp", "--stdio"))
         self.started = self.do(

@@ -148,3 +148,16 @@ def test_applications_are_proposed_for_a_policy(space: Workspace) -> None:
     space.put(path.as_uri(), text)
     proposed = {one.insert for one in complete(space, path, offset)}
     assert {"prima", "fifo", "fixed:one", "fixed:b"} <= proposed
+
+
+def test_the_devices_of_every_robot_are_proposed_where_no_robot_lists_its_own(
+    space: Workspace,
+) -> None:
+    path = space.folders[0] / "r.xml"
+    for own, offered in (("", True), ('<device name="tail"/>', False)):
+        text, offset = plain(
+            ROBOT.replace("<gesture", f'{own}<adds command="hop" devices="|"/><gesture')
+        )
+        space.put(path.as_uri(), text)
+        proposed = {one.label for one in complete(space, path, offset)}
+        assert ("arm" in proposed, "tail" in proposed) == (offered, not offered)

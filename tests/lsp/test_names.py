@@ -49,6 +49,17 @@ RULE = (
     '<rule id="s"><ruleref uri="#r"/></rule></grammar></field>'
     '<field name="g"><grammar root="r"><rule id="r"/></grammar></field></form></vxml>'
 )
+GIVEN = (
+    BEGIN + '<form id="g"><block cond="n"/></form><form id="a"><var name="n"/>'
+    '<subdialog name="s" src="#g"><param name="|n" expr="n"/></subdialog></form></prima>'
+)
+GIVEN_IN_VOICE = (
+    VOICE
+    + plain(GIVEN)[0][len(BEGIN) : -len("</prima>")].replace(
+        '<form id="g">', '<form id="g"><var name="|n"/>'
+    )
+    + "</vxml>"
+)
 
 GRAMMAR = (
     '<grammar xmlns="http://www.w3.org/2001/06/grammar" version="1.0" xml:lang="en" root="r">'
@@ -67,9 +78,11 @@ GRAMMAR = (
         (HELD, "fa/x.xml", 3, {"document.c = n; dialog.n = o.n; var o = {n: document.c};": 1}),
         (LISTED, "fa/x.xml", 2, {'<var name="c"/><form': 1, '"n document.c"': 1}),
         (LISTED_IN_VOICE, "ea/x.vxml", 3, {'"document.n dialog.c"': 1, '"application.n c.x"': 1}),
+        (GIVEN, "fa/x.xml", 2, {'<block cond="c"/>': 1, '<param name="c" expr="n"/>': 1}),
+        (GIVEN_IN_VOICE, "ea/x.vxml", 3, {'<var name="c"/><block cond="c"/>': 1, '<param name="c" expr="n"/>': 1}),
         (RULE, "ea/x.vxml", 3, {'root="c"': 1, 'uri="#c"': 1, 'root="r"': 1}),
     ],
-    ids=["form", "variable", "function", "property", "pattern", "script", "list", "list of VoiceXML", "rule"],
+    ids=["form", "variable", "function", "property", "pattern", "script", "list", "list of VoiceXML", "param", "param of VoiceXML", "rule"],
 )  # fmt: skip
 def test_names_of_a_document(
     editor: Editor, text: str, name: str, uses: int, renamed: dict[str, int]

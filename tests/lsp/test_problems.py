@@ -209,6 +209,35 @@ def test_problems_of_a_file_that_is_not_open_stand_with_it(editor: Editor) -> No
     broken.unlink()
 
 
+def test_files_and_folders_that_change_are_seen_at_once(tmp_path: Path) -> None:
+    world = '<world xmlns="urn:prima:world:1" version="1.0" id="w"><place id="door" x="0" y="0"/></world>'
+    watching = lsp.DidChangeWatchedFilesClientCapabilities(dynamic_registration=True)
+    able = lsp.WorkspaceClientCapabilities(did_change_watched_files=watching)
+    home, other = tmp_path / "home", tmp_path / "other"
+    for folder in (home, other):
+        folder.mkdir()
+        (folder / "w.xml").write_text(world, encoding="utf-8")
+    editor = Editor(home, lsp.ClientCapabilities(workspace=able))
+    scene = '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="|w.xml"><robot at="door"/>'
+    assert editor.proposals("s.xml", scene).keys() == {"w.xml"}
+    (home / "new.xml").write_text(world, encoding="utf-8")
+    saved = lsp.TextDocumentIdentifier(editor.uri("new.xml"))
+    editor.client.text_document_did_save(lsp.DidSaveTextDocumentParams(saved))
+    assert editor.proposals("s.xml", scene).keys() == {"w.xml", "new.xml"}
+    folders = [lsp.WorkspaceFolder(one.as_uri(), one.name) for one in (home, other)]
+    event = lsp.WorkspaceFoldersChangeEvent(added=folders, removed=[])
+    editor.client.workspace_did_change_workspace_folders(lsp.DidChangeWorkspaceFoldersParams(event))
+    assert editor.proposals("s.xml", scene).keys() == {"w.xml", "new.xml", "../other/w.xml"}
+    whole = scene.replace("|", "") + "</scenario>"
+    assert "no-such-name" not in [one.code for one in editor.open("s.xml", whole)]
+    (home / "w.xml").write_text(world.replace("door", "gate"), encoding="utf-8")
+    change = lsp.FileEvent(editor.uri("w.xml"), lsp.FileChangeType.Changed)
+    editor.client.workspace_did_change_watched_files(lsp.DidChangeWatchedFilesParams([change]))
+    editor.until("s.xml", "no-such-name")
+    assert editor.watched == ["**/*.xml", "**/*.vxml", "**/*.grxml"]
+    assert editor.end() == (0, "")
+
+
 def test_xml_of_other_people_is_left_alone(editor: Editor) -> None:
     assert (
         editor.open("pom.xml", '<project xmlns="http://maven.apache.org/POM/4.0.0"><a></project>')
