@@ -11,6 +11,7 @@ from prima.graph.labels import (
     LEAVES_USER,
     NO_REPLY,
     AnswerLabel,
+    answered,
     condition,
     joined,
     known,
@@ -90,8 +91,7 @@ class _DialogueGraph(Transitions[Act]):
             self._item(item, many)
         self.scopes = [handlers, self.own]
         for filled in form.filled:
-            names = ", ".join(filled.names) or "all"
-            self.content(filled.content, f"{names} answered")
+            self.content(filled.content, answered(filled.names, filled.mode))
         self.handlers(handlers)
         _describe(node, form, items)
 
@@ -103,7 +103,8 @@ class _DialogueGraph(Transitions[Act]):
             self.content(item.content, "then", conditions)
         elif isinstance(item, Subdialog):
             name = clean(item.node.get("name") or item.form)
-            self._to(item.form, "call", joined(f"subdialog {name}", conditions))
+            label = joined(f"subdialog {name}", conditions)
+            self.graph.edge(self.here, item.form, "call", label)
             self._filleds(item.filled, f"{name} has returned", NO_REPLY)
         elif isinstance(item, Field):
             where = f"{item.name}: " if many else ""
@@ -129,7 +130,8 @@ class _DialogueGraph(Transitions[Act]):
     def _links(self, links: Iterable[Link]) -> None:
         for link in links:
             if link.form:
-                self._to(link.form, "go", f"said {sayings(link.node.all('grammar'))}")
+                label = f"said {sayings(link.node.all('grammar'))}"
+                self.graph.edge(self.here, link.form, "go", label)
 
     def _filleds(self, filleds: Sequence[Filled], base: str, reply: AnswerLabel) -> None:
         for filled in filleds:
@@ -169,13 +171,7 @@ class _DialogueGraph(Transitions[Act]):
                 self.graph.edge(self.here, name, "guess", label)
             self.graph.edge(self.here, "", "computed", label, act.form.code)
         elif act.form:
-            self._to(act.form, "go", label)
-
-    def _to(self, form: str, kind: str, label: str) -> None:
-        if form in self.document.forms:
-            self.graph.edge(self.here, form, kind, label)
-        else:
-            self.graph.edge(self.here, "", "missing", label, form)
+            self.graph.edge(self.here, act.form, "go", label)
 
 
 def _describe(node: GraphNode, form: Form, items: Sequence[Item]) -> None:

@@ -22,8 +22,6 @@ LEAVES_USER = frozenset(name for name, row in TABLE_4_2.items() if row.leaves)
 YES = {"yes": "no", "no": "yes"}
 QUESTIONS = 3
 """Maximum number of questions of a state that are shown."""
-MOST_DEEP = 40
-"""Maximum depth of a grammar that is read."""
 
 
 def quoted(text: str, letters: int = SAID) -> str:
@@ -67,6 +65,11 @@ def joined(base: str, conditions: Iterable[str]) -> str:
     return label
 
 
+def answered(names: Sequence[str], mode: str) -> str:
+    """The cause of what a form's ``filled`` does: all or any of some items, or of all of them."""
+    return f"{(' or ' if mode == 'any' else ', ').join(names) or mode} answered"
+
+
 def otherwise(branches: list[str]) -> str:
     """The label of the case that no branch of an ``if`` is taken."""
     return YES.get(branches[0], "otherwise") if len(branches) == 1 else "otherwise"
@@ -103,12 +106,10 @@ def sayings(grammars: Iterable[Node]) -> str:
     return " or ".join(found) if len(found) < 3 else ", ".join(found)
 
 
-def _phrases(node: Node, depth: int = 0) -> list[str]:
+def _phrases(node: Node) -> list[str]:
     """The alternatives at a grammar's beginning, or else all of its words."""
-    if depth > MOST_DEEP:
-        return []
     if around := _only_part(node):
-        return _phrases(around, depth + 1)
+        return _phrases(around)
     texts = map(_words, node.nodes[:4] if node.tag == "one-of" else [node])
     return [text for text in texts if text]
 
@@ -122,18 +123,18 @@ def _only_part(node: Node) -> Node | None:
     return inner[0] if alone and not node.text else None
 
 
-def _words(node: Node, depth: int = 0) -> str:
+def _words(node: Node) -> str:
     """All words of a part of a grammar, with the first of alternatives."""
     parts: list[str] = []
     for item in node.content:
         if isinstance(item, str):
             parts.append(item)
-        elif depth < MOST_DEEP and item.tag == "one-of" and item.nodes:
-            parts.append(_words(item.nodes[0], depth + 1))
+        elif item.tag == "one-of" and item.nodes:
+            parts.append(_words(item.nodes[0]))
         elif item.tag == "ruleref":
             parts.append("...")
-        elif depth < MOST_DEEP and item.tag in ("item", "token") and item.get("repeat")[:1] != "0":
-            parts.append(_words(item, depth + 1))
+        elif item.tag in ("item", "token") and item.get("repeat")[:1] != "0":
+            parts.append(_words(item))
     return " ".join(" ".join(parts).split())[:200]
 
 

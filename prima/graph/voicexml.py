@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from prima.graph.labels import (
     ASKED,
     AnswerLabel,
+    answered,
     condition,
     joined,
     known,
@@ -111,8 +112,8 @@ class _VoiceGraph(Transitions[Node]):
             self.handlers(takers(unit))
         self.scopes = [own, *self.outer]
         for filled in dialog.all("filled"):
-            names = ", ".join(filled.get("namelist").split()) or "all"
-            self.content(filled.nodes, f"{names} answered")
+            names = filled.get("namelist").split()
+            self.content(filled.nodes, answered(names, filled.get("mode", "all")))
         self.handlers(own)
         if dialog.tag == "form" and not leaves_at_its_end(dialog):
             self.graph.edge(self.here, "", "exit", "at its end")
@@ -272,7 +273,7 @@ def _filled(item: Node, many: bool) -> str:
     name = item.get("name")
     match item.tag:
         case "subdialog":
-            return f"{clean(name)} has returned".strip()
+            return f"{clean(name) or item.tag} has returned"
         case "record":
             return f"{name or 'it'} recorded"
         case "transfer" | "object":

@@ -230,3 +230,22 @@ def test_ordinals() -> None:
     assert [ordinal(n) for n in (1, 2, 3, 4, 11, 12, 21, 112)] == [
         "1st", "2nd", "3rd", "4th", "11th", "12th", "21st", "112th",
     ]  # fmt: skip
+
+
+def test_a_form_s_filled_and_loops_are_told(tmp_path: Path) -> None:
+    question = '<field name="{0}" type="text"><prompt>{0}?</prompt></field>'.format
+    graph = drawn(
+        tmp_path,
+        app(
+            f'<on event="touch"><throw event="y"/></on><form id="a">{question("x")}{question("y")}'
+            '<filled namelist="x y" mode="any"><goto next="#b"/></filled>'
+            '<filled mode="any"><foreach item="q" array="[1]"><if cond="q"><goto next="#a"/></if>'
+            "</foreach></filled><filled><exit/></filled>"
+            '<on event="y"><goto next="#b"/></on></form><form id="b"/>'
+        ),
+    )
+    assert ways(graph, "a") == {
+        "b": ["x or y answered", "y", "touch, throws y"],
+        "a": ["any answered, if q"],
+        "ends the application": ["all answered"],
+    }

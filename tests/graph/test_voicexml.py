@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.helpers.graphs import drawn, named, vxml, ways
 
 
@@ -96,3 +98,87 @@ def test_the_documents_of_an_application_are_drawn_together(tmp_path: Path) -> N
     assert ways(graph, "in any state of root.vxml and its leaf documents") == {"b": ['said "b"']}
     assert named(graph, "b").reached and not named(graph, "root.vxml#r").reached
     assert ways(graph, "c") == {"goes to a missing target: ../out.vxml": ["then"]}
+
+
+def test_what_fills_an_item_of_voicexml_leads_on(tmp_path: Path) -> None:
+    to = '<filled><goto next="#{}"/></filled>'.format
+    graph = drawn(
+        tmp_path,
+        vxml(
+            f'<form id="a"><subdialog name="s" src="#d">{to("b")}</subdialog>'
+            f'<subdialog src="#d">{to("c")}</subdialog><record name="m">{to("d")}</record></form>'
+            f'<form id="b"><record>{to("a")}</record><object name="o" classid="x">{to("c")}</object>'
+            '<transfer dest="tel:1" bridge="true"><filled><foreach item="n" array="[1]">'
+            '<if cond="n"><goto next="#d"/></if></foreach></filled></transfer></form>'
+            '<form id="c"><field name="x" type="time"/><field name="y" type="date"/>'
+            '<filled namelist="x  y"><goto next="#a"/></filled>'
+            '<filled namelist="x y" mode="any"><goto next="#b"/></filled>'
+            '<filled><goto next="#c"/></filled><filled mode="any"><goto next="#d"/></filled></form>'
+            '<form id="d"><block><if cond="x"><return event="e.x"/><elseif cond="y"/>'
+            """<return namelist="z"/></if><goto expr="z ? '#a' : other"/></block></form>"""
+        ),
+        "a.vxml",
+    )
+    assert ways(graph, "a") == {
+        "d call": ["subdialog s", "subdialog"],
+        "b": ["s has returned"],
+        "c": ["subdialog has returned"],
+        "d": ["m recorded"],
+    }
+    assert ways(graph, "b") == {
+        "a": ["it recorded"],
+        "c": ["o over"],
+        "d": ["transfer over, if n"],
+    }
+    assert ways(graph, "c") == {
+        "a": ["x, y answered"],
+        "b": ["x or y answered"],
+        "c": ["all answered"],
+        "d": ["any answered"],
+    }
+    assert ways(graph, "d") == {
+        "a back": ["then, if x, throws e.x", "then, if y"],
+        "a guess": ["then, otherwise"],
+        "to a computed target z ? '#a' : other": ["then, otherwise"],
+    }
+
+
+GRAMMAR = (
+    '<grammar version="1.0" root="r" xmlns="http://www.w3.org/2001/06/grammar" {}>'
+    '<rule id="r">{}</rule><rule id="s">far</rule></grammar>'
+)
+
+
+@pytest.mark.parametrize(
+    ("rule", "said"),
+    [
+        ("<one-of><item>a <one-of><item>b</item><item>c</item></one-of> d</item></one-of>", '"a b d"'),
+        ('go <ruleref uri="#s"/> away', '"go ... away"'),
+        ('<item repeat="0-1">please</item> see <token>New York</token>', '"see New York"'),
+        ("<one-of><item>w</item><item>x</item><item>y</item><item>z</item></one-of>", '"w", "x", "y", ...'),
+        ("<item>" * 60 + "stop" + "</item>" * 60, '"stop"'),
+        ("please " + "<item>" * 60 + "stop" + "</item>" * 60, '"please stop"'),
+    ],
+)  # fmt: skip
+def test_a_grammar_says_what_it_takes(tmp_path: Path, rule: str, said: str) -> None:
+    body = f'<link next="#a">{GRAMMAR.format("", rule)}</link><form id="a"/>'
+    graph = drawn(tmp_path, vxml(body), "a.vxml")
+    assert ways(graph, "in any state") == {"a": [f"said {said}"]}
+
+
+def test_a_dialog_is_reached_by_its_grammars_for_the_whole_document(tmp_path: Path) -> None:
+    field = '<field name="x" type="boolean"/>'
+    outer = GRAMMAR.format('scope="document"', "outer")
+    (tmp_path / "y.grxml").write_text(GRAMMAR.format('xml:lang="en"', "no"), encoding="utf-8")
+    body = (
+        f'<form id="a"/><form id="b" scope="document">{GRAMMAR.format("", "start")}{field}</form>'
+        f'<form id="c">{GRAMMAR.format("", "inner")}{outer}'
+        f'<grammar scope="document" src="y.grxml" type="application/srgs+xml"/>{field}</form>'
+        '<menu id="d" scope="document"><choice next="#a">it</choice></menu>'
+    )
+    graph = drawn(tmp_path, vxml(body), "a.vxml")
+    assert ways(graph, "in any state") == {
+        "b": ['said "start"'],
+        "c": ['said "outer" or what y.grxml takes'],
+        "d": ["said one of its choices"],
+    }
