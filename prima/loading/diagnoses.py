@@ -9,6 +9,11 @@ from prima.errors.diagnoses.values import BAD_VALUE
 NO_FILE_HERE = NO_SUCH_FILE.says(
     'There is no file "{file}" here: this will be error.badfetch.', severity="warning"
 )
+TOO_LARGE_HERE = NO_SUCH_FILE.says(
+    '"{file}" has {size} bytes; at most {most} are read: this will be error.badfetch.',
+    "Divide it, or raise the limit: --limit bytes={size}.",
+    "warning",
+)
 OUTSIDE = NO_SUCH_FILE.says(
     '"{file}" is outside of the folder of the first document: this will be error.badfetch.',
     'Let a folder above both represent a URI: "--map https://example.org/=FOLDER", or uri and'

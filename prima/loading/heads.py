@@ -72,8 +72,6 @@ def check_files(head: Record, loaded: Loaded, name: str) -> None:
         UsageError: a file differs or is missing.
     """
     files = head["data"].get("files", {})
-    if not isinstance(files, dict):
-        raise UsageError(f"{name}: the run record's files are not an object.")
     for file, digest in files.items():
         if file in loaded.files and loaded.files[file] != digest:
             raise UsageError(f"{file} is not the file that the transcript was made with.")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from os.path import dirname, isfile
+from os.path import dirname, getsize, isfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
@@ -19,6 +19,7 @@ from prima.loading.applications import fetcher, in_folder
 from prima.loading.diagnoses import (
     NO_FILE_HERE,
     OUTSIDE,
+    TOO_LARGE_HERE,
 )
 from prima.loading.files import Folder, texts_of
 from prima.loading.similar import nearby
@@ -128,7 +129,7 @@ def _not_there(
     answered: tuple[str, ...],
     missing: set[Node],
 ) -> Iterator[Problem]:
-    """Warn of files that elements of a VoiceXML document name but its folder lacks.
+    """Warn of files that elements of a VoiceXML document name but its folder lacks, or are too large.
 
     The elements that name them are put into ``missing``.
     """
@@ -140,6 +141,10 @@ def _not_there(
         there = isfile(folder / file)
         inside = not file.startswith("../")
         if there and inside and (folder / file).resolve().is_relative_to(whole):
+            if (size := getsize(folder / file)) > LIMITS.bytes:
+                missing.add(node)
+                place = node.attribute_place(name)
+                yield TOO_LARGE_HERE.at(place, file=file[:80], size=size, most=LIMITS.bytes)
             continue
         uri = node.get(name).strip().partition("#")[0].partition("?")[0]
         spans = value_span(node, name, uri)

@@ -96,6 +96,16 @@ USAGES: list[Any] = [
     (["run", "s.xml", "--policy", "fixed:zz"], 2, '"fixed:zz" names an application that is not in the scenario. Write a.'),
     (["run", "s.xml", "--policy", ""], 2, "policy"),
     (["run", "s.xml", "-o", "s.xml"], 2, "s.xml"),
+    (["talk", "s.xml", "--map", "http://a.example/=a"], 2, "--map works only with --fa and --ea"),
+    (["test", "s.xml", "--limit", "depth=200", "--jobs", "2"], 2, "--limit works in one process: leave out --jobs."),
+    (["test", "s.xml", "--yes"], 2, "--yes works only with --update."),
+    (["test", "s.xml", "--update", "--policy", "fifo"], 2, "leave out --policy."),
+    (["test", "s.xml", "--update", "--format", "json"], 2, "leave out --format json."),
+    (["sweep", "s.xml", "--resume"], 2, "--resume needs the table: -o sweep.csv."),
+    (["sweep", "s.xml", "--vary", "person.speed"], 2, '--vary "person.speed": write PATH=LEVELS'),
+    (["sweep", "s.xml", "--vary", " =1"], 2, '--vary " =1": write PATH=LEVELS'),
+    (["sweep", "s.xml", "--vary", "until=1s", "--vary", "until =2s"], 2, "--vary: until is there twice"),
+    (["report", "good.jsonl", "--scenario", "s.xml", "--scenario", "s.xml"], 2, "Name one --scenario for all transcripts, or one for each."),
     (["run", "s.xml", "-o", "/dev/full"], 2, "No space left"),
     (["replay", "good.jsonl", "s.xml", "-o", "/dev/full"], 2, "No space left"),
     *(([*words, "--why"], 2, "--why works only with a table: prima show TRANSCRIPT --why.")
@@ -112,6 +122,23 @@ def test_usage(
     prima: Prima, transcript: str, arguments: list[str], code: int, message: str
 ) -> None:
     prima(*arguments).check(code, message)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("graph s.xml", "Name the file to write: -o FILE.svg; or print text"),
+        ("export good.jsonl --to mcap", "mcap is a binary format: name a file with -o."),
+        ("report good.jsonl", "Name the file to write: -o report.html."),
+    ],
+)
+def test_what_is_not_for_a_terminal_is_not_written_to_one(
+    prima: Prima, transcript: str, monkeypatch: pytest.MonkeyPatch, words: str, message: str
+) -> None:
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    made = prima(*words.split())
+    made.check(2, message)
+    assert not made.out
 
 
 def test_a_grammar_in_place_of_an_application(prima: Prima, tmp_path: Path) -> None:

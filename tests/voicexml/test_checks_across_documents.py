@@ -221,6 +221,24 @@ def test_a_file_above_the_folder_is_told_to_need_a_mapping(tmp_path: Path) -> No
     assert 'There is no file "../rood.vxml" here' in one
 
 
+def test_a_file_that_is_too_large_to_be_read_is_told_where_it_is_named(tmp_path: Path) -> None:
+    (tmp_path / "large.vxml").write_text(VXML.format("", f"<form/><!--{'x' * 2000}-->"))
+    (tmp_path / "large.grxml").write_text(f"<!--{'x' * 2000}-->{xml('<item>x</item>')}")
+    text = '<form><field name="f"><grammar src="large.grxml"/></field><block><goto next="large.vxml"/></block></form>'
+    (tmp_path / "main.vxml").write_text(VXML.format("", text))
+    done = prima(
+        "validate", "main.vxml", "--limit", "bytes=1000", "--format", "short", cwd=tmp_path
+    )
+    told = [line for line in done.stdout.splitlines() if "[no-such-file]" in line]
+    for line, name in zip(told, ("large.grxml", "large.vxml"), strict=True):
+        size = (tmp_path / name).stat().st_size
+        assert line.endswith(
+            f'"{name}" has {size} bytes; at most 1000 are read: this will be error.badfetch.'
+            f" Divide it, or raise the limit: --limit bytes={size}. [no-such-file]"
+        )
+    assert done.returncode == 0
+
+
 CALLED = VXML.format(
     "", '<form id="call"><var name="order"/><block><return namelist="order"/></block></form>'
 )
