@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from prima import api
+from prima.devices import loop
 from tests import ROOT
 from tests.helpers import here
 from tests.helpers.talking import ASKS, DOCUMENTS, TICKS, TOUCHED, room, start
@@ -76,6 +77,8 @@ def test_applications_alone_are_played_in_a_room(tmp_path: Path) -> None:
         ([str(TOUCHED), "--policy", "prma"], "prma"),
         ([str(TOUCHED), "--save", str(TOUCHED)], "one of the run's own documents"),
         ([str(TOUCHED), "--save", "nowhere/x.xml"], "there is no folder nowhere"),
+        ([str(TOUCHED), "--save", "x" * 300], "x: cannot be written: File name too long."),
+        ([str(TOUCHED), "--save", os.devnull], "exists and is not a saved session"),
         (["nothing.xml"], "nothing.xml: cannot be read"),
     ],
 )
@@ -174,3 +177,36 @@ def test_applications_are_talked_to_in_another_world_and_on_another_robot(tmp_pa
         assert refused.returncode in (1, 2) and told in refused.stderr, refused.stderr
     refused = here.prima("talk", path, "--world", world, cwd=tmp_path)
     assert refused.returncode == 2 and "a scenario names its own" in refused.stderr
+
+
+def test_lines_of_a_pipe_come_in_real_time_too(tmp_path: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "prima", "talk", str(TOUCHED), "--real-time"],
+        cwd=tmp_path, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    assert process.stdin and process.stdout
+    process.stdout.readline()
+    time.sleep(1.2)
+    lines = b"\xff\n/back 100ms\n/touch head\n/save v.xml\n/quit\n"
+    out, errors = process.communicate(lines, 30)
+    assert process.returncode == 1 and b"The line is not UTF-8." in errors
+    assert b"Back at 0.1s, after row" in out
+    [touched] = [one for one in api.rehearse(tmp_path / "v.xml").rows() if "touches" in one.what]
+    assert 0.1 <= touched.time < 1
+
+
+@pytest.mark.parametrize(
+    ("command", "words", "told"),
+    [
+        ("talk", [], "the run made more records than allowed; the session is over."),
+        ("report", ["-o", "r.html"], "records"),
+    ],
+)
+def test_a_run_of_too_many_records_gives_exit_code_3(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, words: list[str], told: str
+) -> None:
+    monkeypatch.setattr(loop, "MAX_RECORDS", 10)
+    done = here.prima(command, TOUCHED, *words, cwd=tmp_path, input="/wait 60s\n")
+    assert done.returncode == 3 and told in done.stderr
+    assert not (tmp_path / "r.html").exists()

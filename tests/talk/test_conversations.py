@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 
 from prima import api
+from prima.api.rehearsing import fetcher
 from prima.messages import Record
+from prima.talk import game
 from prima.transcript.rows import GrowingTable
 from tests.helpers.talking import ASKS, DOCUMENTS, TOUCHED, room, start, type_in
 
@@ -223,3 +225,37 @@ def test_a_session_has_a_limit() -> None:
     talk.line("/wait 86000s")
     assert talk.done
     assert "no longer than a day" in paper.told[-1]
+
+
+def test_a_session_has_no_more_lines_than_can_be_saved(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(game, "MOST_LINES", 2)
+    talk, paper = start()
+    type_in(talk, "/note One.", "/note Two.", "/note Three.")
+    assert paper.told[-1:] == ["A session may have 2 lines: save it, and start a new one."]
+    assert len(talk.game.lines) == 2
+
+
+def test_before_the_first_row_there_is_nothing_to_explain() -> None:
+    talk, paper = start(real=True)
+    type_in(talk, "/why", "/touch head")
+    assert paper.told == ["There is no row yet."]
+    assert "<!-- before the first row -->" in talk.game.saved("visit.xml")
+
+
+def test_an_application_is_not_removed_twice() -> None:
+    talk, paper = start()
+    type_in(talk, "/back 5s", "/unload guide", "/unload guide")
+    assert paper.told[-1:] == ['"guide" is not loaded. Load it with /load.']
+
+
+def test_what_hosts_were_asked_is_not_undone() -> None:
+    talk, paper = start(web=fetcher(["localhost"], 2))
+    type_in(talk, "/touch head", "/undo", "/back 1s")
+    assert paper.told[-2:] == ["Requests to hosts cannot be undone."] * 2
+
+
+def test_the_help_tells_that_several_may_follow_one_another() -> None:
+    talk, paper = start()
+    type_in(talk, "/help", "/help walk")
+    line = "Several on one line happen in sequence: Yes. /wait 2s /touch head"
+    assert [line in one for one in paper.shown] == [True, False]
