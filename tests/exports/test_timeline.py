@@ -7,6 +7,8 @@ from collections import Counter
 import pytest
 
 from prima import api
+from prima.errors import UsageError
+from prima.exports import tiers
 from tests.helpers.exporting import SCENARIOS, end, event, made, of, start
 
 
@@ -126,3 +128,15 @@ def test_a_recorded_duration_counts_and_a_guess_never_overlaps() -> None:
 def test_times_that_go_backwards_never_make_an_interval_of_less_than_nothing() -> None:
     found = made([start(5.0, "a#1"), end(1.0, "a#1"), event(2.0, "bell")])
     assert of(found, "a: does")[0][:2] == (5.0, 5.0)
+
+
+def test_what_no_file_could_hold_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    records = [start(0, "a#1", text="Hello."), end(86_400, "a#1")]
+    assert made(records).end == 86_400_000
+    with pytest.raises(UsageError, match=r"t\.jsonl: the transcript ends after more than a day\."):
+        made([*records, event(86_400.001, "touch")])
+    for most in ("MOST_MARKS", "MOST_LETTERS"):
+        with monkeypatch.context() as lower:
+            lower.setattr(tiers, most, 1)
+            with pytest.raises(UsageError, match="Cut the transcript after whole lines"):
+                made([*records, event(1, "touch.head"), event(2, "touch.head")])

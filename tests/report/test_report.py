@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from functools import cache
 from html.parser import HTMLParser
 from itertools import pairwise
@@ -319,6 +320,9 @@ def test_loops_are_one_bar_and_what_waits_is_told() -> None:
     ]
     assert lanes.apps == ["follow", "navigate"]
     assert all(bar.end >= bar.begin for bar in lanes.behaviors)
+    units = run(scenario=SCENARIOS / "picture-alone.xml")
+    marked = make([units]).count("<span>unit</span>")
+    assert marked == sum(bool(row.bracket) for row in units.rows()) > 0
 
 
 def test_without_the_scenario_only_reported_places_are_known() -> None:
@@ -342,9 +346,20 @@ def test_the_scenario_gives_the_map_and_the_users_way(policy: str) -> None:
     assert max(far) < 0.05, "where nothing is decided, bodies move on the page, too"
 
 
-def test_a_run_that_comes_out_otherwise_has_only_its_reports() -> None:
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda records: records[30].update(time=records[30]["time"] + 0.001),
+        lambda records: records.append(records[-1]),
+        lambda records: records[0]["data"].update(policy="no-such"),
+        lambda records: records[0]["data"].update(bound="much"),
+    ],
+)
+def test_a_run_that_comes_out_otherwise_has_only_its_reports(
+    damage: Callable[[Any], object],
+) -> None:
     records = json.loads(json.dumps(run().records))
-    records[30]["time"] += 0.001
+    damage(records)
     walk: RobotWalk = walk_of(api.Transcript(records, "x"), api.load_scenario(SCENARIO))
     assert walk.source == "reports" and walk.plan and not walk.person
 
@@ -356,6 +371,9 @@ def test_another_scenario_is_refused() -> None:
     records = json.loads(json.dumps(run().records))
     records[0]["data"]["files"]["../fa/follow.xml"] = "0" * 64
     with pytest.raises(UsageError, match=r"follow\.xml has changed since"):
+        make([api.Transcript(records, "x")], [api.load_scenario(SCENARIO)])
+    records[0]["data"]["files"] = {}
+    with pytest.raises(UsageError, match="x: the transcript does not name its files; leave out"):
         make([api.Transcript(records, "x")], [api.load_scenario(SCENARIO)])
 
 
