@@ -85,8 +85,8 @@ def check_code(facts: Facts) -> Iterator[Problem]:
             yield from _used(variables, expr, known, script)
     _look_ahead([(expr.code, script) for expr, _, script in waiting])
     for expr, known, script in waiting:
-        if expr.attribute and expr.attribute not in expr.node.attributes:
-            continue  # missing, which the schema reports
+        if expr.attribute and not expr.node.get(expr.attribute).strip():
+            continue  # missing or empty, which the schema reports
         problem = _compiled(expr, script)
         if problem is not None:
             yield problem
