@@ -67,7 +67,15 @@ def points(path: str) -> list[tuple[float, float]]:
     return found
 
 
-PICTURES = [*(str(path.relative_to(ROOT)) for path in DEMOS), "60", "60 chain"]
+PICTURES = [*(str(path.relative_to(ROOT)) for path in DEMOS), "60", "60 chain", "marks"]
+
+
+MARKED = (
+    '<form id="a" stream="hold"><iu><block><speak>Oh.</speak></block></iu>'
+    '<field name="x" type="text" channel="connect"><prompt>What?</prompt></field>'
+    '<block cond="x"><topological-move to="lab"/></block></form>'
+)
+"""A state with every mark."""
 
 
 @pytest.mark.parametrize("name", PICTURES)
@@ -84,7 +92,12 @@ def test_no_text_lies_on_another_and_no_line_crosses_a_card(name: str, tmp_path:
             for n in range(60)
         )
         path.write_text(app("".join(forms) + '<form id="s60"/>'), encoding="utf-8")
+    elif name == "marks":
+        path = tmp_path / "app.xml"
+        path.write_text(app(MARKED.replace('"a"', '"b"') + MARKED), encoding="utf-8")
     root = etree.fromstring(picture(path).encode())
+    marks = [mark for node in states(path).nodes.values() for mark in node.marks]
+    assert len(boxes(root, "mark")) == len(marks)
     width, height = float(root.get("width", "")), float(root.get("height", ""))
     held, written = boxes(root, "box"), texts(root)
     assert len(held) == len(states(path).nodes)
@@ -232,6 +245,10 @@ def test_the_same_file_gives_the_same_bytes() -> None:
             cwd=ROOT,
         )
         assert done.stdout == made
+
+
+def test_a_letter_with_its_accent_apart_is_as_wide_as_without() -> None:
+    assert measure("cafe\u0301") == measure("cafe")
 
 
 def test_a_long_name_is_broken_at_a_joint() -> None:

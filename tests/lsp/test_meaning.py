@@ -74,6 +74,18 @@ def test_symbols_links_and_pairs_of_tags(editor: Editor) -> None:
     editor.close("fa/x.xml")
 
 
+def test_what_has_no_meaning_and_no_pair_has_no_answer(editor: Editor) -> None:
+    text = BEGIN + '<form id="a"><bl|ock><exit/><speak>Hi.</speak></form></prima>'
+    for marked in (text, text.replace("|", "").replace("Hi", "H|i")):
+        where, client = editor.at("fa/x.xml", marked), editor.client
+        linked = lsp.LinkedEditingRangeParams(*where)
+        assert editor.do(client.text_document_linked_editing_range_async(linked)) is None
+    assert editor.do(client.text_document_hover_async(lsp.HoverParams(*where))) is None
+    name = lsp.PrepareRenameParams(*where)
+    assert editor.do(client.text_document_prepare_rename_async(name)) is None
+    editor.close("fa/x.xml")
+
+
 FIXED = {
     "element": (BEGIN + '<form id="a"><block><speek>x</speek><exit/></block></form></prima>', "<speak>x</speak>"),
     "hint": (BEGIN + '<form id="a"><block><say>x</say><exit/></block></form></prima>', "<speak>x</speak>"),

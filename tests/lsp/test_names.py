@@ -338,9 +338,20 @@ def test_files_are_found_and_renamed(editor: Editor) -> None:
     assert isinstance(move, lsp.RenameFile)
     assert move.new_uri == editor.uri("fa/behind.xml")
     assert len(edits) == len({one.uri for one in found})
-    with pytest.raises(JsonRpcException, match="already"):
-        rename(editor, where, "../fa/dance.xml")
+    for new, why in (("../fa/dance.xml", "already"), (" ", '" " is not a file\'s name.')):
+        with pytest.raises(JsonRpcException, match=why):
+            rename(editor, where, new)
+    assert rename(editor, where, "../fa/follow.xml") is None
     editor.close("scenarios/x.xml")
+
+
+def test_an_editor_that_moves_no_files_is_told_to_do_it_itself(tmp_path: Path) -> None:
+    (tmp_path / "w.xml").write_text('<world xmlns="urn:prima:world:1" version="1.0" id="w"/>')
+    editor = Editor(tmp_path, lsp.ClientCapabilities())
+    where = editor.at("s.xml", SCENE.replace("../worlds/office.xml", "w|.xml") + "</scenario>")
+    with pytest.raises(JsonRpcException, match="This editor lets no server move a file"):
+        rename(editor, where, "v.xml")
+    assert editor.end() == (0, "")
 
 
 @pytest.mark.parametrize(
