@@ -485,3 +485,5 @@ def test_a_file_that_ends_too_soon_is_no_interrupt(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr("prima.cli.Commands.invoke", cut)
     with pytest.raises(AssertionError, match="defect of prima: EOFError: marshal data too short"):
         prima("explain", "S1")
+    with pytest.raises(EOFError):  # with where it was raised
+        prima("explain", "S1", env={**os.environ, "PRIMA_DEBUG": "1"})

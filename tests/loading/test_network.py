@@ -47,6 +47,10 @@ class Host(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         self.told.append(self.rfile.read(int(self.headers["Content-Length"])).decode())
+        path = urlsplit(self.path).path
+        if path.startswith("/to/"):
+            self._move("/form", int(path.removeprefix("/to/")))
+            return
         self._send(vxml("<form><block><exit/></block></form>"))
 
     def _give(self) -> None:
@@ -64,8 +68,8 @@ class Host(BaseHTTPRequestHandler):
         self.end_headers()
         self.wfile.write(data)
 
-    def _move(self, where: str) -> None:
-        self.send_response(302)
+    def _move(self, where: str, status: int = 302) -> None:
+        self.send_response(status)
         self.send_header("Location", where)
         self.end_headers()
 
@@ -377,3 +381,17 @@ def test_an_answer_without_end_is_badfetch(path: str, why: str, tmp_path: Path, 
     made = played(tmp_path, host, again(host, path))
     (told,) = logs(made)
     assert why in told
+
+
+@pytest.mark.parametrize(
+    ("status", "sent"), [(301, False), (302, False), (303, False), (307, True), (308, True)]
+)
+def test_a_form_is_sent_on_only_where_its_method_stays(
+    status: int, sent: bool, tmp_path: Path, host: str
+) -> None:
+    Host.pages = {"/form": vxml("<form><block><exit/></block></form>")}
+    submit = f'<submit next="http://{host}/to/{status}" method="post" namelist="n"/>'
+    made = played(tmp_path, host, f'<var name="n" expr="7"/><form><block>{submit}</block></form>')
+    assert made.rows()[-1].what == "ends app0: exit"
+    assert Host.told == ["n=7"] * (2 if sent else 1)
+    assert Host.asked == ([] if sent else ["/form"])
