@@ -199,6 +199,14 @@ def test_what_a_sweep_will_cost() -> None:
     assert "with 1 process (" in estimate(Sweep(SweepQuestion(("visit.xml",), TOUCH)), 1)
 
 
+def test_what_many_runs_will_cost_is_told_before_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    for many, told in ((1, True), (2, False)):
+        monkeypatch.setattr("prima.cli.sweep.MANY", many)
+        done = prima("sweep", "visit.xml", "--vary", "touch=0s|1s", "--workers", "1")
+        assert done.returncode == 0 and len(done.stdout.splitlines()) == 3
+        assert ("2 runs: about " in done.stderr) == told
+
+
 def test_the_cost_of_millions_is_estimated_from_runs_across_the_plan(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
