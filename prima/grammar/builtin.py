@@ -151,8 +151,6 @@ def _open(name: str, given: dict[str, str], text: str, mode: str) -> bool:
     if name == "digits":
         most = _lengths(given)[1]
     only = "0123456789*" if name in ("number", "currency", "phone") else "0123456789"
-    if name == "boolean":
-        return not text
     return set(text) <= set(only) and (most is None or len(text) < most)
 
 

@@ -198,9 +198,6 @@ class TagInterpreter:
                     inner = self._results[id(event)]
                     given = event.name, self._box(inner, result), self.text(inner)
                     result.box = engine.resume(environment, *given)
-                elif isinstance(event, Value):
-                    given = "builtin", engine.box(event.value), event.text
-                    result.box = engine.resume(environment, *given)
         except EngineLost as error:
             raise EngineLost(f"{tags[0].where()}: {error}") from None
         except ScriptError as error:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from prima.errors import Problem, did_you_mean
 from prima.grammar.legacy import translate
-from prima.grammar.model import BuiltIn, GrammarDocument, Part, Reference, Tag, walk
+from prima.grammar.model import GrammarDocument, Part, Reference, Tag, walk
 from prima.script.budget import Budget
 from prima.script.globals import GLOBALS, VARIABLES
 from prima.script.names import script_names
@@ -123,6 +123,4 @@ def _held(body: Part) -> tuple[list[Tag], set[str]]:
                 tags.append(part)
             case Reference(rule=rule) if rule is not None:
                 rules.add(rule.name)
-            case BuiltIn():
-                rules.add("builtin")
     return tags, rules

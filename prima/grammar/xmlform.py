@@ -24,8 +24,6 @@ from prima.grammar.xmlcheck import GrammarChecker
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
-MAX_DEPTH = 100
-
 
 def read_xml(
     node: Node, document: GrammarDocument, problems: Problems, inline: bool, lenient: bool = False
@@ -150,7 +148,7 @@ class _Reader(GrammarChecker):
             message = f'The scope of a rule is public or private, not "{scope}".'
             self.note(node, "bad-value", message, 'Write scope="public", or remove it.', "scope")
         before = len(self.problems.found)
-        parts = self._parts(node, 1)
+        parts = self._parts(node)
         if not parts and len(self.problems.found) == before:
             message = f'The rule "{name}" holds nothing.'
             remedy = 'Write <ruleref special="NULL"/> for one that is matched by nothing said.'
@@ -160,11 +158,8 @@ class _Reader(GrammarChecker):
 
     # Expansions (section 2)
 
-    def _parts(self, node: Node, depth: int) -> list[Part]:
+    def _parts(self, node: Node) -> list[Part]:
         """The expansions in a rule or an item."""
-        if depth > MAX_DEPTH:
-            self.note(node, "too-deep", f"Elements are nested more than {MAX_DEPTH} deep.")
-            return []
         parts: list[Part] = []
         for item in node.content:
             if isinstance(item, str):
@@ -173,27 +168,27 @@ class _Reader(GrammarChecker):
             elif not self.known(item, node):
                 continue
             elif item.tag != "example":
-                parts += self._part(item, depth)
+                parts += self._part(item)
             elif parts:
                 message = "<example> comes after the rule's expansion."
                 self.note(item, "misplaced-element", message, "Put it first in the <rule>.")
         return parts
 
-    def _part(self, node: Node, depth: int) -> list[Part]:
+    def _part(self, node: Node) -> list[Part]:
         match node.tag:
             case "token":
                 return self._token(node)
             case "ruleref":
                 return self._ruleref(node)
             case "one-of":
-                return self._one_of(node, depth)
+                return self._one_of(node)
             case "tag":
                 tag = Tag(node.own_text, partial(node.attribute_place, ""))
                 self.document.tags.append(tag)
                 return [tag]
             case _:
                 self._number(node, "weight")  # without effect outside of <one-of>
-                return [self._item(node, depth)]
+                return [self._item(node)]
 
     def _words(self, node: Node, text: str) -> Part | None:
         """Text as tokens (section 2.1)."""
@@ -251,20 +246,20 @@ class _Reader(GrammarChecker):
         self.document.references.append(found)
         return [found]
 
-    def _one_of(self, node: Node, depth: int) -> list[Part]:
+    def _one_of(self, node: Node) -> list[Part]:
         parts: list[Part] = []
         weights: list[float | None] = []
         for child in node.nodes:
             if self.known(child, node):
-                parts.append(self._item(child, depth + 1))
+                parts.append(self._item(child))
                 weights.append(self._number(child, "weight"))
         if not parts:
             self.note(node, "missing-element", "<one-of> has no <item>.", "Write at least one.")
             return []
         return [choice(parts, weights)]
 
-    def _item(self, node: Node, depth: int) -> Part:
-        inside = sequence(self._parts(node, depth + 1))
+    def _item(self, node: Node) -> Part:
+        inside = sequence(self._parts(node))
         chance = self._number(node, "repeat-prob")
         if "repeat" not in node.attributes:
             return inside

@@ -211,6 +211,12 @@ def test_whether_more_keys_may_follow() -> None:
     assert digits.accepts_prefix("12", mode="dtmf") and not digits.accepts_prefix(
         "123", mode="dtmf"
     )
+    answer = load("builtin:dtmf/boolean?y=*")
+    assert [answer.accepts_prefix(keys, mode="dtmf") for keys in ("", "*", "2")] == [
+        True,
+        False,
+        False,
+    ]
 
 
 def test_whether_more_words_may_follow() -> None:

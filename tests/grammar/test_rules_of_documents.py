@@ -14,6 +14,11 @@ from prima import api
     [
         ('<grammar root="zz">yes</grammar>', "Remove root: this grammar holds no <rule>."),
         ('<grammar root="root">yes</grammar>', "Remove root: this grammar holds no <rule>."),
+        ('<grammar><rule id="a">yes</rule>no</grammar>', "its own text has no effect."),
+        (
+            '<grammar><rule id="a">yes</rule><rule id="a">no</rule></grammar>',
+            'There are two rules "a". Rename one.',
+        ),
         ('<grammar root="a"><rule id="a">yes</rule></grammar>', ""),
         ('<grammar><item repeat="">yes</item></grammar>', "repeat"),
         ('<grammar><item repeat="2">yes</item></grammar>', ""),

@@ -6,6 +6,7 @@ import pytest
 
 from prima.grammar import GrammarError, load
 from prima.grammar.vocabulary import SRGS
+from prima.markup.limits import LIMITS
 
 GRAMMAR = f'<grammar xmlns="{SRGS}" version="1.0" xml:lang="en" root="r">{{}}<rule id="r">{{}}</rule></grammar>'
 
@@ -21,6 +22,7 @@ GRAMMAR = f'<grammar xmlns="{SRGS}" version="1.0" xml:lang="en" root="r">{{}}<ru
         ("", "a<lexicon uri='l'/>", "<lexicon> is not allowed in <rule>.", "It is allowed in <grammar>."),
         ("", "a<tag><example/></tag>", "<example> is not allowed in <tag>.", "It is allowed in <rule>."),
         ("", "<token>a<b/></token>", "<b> is not allowed in <token>.", ""),
+        ("", "<item xmlns=''>a</item>", "<item> is in another namespace than <rule>.", f'Declare xmlns="{SRGS}".'),
         ("", "<ruleref special='NULL'>a</ruleref>", "Text is not allowed in <ruleref>.", "Remove it."),
     ],
 )  # fmt: skip
@@ -36,3 +38,24 @@ def test_what_is_misplaced_is_told_with_its_place(
 def test_metadata_holds_what_it_likes() -> None:
     metadata = '<metadata><x:a xmlns:x="urn:x">text</x:a><item/></metadata>'
     assert load(GRAMMAR.format(metadata, "a")).match("a")
+
+
+def test_words_alone_are_told_how_to_be_a_grammar() -> None:
+    with pytest.raises(GrammarError) as caught:
+        load(f'<grammar xmlns="{SRGS}" version="1.0" xml:lang="en">just words</grammar>')
+    (problem,) = caught.value.problems
+    assert (problem.code, problem.place.column) == ("stray-text", 80)
+    assert problem.remedy.startswith("Write it in SRGS: rules in XML,")
+
+
+def test_grammars_are_as_deep_as_documents_may_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(LIMITS, "depth", 200)
+    inside = "<item>" * 198 + "a" + "</item>" * 198
+    assert load(GRAMMAR.format("", inside)).match("a")
+
+
+def test_a_rule_that_is_not_there_is_told_with_those_that_are() -> None:
+    with pytest.raises(GrammarError) as caught:
+        load(GRAMMAR.format("", "a"), rule="q")
+    (problem,) = caught.value.problems
+    assert (problem.message, problem.remedy) == ('There is no rule "q".', "Write r.")
