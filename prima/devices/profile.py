@@ -132,16 +132,16 @@ def read_robot(file: str, data: bytes) -> Profile:
 
 def _read_drivers(reader: Reader, profile: Profile) -> None:
     """The drivers, whose devices, Commands and gestures the robot has."""
-    seen: dict[str, str] = {}
+    seen: set[str] = set()
     for node in reader.root.all("driver"):
         for device in node.get("devices").split():
             if device in seen:
-                message = f'Two drivers carry the device "{device}".'
-                reader.problem(node, "duplicate-name", message, "devices", "Name it in one.")
+                message = f'The device "{device}" is carried twice.'
+                reader.problem(node, "duplicate-name", message, "devices", "Name it once.")
             elif device not in profile.devices:
                 message = f'The robot has no device "{device}".'
                 _lacks(reader, node, device, profile, message)
-            seen[device] = node.get("kind")
+            seen.add(device)
         for does in node.all("does"):
             if does.get("command"):
                 reader.known(does, "command", {*profile.commands, SAY, LISTEN}, "Command")

@@ -45,3 +45,35 @@ def test_a_gesture_and_other_gestures_are_carried_out_apart() -> None:
     more = f'<device name="neck"/><device name="speaker"/><gesture name="bow"/><driver kind="sim">{does}</driver>'
     (driver,) = read_robot("r.xml", f"{HEAD}{more}</robot>".encode()).drivers
     assert [getattr(driver.how("gesture", one), "by", "") for one in ("bow", "nod")] == ["b", "a"]
+
+
+@pytest.mark.parametrize(
+    ("inside", "told"),
+    [
+        (
+            '<driver kind="sim" devices="arm"/><driver kind="ros2" devices="arm"/>',
+            'The device "arm" is carried twice. Name it once.',
+        ),
+        (
+            '<driver kind="sim" devices="arm arm"/>',
+            'The device "arm" is carried twice. Name it once.',
+        ),
+        (
+            '<driver kind="sim" devices="arn"/>',
+            'The robot has no device "arn". Did you mean "arm"?',
+        ),
+        (
+            '<driver kind="sim"><does by="x"/></driver>',
+            '<does> needs a command or a gesture. Write command="...".',
+        ),
+        (
+            '<adds command="hum" devices="arm"/><substitute command="turn-and-speak" by="hum"/>',
+            "hum cannot say anything. Name a Command that speaks, as turn-and-speak does.",
+        ),
+    ],
+)
+def test_what_a_robot_cannot_do_is_told(inside: str, told: str) -> None:
+    with pytest.raises(DocumentError) as error:
+        read_robot("r.xml", f"{HEAD}\n{inside}</robot>".encode())
+    assert told in [f"{one.message} {one.remedy}" for one in error.value.problems]
+    assert {one.place.line for one in error.value.problems} == {2}
