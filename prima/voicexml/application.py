@@ -223,8 +223,6 @@ class VoiceInterpreter(App[AnyEngine]):
                 next(self._flow)
             else:
                 self._flow.send(resume)
-        except StopIteration:
-            self.quit("exit")
         except GoOut as out:
             if out.failed:
                 self.actions.append(Say("error", out.reason, out.source))

@@ -218,14 +218,13 @@ class Content(Speaker):
         values = self.sent(node, [name for name in names if name], context, local)
         uri = self.word(node, "next", context, local)
         service, _, dialog = uri.removeprefix(SERVICE).partition("#")
-        if not uri.startswith(SERVICE) or not dialog:
-            request = UriRequest(node.get("method"), values)
-            yield from go_to(self.shared, context, uri, node, request)
-            return
-        if context.page.dialog(dialog) is None:
-            raise Thrown.at(node, "error.badfetch", f'there is no dialog "{dialog}"')
-        self.shared.app.send(service, {"params": values}, source(node))
-        raise GoDialog(None, dialog)
+        if uri.startswith(SERVICE) and dialog:
+            if context.page.dialog(dialog) is None:
+                raise Thrown.at(node, "error.badfetch", f'there is no dialog "{dialog}"')
+            self.shared.app.send(service, {"params": values}, source(node))
+            raise GoDialog(None, dialog)
+        request = UriRequest(node.get("method"), values)
+        yield from go_to(self.shared, context, uri, node, request)
 
     def give_back(self, node: Node, context: Context, local: Scope) -> None:
         """Come back from a subdialog (5.3.10)."""

@@ -75,8 +75,6 @@ class Machine:
             yield from self.execute(context, page, "")
         except GoOut as out:
             reason = out
-        except GoBack:
-            pass
         if not reason.failed:
             yield from self.events.finish(context)
         raise reason
@@ -152,7 +150,6 @@ class Machine:
             except (Thrown, ScriptError) as error:
                 wanted = yield from self._handled(context, error)
         yield from self.visit_all(context, wanted)
-        raise GoOut
 
     def visit_all(self, context: Context, wanted: str = "") -> Flow:
         """Visit the items of the dialog, or of the unit that it is in, until none is left.

@@ -104,8 +104,8 @@ def _emp(node: Node) -> None:
 def _pros(node: Node) -> None:
     """Rates were words per minute; only a change in percent still means the same."""
     node.tag = "prosody"
-    if not node.get("rate").endswith("%"):
-        node.attributes.pop("rate", None)
+    if "rate" in node.attributes and not node.get("rate").endswith("%"):
+        node.attributes["rate"] = "+0%"
 
 
 def _break(node: Node) -> None:
@@ -121,7 +121,7 @@ def _sayas(node: Node) -> None:
         if given[name]:
             node.tag, node.attributes[later] = tag, given[name]
             return
-    node.tag = "prosody"
+    node.tag, node.attributes["rate"] = "prosody", "+0%"
 
 
 SAID_AS = (("sub", "sub", "alias"), ("phon", "phoneme", "ph"), ("class", "say-as", "interpret-as"))

@@ -337,6 +337,48 @@ def test_a_scripts_charset_is_accepted() -> None:  # 5.3.12
     assert call.logs() == ["é"]
 
 
+def test_a_script_with_a_charset_that_is_none_is_read_as_utf_8() -> None:  # 5.3.12
+    script = '<script src="s.js" charset="none-such"/><log expr="a"/>'
+    assert Call(block(script), **{"s.js": "var a = 'é';"}).logs() == ["é"]
+
+
+def test_what_fails_in_a_scripts_file_is_told_with_its_line() -> None:
+    catch = '<catch event="error.semantic"><log expr="_message"/><exit/></catch>'
+    (said,) = Call(
+        f"{catch}<form><block><script src='s.js'/></block></form>",
+        **{"s.js": "var a = 1;\nnone.b = a;"},
+    ).logs()
+    assert said.endswith(": s.js: line 2: ReferenceError: none is not defined")
+
+
+def test_a_submit_to_a_service_names_a_dialog_that_there_is() -> None:
+    catch = '<catch event="error.badfetch"><log expr="_message"/><exit/></catch>'
+    call = Call(f"{catch}<form><block><submit next='service:x#none'/></block></form>")
+    assert call.logs()[0].endswith('there is no dialog "none"')
+    assert not [one for one in call.orders if one.verb == "send"]
+
+
+def test_where_no_dialog_is_active_there_is_no_item_to_go_to() -> None:
+    call = Call(
+        """<var name="x" expr="none.y"/><catch event="error.semantic"><goto nextitem="a"/></catch>
+        <catch event="error.badfetch"><log expr="_message"/><exit/></catch>
+        <form><block name="a">Hi.</block></form>"""
+    )
+    assert call.logs()[0].endswith('there is no form item "a"') and call.said() == []
+
+
+def test_what_another_form_hears_may_lead_to_any_of_its_items() -> None:  # 2.4
+    call = Call(
+        """<form><field name="x" type="digits"><prompt>A?</prompt></field></form>
+        <form scope="document"><grammar version="1.0" mode="voice" root="r">
+        <rule id="r">jump <tag>out.y = "z";</tag></rule></grammar>
+        <field name="y"><filled><goto nextitem="last"/></filled></field>
+        <block>First.</block><block name="last">Last.</block></form>"""
+    )
+    call.answer("jump")
+    assert call.said() == ["A?", "Last.", "First."]
+
+
 def test_a_scripts_text_may_be_cdata() -> None:  # 5.3.12
     call = Call(block('<script><![CDATA[var a = 1 < 2 && 3 > 2;]]></script><log expr="a"/>'))
     assert call.logs() == ["true"]

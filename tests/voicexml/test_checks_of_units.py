@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from prima import loading
+from prima import api, loading
 from prima.errors import Problem
 from tests.helpers.units import P, ask, problems_of, say, unit
 from tests.helpers.voice import vxml
@@ -137,3 +137,39 @@ def test_a_unit_that_its_own_speech_outlasts_is_told(tmp_path: Path) -> None:
     assert problem.code == "long-unit" and "error.unit.timeout" in problem.message
     line = text.splitlines()[problem.place.line - 1]
     assert line[problem.place.column - 1 :].startswith("2s")
+
+
+GUEST = """<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="world.xml"
+  robot="own.xml"><robot at="middle"/><application src="{0}"/></scenario>"""
+OWN = """<robot xmlns="urn:prima:robot:1" version="1.0" id="r"><device name="speaker"/>
+  <device name="arm"/><adds command="hold" devices="arm" leaves="true"/></robot>"""
+PRIMA = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a">{0}</prima>'
+HOLD = "hold> leaves the user; it is not allowed in a unit."
+
+
+@pytest.mark.parametrize(
+    ("name", "inner", "message"),
+    [
+        ("a.vxml", "<p:iu><block>Hi.<p:command type='hold'/></block></p:iu>", f"<p:{HOLD}"),
+        ("a.vxml", "<block><p:iu><p:command type='hold'/></p:iu></block>", f"<p:{HOLD}"),
+        ("a.vxml", "<block><p:command type='hol'/></block>", 'This robot has no Command "hol".'),
+        ("a.vxml", "<block><p:command type='hold'/></block>", ""),
+        (
+            "a.xml",
+            "<iu><block><command type='hold'/></block></iu><block><exit/></block>",
+            f"<{HOLD}",
+        ),
+        ("a.xml", "<block><iu><command type='hold'/></iu><exit/></block>", f"<{HOLD}"),
+        ("a.xml", "<block><command type='hold'/><exit/></block>", ""),
+    ],
+)
+def test_a_robots_own_command_is_checked_where_it_is_used(
+    place: Path, name: str, inner: str, message: str
+) -> None:
+    form = f'<form id="f" {P if name == "a.vxml" else ""}>{inner}</form>'
+    (place / name).write_text(vxml(form) if name == "a.vxml" else PRIMA.format(form))
+    (place / "own.xml").write_text(OWN)
+    (place / "s.xml").write_text(GUEST.format(name))
+    found = api.validate([place / "s.xml"])
+    assert [one.message for one in found] == ([message] if message else [])
+    assert all(one.place.file.endswith(name) and one.remedy for one in found)

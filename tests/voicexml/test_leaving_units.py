@@ -242,3 +242,30 @@ def test_a_unit_that_is_done_when_it_is_left_is_not_begun_again() -> None:
     call.play()
     assert call.said() == ["One.", "The phone.", "Bye."]
     assert units(call) == ["request", "start", "end"]
+
+
+@pytest.mark.parametrize(
+    ("handled", "said"), [("", ["May I?"]), ("Sorry.<exit/>", ["May I?", "Sorry."])]
+)
+def test_a_condition_of_a_units_handler_that_fails_is_an_error_in_the_unit(
+    handled: str, said: list[str]
+) -> None:
+    never = "<catch event='phone' cond='none.such'>Never.</catch>"
+    around = f"<catch event='error.semantic'>{handled}</catch>" if handled else ""
+    call = Call(unit(ask(never), say("Bye."), "", around))
+    call.listens()
+    call.event("phone")
+    call.play()
+    assert call.said() == said and (call.ended is None or "none" in call.ended or handled)
+
+
+@pytest.mark.parametrize("name", ["", "name='u'"])
+def test_a_unit_with_a_name_that_is_left_is_visited_again_as_one_without(name: str) -> None:
+    phone = "<catch event='phone'><log expr='typeof u'/><reprompt/></catch>"
+    call = Call(f"<var name='u'/>{unit(ask() + ask(name='y'), say('Bye.'), name, phone)}")
+    call.hears("yes")
+    call.listens()
+    call.event("phone")
+    call.answer("no")
+    assert call.said() == ["May I?", "May I?", "May I?", "Bye."]
+    assert call.logs() == ["undefined"]

@@ -215,10 +215,11 @@ OLD = """<?xml version="1.0"?>
  <var name="n" expr="session.telephone.ani"/>
  <catch event="telephone.disconnect error.telephone.noauthorization"><log expr="_event"/></catch>
  <form>
-  <block><prompt>It is <emp level="strong">very</emp> <pros rate="-20%" vol="loud">nice</pros>.
+  <block><prompt>It is <emp level="strong">very</emp> <pros rate="-20%" vol="loud">nice</pros>,
+   <pros rate="180">quick</pros> <sayas>so</sayas>.
    <break msecs="500"/><div type="sentence">Doctor <sayas sub="no">know</sayas></div>
    <sayas class="digits">12</sayas> <sayas phon="x">tomato</sayas></prompt></block>
-  <subdialog name="s" src="part.vxml" modal="true" caching="fast"/>
+  <subdialog name="s" src="part.vxml" modal="true" caching="fast" fetchhint="stream"/>
   <field name="f"><prompt>Well?</prompt>
    <dtmf type="application/srgs">#ABNF 1.0;
    language en; mode dtmf; root $r; $r = 1 | 2;</dtmf>
@@ -242,7 +243,7 @@ def test_a_document_of_voicexml_1_is_read_as_2(tmp_path: Path) -> None:
         **{"sub/part": part},
     )
     call.answer("2")
-    assert call.said()[0] == "It is very nice. Doctor no 12 tomato"
+    assert call.said()[0] == "It is very nice, quick so. Doctor no 12 tomato"
     assert call.logs() == ["2", "connection.disconnect.hangup"]
     assert call.session._apps.documents["app"].lang == "en-GB"
 

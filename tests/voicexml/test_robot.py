@@ -28,6 +28,10 @@ def test_an_event_from_outside_that_nothing_takes_changes_nothing() -> None:
     assert (call.said(), call.ended) == (["Well?"], "exit")
 
 
+DEEP, PEED = "<p:par><p:seq>" * 26, "</p:seq></p:par>" * 26
+"""More elements inside each other than may be."""
+
+
 def started(call: Call) -> list[str]:
     call.play()
     return [r.get("text") or r["command"] for r in call.phases("start")]
@@ -54,6 +58,15 @@ def test_a_command_in_a_fields_prompt_comes_before_the_question() -> None:
         "<option>yes</option></field></form>"
     )
     assert started(call) == ["gesture", "Well?"]
+
+
+def test_a_command_by_its_type_has_its_arguments_as_parameters() -> None:
+    turn = "<p:command type='turn'><param name='angle' expr='10 * 3'/></p:command>"
+    nod = "<p:command type='gesture'><param name='name' value='nod'/></p:command>"
+    call = Call(f"<form {P}><block>{turn}{nod}</block></form>")
+    call.play()
+    args = [order.command.args for order in call.orders if order.command and order.verb == "start"]
+    assert args == [{"angle": 30}, {"name": "nod"}]
 
 
 def test_a_commands_arguments_may_be_expressions_and_its_text_holds_values() -> None:
@@ -180,6 +193,7 @@ def problems_of(body: str) -> list[Problem]:
         ("<p:seq><p:turn angel='2'/></p:seq>", "unknown-attribute", '"angle"'),
         ("<iu><p:turn angle='2'/></iu>", "unknown-element", "Write <p:iu> around Commands"),
         ("<p:iuu/>", "unknown-element", '"iu"'),
+        (f"{DEEP}<p:turn angle='2'/>{PEED}", "too-deep", "more than 50 such elements inside"),
     ],
 )
 def test_wrong_arrangements_are_told(body: str, code: str, told: str) -> None:
@@ -201,6 +215,8 @@ def test_what_a_command_cannot_hold_is_told(inside: str, around: str) -> None:
 def test_a_command_holds_what_a_prompt_holds_and_arguments() -> None:
     said = "<p:speak>One <emphasis>is</emphasis> <value expr='1'/>.</p:speak>"
     assert started(Call(f"<form {P}><block>{said}</block></form>")) == ["One is 1."]
+    par = f"<p:par xml:lang='en'>{said}<p:turn angle='2'/></p:par>"
+    assert problems_of(f"<form {P}><block>{par}</block></form>") == []
     waves = "<p:command type='wave'><param name='hand' value='left'/></p:command>"
     assert problems_of(f"<form {P}><block>{said}{waves}</block></form>") == []
 
