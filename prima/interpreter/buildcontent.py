@@ -276,8 +276,8 @@ class ContentBuilder(AttributeReader):
         to = self.either(node, "to")
         event = node.get("event")
         self.one_of_two(node, "to", "event")
-        if to and ("delay" in node.attributes or "delay-expr" in node.attributes):
-            self.problem(NO_DELAY, node, "delay")
+        if to and (given := self.written(node, "delay")):
+            self.problem(NO_DELAY, node, given)
         delay = self.expression(node, "delay-expr") or self.value(node, "delay", "duration", 0)
         return SendOut(to, event, delay, self.params(node), node)
 

@@ -221,6 +221,33 @@ def test_an_answer_that_no_question_contains_is_told(
     assert all((remedy or "") in one.remedy for one in found)
 
 
+@pytest.mark.parametrize(
+    ("words", "remedy"),
+    [
+        ("A coffee, then.", 'It is said, not asked: write said="...".'),
+        ("Tea or cofee?", 'Did you mean "Tea or coffee?"?'),
+        ("Tea or coffee?", None),
+    ],
+)
+def test_what_an_application_says_is_no_question(
+    tmp_path: Path, words: str, remedy: str | None
+) -> None:
+    asks = ASKING.format("Tea or coffee?").replace(
+        "<exit/></filled>", "<speak>A coffee, then.</speak></filled>"
+    )
+    (tmp_path / "a.xml").write_text(asks.replace("</field>", "</field><block><exit/></block>"))
+    beside = ROOT / "tests" / "mistakes" / "beside"
+    (tmp_path / "visit.xml").write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="visit"'
+        f' world="{beside}/museum.xml" robot="{beside}/robot.xml"><robot at="door"/>'
+        f'<application src="a.xml"/><when asked="{words}"><say>Yes.</say></when></scenario>'
+    )
+    found = loading.validate([tmp_path / "visit.xml"])
+    assert [one.remedy for one in found if one.code == "never-said"] == [remedy] * (
+        remedy is not None
+    )
+
+
 @pytest.mark.parametrize("name", ["a.xml", "a.vxml"])
 @pytest.mark.parametrize(
     ("more", "says"),

@@ -242,6 +242,11 @@ def test_a_document_of_voicexml_1_is_read_as_2(tmp_path: Path) -> None:
         (tmp_path / "app.vxml").read_text(),
         **{"sub/part": part},
     )
+    question = call.orders[0].command
+    assert question is not None and [one.value for one in question.cues if one.kind == "rate"] == [
+        0.8,
+        1.0,
+    ]
     call.answer("2")
     assert call.said()[0] == "It is very nice, quick so. Doctor no 12 tomato"
     assert call.logs() == ["2", "connection.disconnect.hangup"]
