@@ -32,7 +32,7 @@ from prima.interpreter.expressions import Evaluator
 from prima.interpreter.frame import Abandoned, Content, Fiber, GoForm
 from prima.interpreter.places import source
 from prima.interpreter.transfers import GoBack, GoItem, GoOut, Thrown, Transfer, no_item, undeclared
-from prima.language.values import quoted, read_value, shown
+from prima.language.values import LONGEST_MS, quoted, read_value, shown
 from prima.markup.tree import Node
 from prima.messages import Command, Group, Json, Notice, Say, Step
 from prima.script.evaluation import RESULT_LIMIT
@@ -185,8 +185,10 @@ class Executor(Evaluator):
         try:
             if isinstance(value, str):
                 return int(read_value("duration", value))
-            if isinstance(value, int | float) and 0 <= value <= 86_400_000:
-                return round(value) if "delay" in node.attributes else round(value * 1000)
+            if isinstance(value, int | float) and not isinstance(value, bool):
+                ms = value if "delay" in node.attributes else value * 1000
+                if 0 <= ms <= LONGEST_MS:
+                    return round(ms)
         except ValueError:
             pass
         raise Thrown.at(node, "error.semantic", f"delay {quoted(value)} is not a time")

@@ -186,14 +186,11 @@ class Handling:
 
     def unit_timeout(self, notice: Notice) -> None:
         """End a unit that took too long: error.unit.timeout is thrown in it (U5)."""
-        frame, unit = self.owner.frame, None
-        while frame is not None:
-            unit = next((unit for number, unit in frame.units if number == notice.run), None)
-            if unit is not None:
-                break
-            frame = frame.caller
-        if frame is None or unit is None:
+        frame = self.owner.frame
+        units = dict(frame.units) if frame is not None else {}
+        if frame is None or notice.run not in units:
             return
+        unit = units[notice.run]
         for fiber in [fiber for fiber in frame.fibers if fiber.main or fiber.unit == notice.run]:
             self.owner.forget(fiber)
         frame.item = unit

@@ -199,6 +199,57 @@ def test_a_delayed_event_comes_unless_its_state_is_left() -> None:
     assert left.session.deadline() is None
 
 
+@pytest.mark.parametrize(
+    ("delay", "due"), [("2", 2100), ("'2s'", 2100), ("0.5", 600), ("86400", 86_400_100)]
+)
+def test_a_delay_may_be_computed_as_a_time_or_in_seconds(delay: str, due: int) -> None:
+    bench = Bench(
+        f"""<form id="a"><block><send event="late" delay-expr="{delay}"/></block>
+        <on event="late"><log>late</log></on></form>"""
+    )
+    assert bench.session.deadline() == due
+
+
+@pytest.mark.parametrize("delay", ["'soon'", "'2'", "-1", "86401", "true", "null", "[1]"])
+def test_a_delay_that_is_no_time_is_an_error(delay: str) -> None:
+    bench = Bench(
+        f"""<form id="a"><block><send event="late" delay-expr="{delay}"/></block></form>"""
+    )
+    (failure,) = bench.session.failures
+    assert failure.startswith("app: error.semantic: ") and failure.endswith(" is not a time")
+
+
+@pytest.mark.parametrize(
+    ("name", "least", "content", "told"),
+    [
+        (
+            "MAX_WRITTEN",
+            3_000,
+            "<log expr=\"'x'.repeat(400)\"/>",
+            "3,000 characters come out in this run",
+        ),
+        ("MAX_RUN_STEPS", 50, "<log/>", "pieces of content in this run"),
+        ("MAX_ACTIONS", 20, "<log/>", "21 Commands and messages in this run"),
+    ],
+)
+def test_what_an_application_does_in_a_run_is_bounded(
+    name: str, least: int, content: str, told: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for one, value in ((name, least), ("STEPS_A_SECOND", 0), ("ACTIONS_A_SECOND", 0)):
+        monkeypatch.setattr(f"prima.interpreter.bounds.{one}", value)
+    bench = Bench(
+        f"""<form id="a"><block>{content}<send event="late" delay="2s"/></block>
+        <on event="late">{content}<send event="late" delay="2s"/></on></form>""",
+        document('<form id="a"><on event="bye"><log>bye</log></on></form>', "ea", "other"),
+    )
+    for _ in range(40):
+        bench.step(at=bench.now + 2000)
+    (failure,) = bench.session.failures
+    assert failure.startswith("app: error.semantic: app.xml:") and failure.endswith(told)
+    bench.event("bye")
+    assert bench.logs()[-1] == "bye"
+
+
 def test_too_many_delayed_events_are_told_with_their_line() -> None:
     bench = Bench(
         """<form id="a"><block><foreach item="i" array="Array(300)">

@@ -20,6 +20,24 @@ def test_items_are_visited_in_document_order_while_undefined_and_their_condition
     assert bench.logs() == ["three", "two", "four"]
 
 
+def test_a_goto_to_a_computed_item_that_is_none_is_an_error() -> None:
+    bench = Bench("""<form id="a"><block><goto nextitem-expr="'none'"/></block></form>""")
+    (failure,) = bench.session.failures
+    assert failure.startswith("app: error.badfetch: ") and 'no form item "none"' in failure
+
+
+def test_an_answer_that_was_cleared_is_not_processed_further() -> None:  # VoiceXML 2.4
+    bench = Bench(
+        """<form id="a"><field name="x" type="boolean"><prompt>A?</prompt>
+        <filled><log>1</log><if cond="!x"><clear namelist="x"/></if></filled>
+        <filled><log>2</log></filled></field></form>"""
+    )
+    for said in ("no", "yes"):
+        bench.listens()
+        bench.hears(said)
+    assert bench.logs() == ["1", "1", "2"]
+
+
 def test_what_stands_behind_commands_runs_when_they_have_ended() -> None:
     bench = Bench(
         """<form id="a"><block>

@@ -315,3 +315,25 @@ def test_o2_of_a_unit_all_is_cancelled_that_was_requested_at_once() -> None:
     cancelled = [one["command"] for one in bench.phases("cancel")]
     assert sorted(cancelled) == ["move-head", "speak", "speak"]
     assert bench.saying() == ["Come back.", "iu"]
+
+
+@pytest.mark.parametrize(
+    ("item", "inside"),
+    [
+        ("three", {"One.": True, "Three.": True, "Two.": True, "Bye.": False}),
+        ("bye", {"One.": True, "Bye.": False}),
+    ],
+)
+def test_a_goto_to_an_item_leaves_a_unit_that_does_not_hold_it(
+    item: str, inside: dict[str, bool]
+) -> None:
+    bench = Bench(
+        f"""<form id="a"><iu><block><speak>One.</speak><goto nextitem="{item}"/></block>
+        <block><speak>Two.</speak></block><block name="three"><speak>Three.</speak></block></iu>
+        <block name="bye"><speak>Bye.</speak></block></form>"""
+    )
+    for text in inside:
+        bench.finish(text)
+    said = {r["text"]: bool(r.get("unit")) for r in bench.phases("start") if r.get("text")}
+    assert [*said.items()] == [*inside.items()]
+    assert bench.running() == {}
