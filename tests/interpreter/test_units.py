@@ -336,4 +336,6 @@ def test_a_goto_to_an_item_leaves_a_unit_that_does_not_hold_it(
         bench.finish(text)
     said = {r["text"]: bool(r.get("unit")) for r in bench.phases("start") if r.get("text")}
     assert [*said.items()] == [*inside.items()]
+    starts = [one for one in bench.phases("start") if one.get("command") == "iu"]
+    assert len(starts) == 1
     assert bench.running() == {}

@@ -133,7 +133,7 @@ def test_a_stop_that_somebody_has_pressed_stays_so(tmp_path: Path) -> None:
 
 def broken_text(tmp_path: Path, text: str) -> str:
     path = tmp_path / "visit.jsonl"
-    path.write_text(text)
+    path.write_text(text, errors="surrogateescape")
     return str(path)
 
 
@@ -143,6 +143,11 @@ def broken_text(tmp_path: Path, text: str) -> str:
         ("", "no records"),
         ("{}\n", "not a transcript's record"),
         (json.dumps({**HEAD, "data": {"policy": "prima"}}) + "\n", "not the journal of a live run"),
+        (
+            json.dumps({**HEAD, "data": {**HEAD["data"], "redacted": True}}) + "\n",
+            "what users said was left out of this journal",
+        ),
+        ("\udcff\n", "it is not UTF-8"),
         (
             written([{"time": 1, "phase": "over", "actor": "mediator", "outcome": "over"}]),
             "has ended",

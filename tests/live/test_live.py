@@ -246,6 +246,15 @@ def test_drivers_that_do_not_work_end_in_a_clear_sentence(
         (["--resume", "visit.jsonl", "--policy", "fifo"], "leave out --policy"),
         (["--resume", "visit.jsonl", "--patience", "1s"], "leave out --policy"),
         (["documents/scenarios/schedule-alone.xml", "--ea", "x.xml"], "leave out --fa"),
+        (["documents/scenarios/schedule-alone.xml", "--services", "x.xml"], "its own services"),
+        (
+            ["documents/scenarios/schedule-alone.xml", "-o", "no/x.jsonl"],
+            "no/x.jsonl: cannot be written",
+        ),
+        (
+            ["documents/scenarios/schedule-alone.xml", "-o", "documents"],
+            "documents: cannot be written",
+        ),
         (["documents/scenarios/schedule-alone.xml", "--driver", "x.py"], "leave out --driver"),
         (["--robot", ROBOT, "--ea", "documents/ea/guide.xml", "--until", "soon"], "--until"),
         (

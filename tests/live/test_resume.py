@@ -111,6 +111,25 @@ def test_what_has_no_answer_is_known(records: list[Record], left: list[str]) -> 
     assert list(known(records).asked) == left
 
 
+def test_what_was_the_case_at_the_cut_is_known() -> None:
+    def record(phase: str, **more: object) -> Record:
+        return {"time": 1, "phase": phase, "actor": "environment", "inbound": True, **more}
+
+    area, seen = {"app": "cafe", "data": {"place": "cafe"}}, {"event": "human.found"}
+    records = [
+        record("load", app="guide"),
+        record("load", **area),
+        record("event", **seen),
+        record("sensed", data={"battery": 20, "door": "open"}),
+        record("sensed", data={"battery": 19}),
+    ]
+    state = known(records)
+    assert (state.loaded, state.inside, state.found) == ({"guide", "cafe"}, {"cafe"}, True)
+    assert state.sensors == {"battery": 19, "door": "open"}
+    later = known([*records, record("unload", app="cafe"), record("event", event="human.lost")])
+    assert (later.inside, later.found) == (set(), False)
+
+
 # Scenarios ----------------------------------------------------------------------------------
 
 SCENARIO = "documents/scenarios/touched-on-the-way.xml"

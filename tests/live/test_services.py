@@ -46,7 +46,7 @@ class Host(ThreadingHTTPServer):
         self.asked: list[tuple[str, str, bytes]] = []
         self.keys: list[str | None] = []
         self.moved = "http://localhost:1/books"
-        self.said = '{"mood": "happy"}'
+        self.said: str | None = '{"mood": "happy"}'
 
     def handle_error(self, request: object, client_address: object) -> None:
         """Say nothing of clients that have hung up."""
@@ -380,6 +380,14 @@ def test_a_language_model_fills_slots(host: Host, tmp_path: Path) -> None:
     assert "not one of happy, sad" in why(send(path, text="great"))
     host.said = "I would say happy"
     assert "not JSON" in why(send(path, text="great"))
+    host.said = None  # as where it calls a tool instead
+    assert "the model says nothing" in why(send(path, text="great"))
+
+
+@pytest.mark.parametrize("where", ["list", "deep"])
+def test_an_answer_that_is_no_models_is_told(host: Host, tmp_path: Path, where: str) -> None:
+    path = document(tmp_path, host, MODEL.format(where, ""), "language-model")
+    assert "choices[0].message.content" in why(send(path, text="great"))
 
 
 @pytest.mark.parametrize("where", ["slow", "garbage"])

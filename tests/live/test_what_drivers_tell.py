@@ -30,6 +30,7 @@ CYCLE.append(CYCLE)
     [
         (Sensed({"battery": nan, "near": [inf, 2]}), Sensed({"battery": None, "near": [None, 2]})),
         (Sensed({"a": (True, Fraction(1, 2), None)}), Sensed({"a": [True, 0.5, None]})),
+        (Sensed({"a": {"b": (nan, {"c": 1})}}), Sensed({"a": {"b": [None, {"c": 1}]}})),
         (Sees(True, inf, nan), Sees(True, None, None)),
         (Sees(True, 1.5, -20), Sees(True, 1.5, -20.0)),
         (At(1.0, nan, 0.0), None),
