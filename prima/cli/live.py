@@ -142,7 +142,7 @@ def live(
     raise_limits(limits)
     chosen = Chosen(robot or "", scenario or "", world or "", fas, eas, maps, services or "")
     check_usage(chosen, output, journal, checks)
-    check_why(why, form != "json")
+    check_why(why, form)
     web = fetcher(list(hosts), len(fas) + len(eas) + 1)
     settings = LiveSettings(policy, bound, patience, isolate, speed, until, sync, web=web)
     settings.drivers, settings.redact = drivers, redact

@@ -133,13 +133,13 @@ why_option = click.option(
 )
 
 
-def check_why(why: bool, table: bool) -> None:
-    """Refuse --why where no table is printed.
+def check_why(why: bool, form: str, output: str | None = None) -> None:
+    """Refuse --why where no table is printed, but JSON, or a file written.
 
     Raises:
-        UsageError: it is.
+        UsageError: it is given there.
     """
-    if why and not table:
+    if why and (form == "json" or output is not None):
         raise UsageError("--why works only with a table: prima show TRANSCRIPT --why.")
 
 

@@ -129,7 +129,7 @@ def run(
         return
     from prima import api
 
-    check_why(why, output is None and form != "json")
+    check_why(why, form, output)
     scenario = next(iter(scenarios), "")
     loaded = api.load_scenario(scenario) if scenario else api.stage(fas, eas, says, maps=maps)
     if output == "-":
@@ -170,7 +170,7 @@ def _check_batch(applications: bool, why: bool, resume: bool, output: str | None
     """
     if applications:
         raise UsageError("--fa and --ea name one run; for several, write scenarios.")
-    check_why(why, False)
+    check_why(why, "", output="")
     if resume and output is None:
         raise UsageError("--resume needs the folder of the transcripts: -o FOLDER.")
     is_file = output is not None and output.endswith(".jsonl") and not os.path.isdir(output)

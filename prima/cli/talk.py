@@ -94,7 +94,7 @@ def talk(
     from prima.talk import Conversation, Game
 
     raise_limits(limits)
-    check_why(why, form != "json")
+    check_why(why, form)
     _check_options(scenario, bool(fas or eas), bool(world or robot), bool(maps), step and real_time)
     loaded = _loaded(scenario, fas, eas, world, robot, maps)
     tell_problems(loaded.problems)

@@ -74,20 +74,29 @@ def validate(
     prima validate --with documents/fa/follow.xml documents/ea/museum.xml
     """
     raise_limits(limits)
-    if robot and not fas:
-        raise UsageError("--robot works only with --with.")
+    _check_options(bool(fas), bool(robot), watch, strict)
     if fas:
         if any((watch, notes, strict, maps, form in ("short", "sarif"))):
             raise UsageError("--with works only with --robot and --format text or json.")
         _certify(fas, files, robot or "", form)
         return
-    if watch and strict:
-        raise UsageError("--watch has no exit code of its own; leave out --strict.")
     if watch:
         _watch(files, form, notes, maps)
     unread, errors, warnings = _check(files, form, notes, maps)
     if unread or errors or (strict and warnings):
         raise Exit(2 if unread else 1)
+
+
+def _check_options(fas: bool, robot: bool, watch: bool, strict: bool) -> None:
+    """Refuse options that have no effect.
+
+    Raises:
+        UsageError: there is one.
+    """
+    if robot and not fas:
+        raise UsageError("--robot works only with --with.")
+    if watch and strict and not fas:
+        raise UsageError("--watch has no exit code of its own; leave out --strict.")
 
 
 def _certify(fas: tuple[str, ...], eas: tuple[str, ...], robot: str, form: str) -> None:

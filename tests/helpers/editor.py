@@ -71,7 +71,7 @@ class Editor:
             self.watched += [
                 watcher["globPattern"]
                 for one in params.registrations
-                for watcher in one.register_options["watchers"]
+                for watcher in (one.register_options or {})["watchers"]
             ]
 
         def published(params: lsp.PublishDiagnosticsParams) -> None:
