@@ -124,7 +124,7 @@ class Reader:
         for node in nodes:
             name = node.get(key).lower() if fold else node.get(key)
             if name in seen:
-                message = f'"{node.get(key)}" is there twice.'
+                message = f'"{name}" is there twice.'
                 self.problem(node, "duplicate-name", message, key, "Keep one.")
             seen.add(name)
 

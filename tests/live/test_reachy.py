@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 from collections.abc import Coroutine
 from math import radians
 from pathlib import Path
@@ -28,9 +29,14 @@ SITE = Map("site", places={"desk": (1.0, 1.0), "hall": (1.0, 4.0)}, headings={"d
 WITHIN_S = 20
 
 
+NOD = re.compile('<does gesture="nod".*?</does>', re.DOTALL)
+
+
 def robot(more: str = "", address: str = "http://127.0.0.1:8000") -> Profile:
-    """The shipped robot, with more at the beginning of its driver."""
+    """The shipped robot, with more at the beginning of its driver; of two gestures nod it counts."""
     written = ROBOT.read_text(encoding="utf-8").replace("http://127.0.0.1:8000", address)
+    if 'gesture="nod"' in more:
+        written = NOD.sub("", written)
     return read_robot("r.xml", written.replace("    <does ", f"    {more}<does ", 1).encode())
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -146,6 +147,8 @@ async def until(seen: Callable[[], One | None], within: float = 15.0) -> One:
 
 
 def profile(address: str, more: str = "") -> Profile:
-    """The shipped robot, with another address and more in its driver."""
+    """The shipped robot, with another address and more in its driver, in place of gestures of the same name."""
     written = ROBOT.read_text(encoding="utf-8").replace("http://127.0.0.1:8000", address)
+    for gesture in re.findall('<does gesture="(.+?)"', more):
+        written = re.sub(f'<does gesture="{gesture}".*?</does>', "", written, flags=re.DOTALL)
     return read_robot(str(ROBOT), written.replace("<place ", f"{more}<place ", 1).encode())
