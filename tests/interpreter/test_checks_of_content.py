@@ -149,6 +149,8 @@ def test_an_assignment_to_a_scope_with_the_variable_is_not_warned_of(body: str) 
     [
         ('<var name="who"/><block><log expr="dialog.whom"/></block>', "dialog.whom", "who"),
         ('<block cond="!document.whom"/>', "document.whom", ""),
+        ('<var name="who"/><block><log expr="document.who"/></block>', "document.who", ""),
+        ('<block><var name="who"/><log expr="dialog.who"/></block>', "dialog.who", ""),
         ('<block><log expr="application.who"/></block>', "application.who", ""),
         ("<block><script>var a = document.who;</script></block>", "document.who", ""),
         ('<block><var name="a" expr="[document.who]"/></block>', "document.who", ""),
@@ -185,3 +187,10 @@ def test_a_member_that_nothing_declares_is_warned_of_and_undefined(
 def test_a_member_that_something_may_declare_is_not_warned_of(body: str) -> None:
     told = [one.message for one in read(f'<form id="m">{body}{ENDS}</form>')[1]]
     assert [one for one in told if "declares no variable" in one] == []
+
+
+def test_a_member_of_the_document_is_known_in_all_its_forms() -> None:
+    say = '<log expr="document.x + document.f()"/>'
+    setup = '<var name="x"/><script>function f() { return 1; }</script>'
+    body = f'{setup}<form id="a"><block>{say}<goto next="#b"/></block></form>'
+    assert read(f'{body}<form id="b"><block>{say}<exit/></block></form>')[1] == []

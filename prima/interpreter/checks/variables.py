@@ -163,7 +163,7 @@ class Variables:
         yield from self._undefined(expr, names)
 
     def _undefined(self, expr: Expression, names: Names) -> Iterator[Problem]:
-        """Members of scopes that nothing declares anywhere."""
+        """Members that nothing declares in their scope."""
         for use in names.uses:
             if not use.holder or use.declares or use.holder in self._whole:
                 continue
@@ -176,10 +176,13 @@ class Variables:
     @cached_property
     def _members(self) -> dict[str, NameScope]:
         """The variables that each scope may have as members."""
-        every = NameScope(chain.from_iterable(self.facts.known_in(None).scopes))
-        for names in self._names:
-            every |= names.written
-        return {"document": every, "dialog": every, "application": NameScope(GIVEN)}
+        written: set[str] = set().union(*(names.written for names in self._names))
+        forms = (self.facts.outside_content(form) for form, _ in self.facts.forms)
+        return {
+            "document": NameScope(self.facts.shared | written),
+            "dialog": NameScope(written.union(*forms)),
+            "application": NameScope(GIVEN),
+        }
 
     @cached_property
     def _senses(self) -> bool:
