@@ -18,7 +18,7 @@ from tests.live.test_live import ROOT, prima
 
 DRIVERS = """
 import asyncio, sys, time
-from prima.devices.goals import Accepted, Stopped
+from prima.devices.goals import Accepted, Progress, Stopped
 from prima.live.driver import Driver, Refused, TaskDriver, Unreachable, Unusable
 
 class Well(TaskDriver):
@@ -59,6 +59,22 @@ class Leaves(Driver):
         self.tell(Accepted(goal.key))
         self.tell(Stopped(goal.key))
     def cancel(self, key): pass
+
+class Dies(Driver):
+    kind = "dies"
+    def start(self, goal): self.lose("the cable is out")
+    def cancel(self, key): pass
+
+class Stops(Driver):
+    kind = "stops"
+    def start(self, goal): self.tell(Accepted(goal.key))
+    def cancel(self, key):
+        self.tell(Progress(key))
+        self.tell(Stopped(key))
+
+class Drops(Stops):
+    kind = "drops"
+    def cancel(self, key): self.lose("the cable is out")
 
 class Refuses(Well):
     kind = "refuses"
@@ -122,6 +138,9 @@ LIMITS = 'accept="300ms" cancel="600ms"'
         ("hangs", 3, r"FAILS +turn +hangs .* does not stop within 600 ms$"),
         ("silent", 3, r"FAILS +turn +silent .* not accepted within 300 ms$"),
         ("leaves", 3, r"FAILS +turn +leaves .* it stops by itself$"),
+        ("dies", 3, r"FAILS +turn +dies .* the cable is out$"),
+        ("drops", 3, r"FAILS +turn +drops .* the cable is out$"),
+        ("stops", 0, r"ok +turn +stops +\d+ ms +\d+ ms$"),
         ("refuses", 3, r"FAILS +turn +refuses .* the motor is hot$"),
         ("raises", 3, r"FAILS +turn +raises .* the driver has failed: KeyError: 'joint'$"),
         ("mute", 3, r"FAILS +microphone +mute +no sound comes from it$"),
