@@ -203,8 +203,6 @@ class Locomotion:
     def drive_path(self, plan: LocomotionMemory, command: Command) -> bool:
         """Go through the points of the way, and turn to the heading asked for."""
         world, path = self.world, plan.path
-        if path is None:
-            return True
         while path:
             point, last = path[0], len(path) == 1
             left = dist(world.position, point)

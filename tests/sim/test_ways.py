@@ -95,6 +95,15 @@ def test_a_way_is_chosen_that_the_body_fits_through() -> None:
     assert Routes(plan).route(world, "jars") == [(5.0, 0.0), (5.0, 4.0)]
 
 
+def test_there_is_no_way_through_a_wall() -> None:
+    from prima.sim.routes import Routes
+
+    plan = Map("m", places={"a": (0.0, 0.0), "b": (4.0, 0.0)}, walls=[((2.0, -9.0), (2.0, 9.0))])
+    for x, there in ((0.0, "b"), (4.0, "a")):
+        world = World(plan, PROFILE, (x, 0.0), 0.0)
+        assert Routes(plan).route(world, there) is None
+
+
 WARD = """<world xmlns="urn:prima:world:1" version="1.0" id="ward">
   <place id="door" x="0" y="0" heading="0"/><place id="turn" x="4" y="0"/><place id="bed" x="4" y="4"/>
   <way from="door" to="turn"/><way from="turn" to="bed"/>

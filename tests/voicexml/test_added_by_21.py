@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from prima.markup.reader import parse
@@ -25,6 +27,7 @@ from tests.helpers.dialogs import (
     run,
     said,
 )
+from tests.helpers.spoken import Played
 from tests.helpers.voice import Call
 
 case = Cases()
@@ -465,3 +468,16 @@ def test_what_is_said_is_recorded_in_formats_that_there_are(
     <field name="f"><prompt>Q?</prompt>{YES}<filled><log expr="f"/><exit/></filled></field></form>"""
     says = () if logged == "unsupported" else ("yes",)
     assert run(text, *says).logs() == [logged]
+
+
+def test_data_of_a_service_has_the_encoding_that_it_declares(
+    played: Played, tmp_path: Path
+) -> None:
+    """Its transcript replays, though its bytes are no UTF-8."""
+    text = '<?xml version="1.0" encoding="ISO-8859-1"?><d>caf\xe9</d>'
+    (tmp_path / "menu.xml").write_bytes(text.encode("latin-1"))
+    made = played(
+        block('<data name="d" src="service:menu"/><log expr="d.documentElement.firstChild.data"/>'),
+        more='<service name="menu"><reply src="menu.xml"/></service>',
+    )
+    assert [one["message"] for one in made.records if one["phase"] == "log"] == ["caf\xe9"]
