@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from prima.devices.profile import read_robot
+from prima.devices.profile import Motion, read_robot
 from prima.errors import DocumentError
 
 HEAD = '<robot xmlns="urn:prima:robot:1" version="1.0" id="r"><device name="arm"/>'
@@ -77,3 +77,10 @@ def test_what_a_robot_cannot_do_is_told(inside: str, told: str) -> None:
         read_robot("r.xml", f"{HEAD}\n{inside}</robot>".encode())
     assert told in [f"{one.message} {one.remedy}" for one in error.value.problems]
     assert {one.place.line for one in error.value.problems} == {2}
+
+
+def test_the_steps_of_a_motion_follow_each_other_and_repeat() -> None:
+    motion = Motion([(1000, 0.1, 0.0), (500, 0.0, 90.0)], 0.0)
+    first, second = (0.1, 0.0), (0.0, 90.0)
+    times = (0, 999, 1000, 1499, 1500, 2600)
+    assert [motion.at(time) for time in times] == [first, first, second, second, first, second]
