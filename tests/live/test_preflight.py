@@ -65,16 +65,11 @@ class Dies(Driver):
     def start(self, goal): self.lose("the cable is out")
     def cancel(self, key): pass
 
-class Stops(Driver):
-    kind = "stops"
-    def start(self, goal): self.tell(Accepted(goal.key))
+class Drops(Hangs):
+    kind = "drops"
     def cancel(self, key):
         self.tell(Progress(key))
-        self.tell(Stopped(key))
-
-class Drops(Stops):
-    kind = "drops"
-    def cancel(self, key): self.lose("the cable is out")
+        self.lose("the cable is out")
 
 class Refuses(Well):
     kind = "refuses"
@@ -140,7 +135,6 @@ LIMITS = 'accept="300ms" cancel="600ms"'
         ("leaves", 3, r"FAILS +turn +leaves .* it stops by itself$"),
         ("dies", 3, r"FAILS +turn +dies .* the cable is out$"),
         ("drops", 3, r"FAILS +turn +drops .* the cable is out$"),
-        ("stops", 0, r"ok +turn +stops +\d+ ms +\d+ ms$"),
         ("refuses", 3, r"FAILS +turn +refuses .* the motor is hot$"),
         ("raises", 3, r"FAILS +turn +raises .* the driver has failed: KeyError: 'joint'$"),
         ("mute", 3, r"FAILS +microphone +mute +no sound comes from it$"),
