@@ -99,10 +99,10 @@ def test_a_robots_document_that_cannot_be_read(folder: Path) -> None:
     (folder / "robot.xml").write_text("<robot", encoding="utf-8")
     done = prima("sweep", "visit.xml", "--vary", "robot.speed=1")
     assert done.returncode == 1 and "robot.xml:1:" in done.stderr, done.stderr
-    (folder / "robot.xml").write_text("<prima/>", encoding="utf-8")
-    done = prima("sweep", "visit.xml", "--vary", "robot.speed=1")
+    (folder / "robot.xml").write_text(ROBOT.replace("<gesture", "<gestur", 1), encoding="utf-8")
+    done = prima("sweep", "visit.xml", "--vary", "robot.gesture[nod]=1s")
     assert done.returncode == 1 and done.stderr.startswith("robot.xml:"), done.stderr
-    assert "Begin with <robot xmlns=" in done.stderr
+    assert 'Did you mean "gesture"?' in done.stderr
     (folder / "robot.xml").unlink()
     done = prima("sweep", "visit.xml", "--vary", "robot.speed=1")
     assert (done.returncode, done.stderr) == (
