@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from math import inf
 
 ONES = {
     word: value
@@ -151,18 +152,21 @@ def _japanese(text: str) -> int | None:
         figures = "".join(str(KANJI.get(letter, letter)) for letter in text)
         return int(figures) if len(figures) <= MOST_FIGURES else None
     total, group, number = 0, 0, ""
+    small = large = inf
     for letter in text:
         if letter in _SMALL:
             group += (int(number) if number else 1) * _SMALL[letter]
-            number = ""
+            wrong, small, number = _SMALL[letter] >= small, _SMALL[letter], ""
         elif letter in _LARGE:
             group += int(number) if number else 0
             total += (group or 1) * _LARGE[letter]
-            group, number = 0, ""
+            wrong, large = _LARGE[letter] >= large, _LARGE[letter]
+            small, group, number = inf, 0, ""
         else:
             number += str(KANJI.get(letter, letter))
-            if len(number) > 15:
-                return None
+            wrong = len(number) > 15
+        if wrong:
+            return None
     return total + group + (int(number) if number else 0)
 
 
