@@ -115,7 +115,7 @@ def check_number(steps: list[Step], waiting: int) -> None:
     Raises:
         CommandRefused: there are more than :data:`MOST_AT_ONCE`.
     """
-    if waiting + len(steps) > MOST_AT_ONCE and waiting + _width(steps) > MOST_AT_ONCE:
+    if waiting + _width(steps) > MOST_AT_ONCE:
         message = f"At most {MOST_AT_ONCE} Commands of an application wait beside one another."
         raise CommandRefused("error.semantic", message, next(commands_of(steps), None))
 
