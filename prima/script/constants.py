@@ -88,20 +88,16 @@ def changed_names(piece: str) -> set[str] | None:
     code = parse_expression(piece)
     if code is None:
         return None
-    parents = {node.id: parent for node, parent in code.walk_inside()}
+    parents = {node.id: parent for node, parent in code.walk_inside() if parent is not None}
     names = (node for node in code.walk() if node.type in NAMES)
     return {code.name(node) for node in names if not _only_reads(node, parents)}
 
 
-def _only_reads(name: Node, parents: Mapping[int, Node | None]) -> bool:
+def _only_reads(name: Node, parents: Mapping[int, Node]) -> bool:
     """Whether code only reads a variable's content at one of its occurrences."""
     whole, outer = name, parents[name.id]
-    while (
-        outer is not None and outer.type in STEPS and outer.child_by_field_name("object") == whole
-    ):
+    while outer.type in STEPS and outer.child_by_field_name("object") == whole:
         whole, outer = outer, parents[outer.id]
-    if outer is None:
-        return False
     operator = outer.child_by_field_name("operator")
     how = "" if operator is None else operator.type
     if whole == name:  # only its declaration, and a loop over its keys, do not pass it on

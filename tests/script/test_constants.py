@@ -30,6 +30,7 @@ def test_literal_arrays_and_objects_of_a_script_are_its_constants() -> None:
         (" a . b ", ("a", ["b"])),
         ("a[b[0]].c", ("a", [None, "c"])),
         ("a[-1].c", ("a", [None, "c"])),
+        (r"a['\x62'].c", ("a", [None, "c"])),
         ("a", None),
         ("a.b()", None),
         ("a?.b", None),
@@ -77,6 +78,7 @@ def test_code_too_long_to_be_parsed_may_change_everything() -> None:
     [
         ("x", ("x", True)),
         ("!x", ("x", False)),
+        (r"x == '\x61'", None),
         ("dialog.x", ("dialog.x", True)),
         ("x == true", ("x", True)),
         ("x === false", ("x", False)),

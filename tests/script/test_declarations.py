@@ -57,6 +57,7 @@ class Scopes:
         (["(function named() { var x = 1; })()"], "[typeof named, typeof x]", ["undefined", "undefined"]),
         (["this.foo = 3; (function (root) { root.Lib = {v: 1}; })(this);"], "[foo, Lib.v]", [3, 1]),
         (["let count = 0; function next() { return ++count; }", "next(); next();"], "count", 2),
+        (["let n = 1; { let n = 2; const q = 3; } function f() { return n; }"], "[f(), n, typeof q]", [1, 1, "undefined"]),
         (["if (1) /a(){/.test('a'); var x = 1;"], "x", 1),
         (["function pct() { return (4 / 2) * 100; } var i = 6, p = i++ / 3; var path = 'x/y';"], "[pct(), p, path]", [200, 2, "x/y"]),
         (["var re = /^\\d+$/\nfunction f() { return 1; }\nvar n = 1\nn++\nfunction g() { return 2; }"], "[f(), g(), n]", [1, 2, 2]),

@@ -164,7 +164,7 @@ def test_both_evaluators_agree(code: str) -> None:
     [
         "n?.5:1", "typeof missing", "typeof missing.x", "typeof sensor", "typeof NaN", "typeof undefined", "typeof event", "typeof true", "typeof (missing)", "typeof u", "typeof nil", "typeof o", "typeof yes", "typeof typeof n", "smile.length", "smile[1]", "smile[2]",
         "smile[1] + smile[2]", "(n ? (n.t) : (n\n + n)).t", "((n\n + n).t).t", "(n ? n\n + 1 : n).t.t", "(!(n\n + n)).t.t", "(-(n\n + n)).t.t", "(n\n && u).t", "o?.t", "nil?.x", "u?.x.y.z", "o.q?.x", "o?.q.x", "missing?.x", "o?.['t']", "list?.[0]", "u?.['t'].x", "o.q?.x?.y.z",
-        "o?.['2'].deep[0]", "(u?.x).y", "typeof u?.x", "o.n?.length < 3", "o?.t?.length + 1", "!o?.q?.x", "nil?.x ? 1 : 2", "smile[1] + 'x'", "'a' < smile", "'\uff61' < smile", "o", "document", "list", "list + list", "o + 1", "n + document", "+document", "document == '[object Object]'", "list == document", "document == list", "[] == []",
+        "o?.['2'].deep[0]", "(u?.x).y", "typeof u?.x", "o.n?.length < 3", "o?.t?.length + 1", "!o?.q?.x", "nil?.x ? 1 : 2", "smile[1] + 'x'", "'a' < smile", "'\uff61' < smile", "o", "document", "list", "list + list", "o + 1", "n + document", "+document", "document == '[object Object]'", "list == document", "document == list", "[] == []", "['[object Object]'] == {}",
         "o == '[object Object]'", "list == '1,b,,2,3'", "nil == u", "nil == 0", "u == 0", "nil >= 0", "'10' < '9'", "'10' < 9", "digits * 1",
         "' ' == 0", "'abc' * 1", "-digits", "+nil", "+u", "+list", "+[]", "+[7]", "n % 0", "-n % 3", "n / 0", "-n / 0", "0 / 0",
         "n / -0", "-0", "0 * -1", "1e308 * 10", "9007199254740993", "0.1 + 0.2", "event.name", "event.data.n + 1", "_event", "_message", "session.time",

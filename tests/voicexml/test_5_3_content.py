@@ -34,6 +34,15 @@ case(
     logs=["2", "1"],
 )
 case(
+    "assign sets the variable of the scope that its name begins with",
+    "5.3.2",
+    """<script>function f() { return 5; }</script><var name="x" expr="1"/>
+    <form><catch event="error.semantic"><log>semantic</log></catch><var name="x" expr="2"/>
+    <block><assign name="document.x" expr="f()"/><log expr="[x, document.x]"/>
+    <assign name="dialog.q" expr="f()"/></block></form>""",
+    logs=["2,5", "semantic"],
+)
+case(
     "an expr that is undefined leaves a variable undefined",
     "5.3.1",
     """<var name="x" expr="undefined"/><form><block><log expr="typeof x"/></block></form>""",
