@@ -63,14 +63,9 @@ class SenseReports:
 
 
 def _state(senses: Senses, value: Json) -> News | None:
-    match senses.what:
-        case "sensor":
-            return Sensed(dict(_flat(senses.name, value)))
-        case "pose":
-            return pose(value)
-        case "human":
-            return _human(senses, value)
-    return None
+    if senses.what == "sensor":
+        return Sensed(dict(_flat(senses.name, value)))
+    return pose(value) if senses.what == "pose" else _human(senses, value)
 
 
 def _flat(name: str, value: Json) -> Iterator[tuple[str, Json]]:

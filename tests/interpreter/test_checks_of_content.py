@@ -178,6 +178,7 @@ def test_a_member_that_nothing_declares_is_warned_of_and_undefined(
         '<var name="x"/><block><log expr="dialog.x"/></block>',
         '<field name="x" type="boolean"><prompt>Is it?</prompt><noinput/></field><block><log expr="dialog.x$"/></block>',
         '<block><script>dialog.x = 1;</script><log expr="dialog.x"/></block>',
+        '<block><script>dialog.x += 1; dialog.y--;</script><log expr="dialog.x + dialog.y"/></block>',
         "<block><script>document['x'] = 1;</script><log expr=\"document.x\"/></block>",
         '<block><script>x = 1;</script><log expr="document.x"/></block>',
         '<block><log expr="application.session.time"/></block>',

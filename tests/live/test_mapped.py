@@ -134,6 +134,7 @@ def test_a_pose_is_read_as_robots_write_it(message: Json) -> None:
     at = pose(message)
     assert at is not None
     assert (at.x, at.y, round(at.heading, 6)) == (1, 2, 90)
+    assert told('as="pose" by="/p" field="at"', {"at": message}, {"at": message}) == [at]
 
 
 @pytest.mark.parametrize("message", ["here", [1, 2], {"x": 1}, ["a", "b", "c"], None])

@@ -318,7 +318,6 @@ def test_a_variable_that_is_used_before_it_is_declared_is_told(
         MEMBERS.format('<if cond="dialog.q"><log expr="dialog.q.z"/></if>'),
         MEMBERS.format('<log expr="dialog.q?.z + application.lastresult$.confidence"/>'),
         MEMBERS.format('<script>dialog.q = {};</script><log expr="dialog.q.z"/>'),
-        MEMBERS.format('<script>dialog.q += "x";</script><log expr="dialog.q.length"/>'),
         MEMBERS.format(
             '<script>f(dialog); function f(a) { a.q = 1; }</script><log expr="dialog.q.z"/>'
         ),
