@@ -16,6 +16,7 @@ from prima.loading.heads import check_files
 from prima.loading.reading import STAGE
 from prima.messages import Json, Record
 from prima.sim.services import Web
+from prima.voicexml.site import halves
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +69,8 @@ class Chosen:
             if paths:
                 recorded[name] = [seen(path) for path in paths]
         if self.maps:
-            parts = (text.partition("=") for text in self.maps)
-            recorded["maps"] = [f"{uri}={seen(path)}" for uri, _, path in parts]
+            parts = (halves(text) for text in self.maps)
+            recorded["maps"] = [f"{uri}={seen(path)}" for uri, path in parts]
         if self.robot:
             recorded["document"] = read_file(self.robot).decode("utf-8", "replace")
         return recorded
@@ -113,14 +114,14 @@ def chosen_then(head: Record, name: str) -> Chosen:
     def paths(recorded: Json) -> tuple[str, ...]:
         return tuple(path(one) for one in recorded) if isinstance(recorded, list) else ()
 
-    parts = (str(one).partition("=") for one in live.get("maps") or ())
+    parts = (halves(str(one)) for one in live.get("maps") or ())
     return Chosen(
         path(live.get("robot")),
         path(live.get("scenario")),
         path(live.get("world")),
         paths(live.get("fa")),
         paths(live.get("ea")),
-        tuple(f"{uri}={path(where)}" for uri, _, where in parts),
+        tuple(f"{uri}={path(where)}" for uri, where in parts),
         path(live.get("services")),
     )
 

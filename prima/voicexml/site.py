@@ -55,20 +55,13 @@ def site_of(file: str, uri: str, folder: str = "") -> Site:
     inside = within(file, folder)
     if inside is None:
         raise ValueError(f'"{file}" is not in the folder "{folder}".', "Name a folder above it.")
-    if not unquote(uri).endswith(f"/{inside}"):
+    written = "/".join(uri.split("/")[-1 - inside.count("/") :])
+    if unquote(written) != inside:
         raise ValueError(
             f'"{uri}" does not end as the document\'s path in "{folder}".',
             f'It should end with "/{inside}".',
         )
-    return Site(uri, uri[: len(uri) - len(_written(uri, inside))], folder)
-
-
-def _written(uri: str, inside: str) -> str:
-    """The end of a URI that means a path, whose characters may be escaped, as ``%20``."""
-    for start in range(len(uri) - len(inside), -1, -1):
-        if uri[start - 1 : start] == "/" and unquote(uri[start:]) == inside:
-            return uri[start:]
-    return inside
+    return Site(uri, uri.removesuffix(written), folder)
 
 
 def within(file: str, folder: str) -> str | None:
@@ -83,15 +76,19 @@ def mapping_of(text: str) -> tuple[str, str]:
     Raises:
         ValueError: it is not such a mapping.
     """
-    uri, mark, folder = text.partition("/=")
-    if not mark:
-        uri, mark, folder = text.partition("=")
+    uri, folder = halves(text)
     parts = urlsplit(uri)
-    if not mark or parts.scheme not in ("http", "https") or not parts.netloc or not folder:
+    if parts.scheme not in ("http", "https") or not parts.netloc or not folder:
         raise ValueError(
             f'"{text}" maps no URI to a folder.', 'Write "https://example.org/app/=folder/".'
         )
     return f"{uri.rstrip('/')}/", folder
+
+
+def halves(text: str) -> tuple[str, str]:
+    """The URI and the folder of ``URI=FOLDER``, unchecked; in a URI that ends with ``/`` may be ``=``."""
+    uri, mark, folder = text.partition("/=")
+    return (f"{uri}/", folder) if mark else text.partition("=")[::2]
 
 
 def mapped(file: str, maps: Mapping[str, str]) -> tuple[str, str] | None:

@@ -11,6 +11,7 @@ from click.testing import CliRunner
 from prima import api, loading
 from prima.cli import cli
 from prima.errors import UsageError
+from tests.helpers.here import prima
 from tests.helpers.voice import HEAD, vxml
 
 SHOP = """<var name="shop" expr="'the shop'"/>
@@ -192,6 +193,11 @@ def test_without_a_folder_the_document_s_own_is_served(tmp_path: Path) -> None:
         ('uri="app/main.vxml"', "bad-value", '"app/main.vxml" is not the URI of a document.'),
         ('uri="https://e.example/a?b"', "bad-value", "is not the URI of a document."),
         ('uri="https://e.example/x.vxml" folder="site"', "bad-value", "does not end as the"),
+        (
+            'uri="https://e.example/a%2Fvoice/main.vxml" folder="site"',
+            "bad-value",
+            "does not end as the",
+        ),
         ('uri="https://e.example/main.vxml" folder="other"', "bad-value", "is not in the folder"),
         ('folder="site"', "missing-attribute", 'A folder is served at a "uri".'),
     ],
@@ -250,3 +256,22 @@ def test_an_application_in_our_language_beside_the_copy_is_not_served(tmp_path: 
     assert logged(api.rehearse(staged)) == ["the shop", "there"]
     with pytest.raises(UsageError, match="no VoiceXML application is in the folder"):
         api.stage([fa], [], maps=maps)
+
+
+@pytest.mark.parametrize("uri", ["https://e.example/app/", "https://e.example/x", "http://e/x=1/"])
+def test_a_run_of_a_mapped_site_is_replayed_from_any_folder(uri: str, tmp_path: Path) -> None:
+    voice, out = tmp_path / "site" / "voice", tmp_path / "out"
+    voice.mkdir(parents=True)
+    out.mkdir()
+    root = f"{uri.rstrip('/')}/root.vxml"
+    prompt = '<form><block><prompt><value expr="greeting"/></prompt></block></form>'
+    text = vxml(prompt).replace("<vxml", f'<vxml application="{root}"', 1)
+    (voice / "main.vxml").write_text(text)
+    (voice.parent / "root.vxml").write_text(vxml("""<var name="greeting" expr="'Hello.'"/>"""))
+    robot = loading.documents_folder() / "robots" / "simulated.xml"
+    words = ["live", "--robot", str(robot), "--speed", "1000"]
+    words += ["--ea", "site/voice/main.vxml", "--map", f"{uri}=site", "-o", "out/visit.jsonl"]
+    done = prima(*words, cwd=tmp_path)
+    assert (done.returncode, '"Hello."' in done.stdout) == (0, True), done.stderr
+    done = prima("replay", "visit.jsonl", cwd=out)
+    assert (done.returncode, done.stderr) == (0, "the same, byte for byte\n")
