@@ -125,6 +125,21 @@ def test_x10_a_question_that_listens_again_is_answered_as_ever() -> None:
     assert heard.get("rule") is None
 
 
+@pytest.mark.parametrize("policy", [POLICY, "prima"])
+def test_x10_a_question_is_answered_while_it_is_said_again(policy: str) -> None:
+    asks = ASK.replace("<prompt>", '<prompt bargein="false">')
+    bench = Bench(document(asks, "ea", "ea"), policy=policy)
+    bench.listens()
+    bench.silence()
+    assert bench.saying() == ["Is it right?"]
+    hears(bench, "yes")
+    late = policy == POLICY
+    assert (bench.logs(), bench.saying()) == (
+        (["right: true"], []) if late else ([], ["Is it right?"])
+    )
+    assert check(bench.records, policy) == []
+
+
 # X8 -------------------------------------------------------------------------------------
 
 
