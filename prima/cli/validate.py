@@ -104,6 +104,8 @@ def _certify(fas: tuple[str, ...], eas: tuple[str, ...], robot: str, form: str) 
     from prima.loading import is_application
 
     applications = [name for name in _expanded(eas) if name in eas or is_application(name)]
+    if not applications:
+        raise UsageError(f"{eas[0]}: contains no applications.")
     found = certificates(fas, applications, robot)
     if form == "json":
         print_json([certificate_data(one) for one in found])

@@ -70,7 +70,7 @@ def is_application(path: str) -> bool:
     try:
         data = read_file(path)
     except (DocumentError, UsageError):
-        return False
+        return True  # its problem is to be reported
     return is_voicexml(data) or DIALOGUE.namespace.encode() in data[:4096]
 
 

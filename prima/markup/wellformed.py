@@ -13,7 +13,6 @@ from xml.parsers import expat
 from prima.errors import DocumentError, Fix, Hint, Place, nearest_word, replaced
 from prima.markup import endtags
 from prima.markup.endtags import MISMATCH, UNCLOSED, line_of, offset_of
-from prima.markup.limits import too_deep
 from prima.markup.tree import Source
 from prima.markup.vocabulary import Vocabulary
 
@@ -182,8 +181,6 @@ def _syntax_error(
         if text.startswith(beginnings):
             return DocumentError.of(place, "not-xml", what, remedy)
     message = _said(error)
-    if "depth" in message.lower():
-        return too_deep(place)
     if message.startswith("Entity '"):
         name = message.split("'")[1]
         sentence = f"The entity &{name}; is not known: documents declare none."

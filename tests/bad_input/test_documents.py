@@ -39,6 +39,8 @@ XML = [
     ("control", app(block("<log>\x01</log>")), "2:", "not well-formed"),
     ("voicexml", '<vxml version="3.0" xmlns="http://www.w3.org/2001/vxml"/>', "1:16", 'is not a version of VoiceXML'),
     ("not-closed", app(form("<block>")), "2:21", "not well-formed"),
+    ("not-closed-depth", "<depth>", "1:8", "the file ends inside <depth>"),
+    ("not-known-depth", "<a>&depth;</a>", "1:4", "The entity &depth; is not known"),
     ("mismatch", app(block("<speak>日本</speek>")), "2:30", "</speek> does not end <speak>"),
     ("no-namespace", "<prima/>", "1:1", "has no namespace"),
     ("wrong-namespace", '<prima xmlns="urn:x"/>', "1:1", 'Begin with <prima xmlns="urn:prima'),
@@ -258,6 +260,12 @@ def test_problems_of_all_files_and_none_is_lost(prima: Prima, tmp_path: Path) ->
     said = prima("validate", bad, "no.xml", good, tmp_path)
     said.check(2, f"{bad}:1:1", "no.xml: cannot be read: No such file")
     prima("validate", "empty").check(2, "empty: contains no documents")
+    write(tmp_path / "empty", "robot.xml", "<robot/>")
+    prima("validate", "--with", good, "empty").check(2, "empty: contains no applications.")
+    (tmp_path / "empty" / "gone.xml").symlink_to("nowhere")
+    gone = "empty/gone.xml: cannot be read: No such file"
+    prima("validate", "empty").check(2, gone)
+    prima("validate", "--with", good, "empty").check(2, gone)
     data = json.loads(prima("validate", "--format", "json", bad).check(1).out)
     assert data[0]["code"] == "wrong-namespace" and data[0]["remedy"].startswith("Begin with")
 

@@ -193,6 +193,23 @@ def test_bytes_are_no_path(call: Callable[[], object], argument: str) -> None:
     assert str(caught.value) == f"{argument}=b'x': write a path, as a text or a Path."
 
 
+def test_no_transcript_is_overwritten_by_what_is_made_from_it(tmp_path: Path) -> None:
+    path = tmp_path / "t.jsonl"
+    text = prima.rehearse(SCENARIO, isolate="none").dumps()
+    path.write_text(text, encoding="utf-8")
+    (tmp_path / "same.csv").symlink_to(path)
+    for output in (path, tmp_path / "same.csv"):
+        with pytest.raises(prima.UsageError, match="this is the transcript itself: name another"):
+            prima.export(path, "csv", output)
+    assert path.read_text(encoding="utf-8") == text
+
+
+def test_codes_are_explained_and_similar_ones_named() -> None:
+    assert "not ECMAScript" in prima.explain("bad-expression")
+    with pytest.raises(prima.UsageError, match=r'no code "bad-expresion". Did you mean "bad-exp'):
+        prima.explain("bad-expresion")
+
+
 def test_a_voicexml_document_is_told_from_an_application_in_primas_language() -> None:
     with pytest.raises(prima.DocumentError) as caught:
         prima.load(DOCUMENTS / "ea" / "pizza.vxml")

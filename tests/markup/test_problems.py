@@ -118,6 +118,7 @@ def test_no_value_is_suggested_that_is_out_of_range(
         ('<turn-and-speak angle="9O">Hello.</turn-and-speak>', "bad-value"),
         ('<turn-and-speak angle="900">Hello.</turn-and-speak>', "out-of-range"),
         ('<turn angle-expr=" "/>', "bad-value"),
+        ('<turn angle-expr="Math.PI" foo="1"/>', "unknown-attribute"),
         ('<if cond=""><exit/></if>', "bad-value"),
         ("<speek>Hello.</speek>", "unknown-element"),
         ('<par><speek>Hello.</speek><turn angle="9"/></par>', "unknown-element"),
