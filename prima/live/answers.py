@@ -8,15 +8,14 @@ import re
 from collections.abc import Iterable
 from dataclasses import replace
 from http.client import HTTPResponse
-from typing import NoReturn, TypeVar
+from typing import NoReturn
 
 from prima.devices.endpoints import Unfit
-from prima.messages import Fetched, Inbound, Json, Occurred
+from prima.messages import Fetched, Json, Occurred
 
 HIDDEN = "***"
 """Replaces a secret that a host sends back."""
 JSON_TYPE = re.compile(r"application/(?:[\w.+-]+\+)?json", re.IGNORECASE)
-T = TypeVar("T", bound=Inbound)
 
 
 def check_type(response: HTTPResponse) -> None:
@@ -89,7 +88,7 @@ def said_by_model(given: Json) -> Json:
     return read_json(said, "what the model says")
 
 
-def hidden(value: T, secrets: Iterable[str]) -> T:
+def hidden(value: Occurred | Fetched, secrets: Iterable[str]) -> Occurred | Fetched:
     """An inbound value without secrets, however the host has encoded them."""
     words = "|".join(re.escape(one) for one in sorted(secrets, key=len, reverse=True))
     if not words:
@@ -105,6 +104,4 @@ def hidden(value: T, secrets: Iterable[str]) -> T:
 
     if isinstance(value, Occurred):
         return replace(value, data=hide(dict(value.data)))
-    if isinstance(value, Fetched):
-        return replace(value, body=hide(value.body), problem=hide(value.problem))
-    return value
+    return replace(value, body=hide(value.body), problem=hide(value.problem))

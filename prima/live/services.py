@@ -19,7 +19,7 @@ from prima.errors import UsageError
 from prima.live.answers import check_type, hidden, read_json, said_by_model
 from prima.live.asking import ServiceRequests, in_thread
 from prima.loading.web import form_request
-from prima.messages import SERVICE, Data, Fetched, Inbound, Json, Order
+from prima.messages import SERVICE, Data, Fetched, Inbound, Json, Occurred, Order
 from prima.sim.happenings import Reply
 from prima.sim.services import (
     NO_ANSWER,
@@ -141,7 +141,7 @@ class LiveServices:
             self._under_way -= 1
         self._arrive(self.run.now(), hidden(value, self._hide))
 
-    async def _asked(self, order: Order) -> Inbound:
+    async def _asked(self, order: Order) -> Occurred | Fetched:
         fetches, name = "method" in order.data, str(order.data["to"])
         endpoint = self._endpoints.for_order(order)
         if endpoint is None and fetches and not name.startswith(SERVICE):
@@ -155,7 +155,7 @@ class LiveServices:
         data = await self._data(endpoint, params)
         return fetched_of(order, Reply(data)) if fetches else event_of(order, Reply(data))
 
-    async def _outside(self, order: Order) -> Inbound:
+    async def _outside(self, order: Order) -> Occurred | Fetched:
         """Send a request to a host of ``--allow-host``."""
         uri, data = str(order.data["to"]), order.data
         if self._web is None:
@@ -165,7 +165,7 @@ class LiveServices:
         found.app, found.serial = order.app, order.serial
         return found
 
-    async def _fetch(self, endpoint: Endpoint, order: Order, params: Data) -> Inbound:
+    async def _fetch(self, endpoint: Endpoint, order: Order, params: Data) -> Occurred | Fetched:
         """The bytes of a service's answer, for VoiceXML."""
         uri, method = str(order.data["to"]), str(order.data["method"])
         where = endpoint.uri if uri.startswith(SERVICE) else uri
@@ -245,7 +245,7 @@ def _request(endpoint: Endpoint, what: Data) -> Request:
     return Request(endpoint.uri, body, headers, method=endpoint.method.upper())
 
 
-def _failed(order: Order, why: str) -> Inbound:
+def _failed(order: Order, why: str) -> Occurred | Fetched:
     """The answer to an order that failed."""
     if "method" in order.data:
         return fetched_of(order, Reply(error=why))
