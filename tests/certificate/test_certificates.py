@@ -16,7 +16,7 @@ from prima.certificate import (
     format_certificate,
 )
 from tests import ROOT
-from tests.helpers.certifying import FA, ROBOT, block, certified, lasting, priced, write
+from tests.helpers.certifying import FA, ROBOT, block, certified, lasting, priced, run, write
 
 
 def test_the_longest_wait_is_for_the_longest_part_on_the_same_devices(tmp_path: Path) -> None:
@@ -99,7 +99,9 @@ def test_the_command_line_prints_a_certificate(tmp_path: Path) -> None:
     assert call("--with", fa, ea).returncode == 1
 
 
-@pytest.mark.parametrize("text, known", [("list[at].said", True), ("list[at].said + 1", False)])
+@pytest.mark.parametrize(
+    "text, known", [("list[at].said", True), ("list[at].said + 1", False), ("list[at]", False)]
+)
 def test_texts_of_constants_are_known(tmp_path: Path, text: str, known: bool) -> None:
     script = "<script>const list = [{ said: 'Hello there, you.' }, { said: 'Hi.' }];</script>"
     body = '<var name="at" expr="0"/>' + script + block(f'<speak><value expr="{text}"/></speak>')
@@ -107,6 +109,17 @@ def test_texts_of_constants_are_known(tmp_path: Path, text: str, known: bool) ->
     assert price.known is known
     if known:
         assert price.lasts == lasting("Hello there, you.")
+
+
+def test_constants_cost_what_a_run_says_of_them(tmp_path: Path) -> None:
+    values = ["1e999", "2e22", "1e20", "0.000001", "1e-7", "12", "-0.5", "true", "null", "'Hi.'"]
+    said = "".join(f'<speak><value expr="list[{at}]"/></speak>' for at in range(len(values) + 1))
+    prices = priced(tmp_path, f"<script>const list = [{', '.join(values)}];</script>{block(said)}")
+    fa = write(tmp_path, "mine", FA, "fa")
+    records = run(tmp_path, fa, str(tmp_path / "app.xml"), "")
+    texts = [str(one["text"]) for one in records if one["phase"] == "request"]
+    assert texts[:4] == ["Infinity", "2e+22", "100000000000000000000", "0.000001"]
+    assert [(one.lasts, one.known) for one in prices] == [(lasting(one), True) for one in texts]
 
 
 @pytest.mark.parametrize("change", ["list.push('a longer one')", "list[0] = 'a longer one'"])

@@ -6,7 +6,6 @@ Anything else is unknown before a run.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -15,8 +14,7 @@ from prima.interpreter.acts import Assign, Declare, Foreach, Script, all_acts
 from prima.interpreter.elements import Document
 from prima.markup.tree import Node
 from prima.script.constants import changed_names, constants, path
-
-UNDEFINED = "undefined"
+from prima.script.ecmascript import text
 
 
 class Constants:
@@ -41,7 +39,7 @@ class Constants:
             values = [inner for value in values for inner in _inside(value, step)]
         if any(isinstance(value, list | dict) for value in values):
             return None
-        return [_said(value) for value in values]
+        return [text(value) for value in values]
 
 
 def _codes(document: Document) -> Iterator[str]:
@@ -68,20 +66,17 @@ def _declared_again(document: Document) -> Iterator[str]:
 
 
 def _inside(value: Any, step: str | None) -> Iterable[Any]:
-    """The possible values of a step of a path; all members if the step is computed."""
+    """The possible values of a step of a path; all members if the step is computed.
+
+    What is undefined is None, which is said in the same way.
+    """
     if not isinstance(value, list | dict):
-        return [UNDEFINED]
+        return [None]
     if step is None:
-        return [*(value if isinstance(value, list) else value.values()), UNDEFINED]
+        return [*(value if isinstance(value, list) else value.values()), None]
     if isinstance(value, dict):
-        return [value.get(step, UNDEFINED)]
-    return [value[int(step)]] if step.isdecimal() and int(step) < len(value) else [UNDEFINED]
-
-
-def _said(value: Any) -> str:
-    if isinstance(value, float) and value == int(value):
-        return str(int(value))
-    return value if isinstance(value, str) else json.dumps(value)
+        return [value.get(step)]
+    return [value[int(step)]] if step.isdecimal() and int(step) < len(value) else [None]
 
 
 def words_of(link: Node) -> frozenset[str] | None:
