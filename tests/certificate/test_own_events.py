@@ -153,6 +153,11 @@ KEPT = {
         '<on event="error.service"><speak>I ask it again.</speak><send to="nobody"/></on></form>',
         "what is done about error.service may bring it again",
     ),
+    "a service that an expression names is not there": (
+        """<form id="f"><block><send to="nobody"/><send to="nobody"/></block><on event="error.service">
+        <speak>I ask it again.</speak><send to-expr="'no' + 'body'"/></on></form>""",
+        "what is done about error.service may bring it again",
+    ),
     "one service is asked because of the other's answer": (
         '<form id="f"><block><send to="a"/><send to="b"/></block>'
         '<on event="error.service.a"><speak>Now the other.</speak><goto next="#b"/></on></form>'

@@ -62,6 +62,9 @@ def test_where_response_and_first_command_are_one_they_are_told_once(tmp_path: P
         ('<move-head pan="3"/><goto next="#g"/>', 2),
         ('<move-head pan="3"><on event="end"><speak>Yes?</speak></on></move-head>', 1),
         ('<move-head pan="3"/><face-human/><speak>Yes?</speak>', 2),
+        ('<foreach item="x" array="[1]"><speak>Yes?</speak></foreach><gesture name="nod"/>', 1),
+        ('<throw event="e"/><gesture name="nod"/></on><on event="e"><speak>Yes?</speak>', 0),
+        ('<move-head pan="3"/><goto next-expr="a"/>', 2),
     ],
 )
 def test_a_response_is_found_on_all_ways(tmp_path: Path, content: str, most: int) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from prima.checks.prices import Outline, outline
+from prima.errors import UsageError
 from prima.loading import read_application
 from prima.loading.files import read_file
 from tests.helpers.certified import faults
@@ -136,8 +137,34 @@ def test_a_loop_costs_one_loop(tmp_path: Path) -> None:
 
 
 def test_reactions_are_what_follows_events_from_outside(tmp_path: Path) -> None:
-    body = FA.replace("</on>", '</on><on event="end.speak"><speak>Late.</speak></on>')
+    others = (
+        '<on event="end.speak"><speak>Late.</speak></on>'
+        '<on event="bell" reactive="false"><speak>When there is time.</speak></on>'
+    )
+    body = FA.replace("</on>", f"</on>{others}")
     document, _ = read_application("a.xml", (HEAD.format("fa", "a") + body + "</prima>").encode())
     (reaction,) = outline(document, PROFILE).reactions
     assert reaction.events == ("touch",)
     assert [price.devices for price in reaction.firsts] == [{"speaker"}]
+
+
+def test_of_very_many_reactions_the_longest_activity_counts_for_each(tmp_path: Path) -> None:
+    def wait(count: int) -> int:
+        bells = "".join(f'<on event="b{at}"><speak>A bell.</speak></on>' for at in range(count))
+        touch = '<on event="touch"><speak>Who is it?</speak></on>'
+        (delay,) = certified(tmp_path, f'<form id="f">{touch}{bells}</form>').delays
+        return delay.lasts
+
+    few, many = wait(10), wait(450)
+    assert lasting("Who is it?") <= few <= 2 * lasting("Who is it?") < many
+
+
+def test_too_many_forms_and_handlers_are_refused(tmp_path: Path) -> None:
+    body = '<form id="f{}"/>', '<on event="end"><speak>Oh.</speak></on>'
+    forms = "".join(body[0].format(at) for at in range(201))
+    told = (
+        "app.xml: there are 201 forms and 200 handlers, too many to follow what leads where. Split"
+    )
+    with pytest.raises(UsageError, match=told):
+        priced(tmp_path, forms + body[1] * 200)
+    priced(tmp_path, forms + body[1] * 9)

@@ -293,3 +293,32 @@ def test_a_call_of_voicexml_listens_for_the_words_of_its_grammars(
     transfer = f'<transfer name="t" dest="tel:+1-555" type="{kind}">{grammar}</transfer>'
     found, _, _ = voiced(tmp_path, f"<form>{transfer}</form>")
     assert ("speech-recognition" in {*found.both, *found.only_ea}) == (listens and bool(grammar))
+
+
+def test_a_command_of_voicexml_that_is_refused_costs_the_most_that_it_may(tmp_path: Path) -> None:
+    def price(angle: int) -> int:
+        turn = f'<form><block><p:turn angle="{angle}"/></block></form>'
+        _, _, ea = voiced(tmp_path, turn)
+        document, _ = read_application(ea, read_file(Path(ea)))
+        (part,) = outline(document, PROFILE).parts
+        return part.lasts
+
+    assert price(30) < price(360) == price(9999)
+
+
+@pytest.mark.parametrize(
+    "content, first", [("Yes?", ["question"]), ('<if cond="true">Yes?</if>', None)]
+)
+def test_a_reaction_of_voicexml_may_begin_with_anything(
+    tmp_path: Path, content: str, first: list[str] | None
+) -> None:
+    """What comes first is not followed into branches."""
+    body = (
+        f'<form><block><p:gesture name="bow"/></block></form><catch event="bell">{content}</catch>'
+    )
+    _, _, ea = voiced(tmp_path, body)
+    document, _ = read_application(ea, read_file(Path(ea)))
+    found = outline(document, PROFILE)
+    (reaction,) = found.reactions
+    firsts = [one.what for one in reaction.firsts]
+    assert firsts == (first or [one.what for one in found.parts])

@@ -64,12 +64,7 @@ def contents_of(part: Item | Handler) -> list[Sequence[Act]]:
 
 def inside(unit: Unit) -> list[Item | Handler]:
     """The content of a unit: its items, and the handlers of both."""
-    found: list[Item | Handler] = [*unit.handlers]
-    for item in unit.items:
-        found += [item, *item.handlers]
-        if isinstance(item, Unit):
-            found += inside(item)
-    return found
+    return [*unit.handlers, *(part for item in unit.items for part in (item, *item.handlers))]
 
 
 def runs_once(content: Sequence[Act]) -> bool:

@@ -98,11 +98,7 @@ class Firsts:
         own = self._of_items.get(item.node.index)
         if own is not None:
             self._add(own)
-            if not self._response or responds(own):
-                return False
-            for filled in item.filled if isinstance(item, Field) else ():
-                self._go_through(filled.content, form)
-            return True
+            return self._response and not responds(own)
         if isinstance(item, Subdialog):
             return self._enter(self._document.forms.get(item.form)) or self._returns
         return self._go_through(item.content, form) if isinstance(item, Block) else True
