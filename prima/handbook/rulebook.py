@@ -15,7 +15,6 @@ from textwrap import wrap
 from typing import Any
 
 from prima import api
-from prima.errors import UsageError, did_you_mean
 from prima.handbook.situations import EXAMPLES, RuleExample
 from prima.loading.folders import shipped
 from prima.report import strip
@@ -115,12 +114,8 @@ class Shown:
 
 
 def run_of(name: str, columns: int = 80) -> Shown:
-    """Run a rule's example, and find the row that shows the rule.
-
-    Raises:
-        UsageError: the rule is unknown, or the run does not show it.
-    """
-    example = _example(name)
+    """Run a rule's example, and find the row that shows the rule."""
+    example = EXAMPLES[name]
     made = api.rehearse(api.documents_folder() / example.scenario, example.policy or None)
     rows = made.rows()
     number = _looked_at(name, example, rows, made.run())
@@ -131,20 +126,10 @@ def run_of(name: str, columns: int = 80) -> Shown:
     return Shown(rows[max(number - AROUND, 0) : number + AROUND + 1], number, picture)
 
 
-def _example(name: str) -> RuleExample:
-    if name not in EXAMPLES:
-        hint = did_you_mean(name, EXAMPLES) or "prima explain lists them."
-        raise UsageError(f'There is no rule "{name}". {hint}')
-    return EXAMPLES[name]
-
-
 def _looked_at(name: str, example: RuleExample, rows: list[Row], run: Run) -> int:
     """The number of the important row."""
     found = (row.number for row in rows if example.row in row.what)
-    number = next(found if example.row else _decided(name, rows, run), None)
-    if number is None:
-        raise UsageError(f"{example.scenario} does not show the rule {name}.")
-    return number
+    return next(found if example.row else _decided(name, rows, run))
 
 
 def _decided(name: str, rows: list[Row], run: Run) -> Iterator[int]:
@@ -159,7 +144,7 @@ def _decided(name: str, rows: list[Row], run: Run) -> Iterator[int]:
 
 def commands(name: str) -> list[str]:
     """The commands that run a rule's example in this folder."""
-    example = _example(name)
+    example = EXAMPLES[name]
     policy = f" --policy {example.policy}" if example.policy else ""
     folder, copied = "documents", f"documents/{example.scenario}"
     count = 1
@@ -172,28 +157,20 @@ def commands(name: str) -> list[str]:
 
 
 def shown(name: str, columns: int = 80) -> str:
-    """A rule as text: its sentences, a picture, rows of the example, and the command to run it.
-
-    Raises:
-        UsageError: there is no such rule.
-    """
+    """A rule as text: its sentences, a picture, rows of the example, and the command to run it."""
     rule, run = rules()[name], run_of(name, columns)
     lines: list[str] = []
     for piece in f"{name} ({rule.section}): {rule.text}".split("\n"):
         lines += wrap(piece, columns, break_long_words=False, break_on_hyphens=False)
-    look = wrap(f"Row {run.number}: {_example(name).look}", columns)
+    look = wrap(f"Row {run.number}: {EXAMPLES[name].look}", columns)
     table = format_rows(run.rows, True, columns).rstrip("\n")
     tried = [f"    {one}" for one in commands(name)]
     return "\n".join([*lines, "", run.picture, "", *look, "", table, "", "Try it:", *tried])
 
 
 def data(name: str) -> dict[str, Any]:
-    """A rule as data for JSON.
-
-    Raises:
-        UsageError: there is no such rule.
-    """
-    rule, run, example = rules()[name], run_of(name), _example(name)
+    """A rule as data for JSON."""
+    rule, run, example = rules()[name], run_of(name), EXAMPLES[name]
     return {
         "rule": name,
         "section": rule.section,
