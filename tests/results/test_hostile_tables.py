@@ -88,6 +88,20 @@ def test_a_line_without_an_end(tmp_path: Path) -> None:
         results.read(tmp_path / "t.csv")
 
 
+def test_more_rows_than_are_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    table = write(tmp_path, runs())
+    monkeypatch.setattr("prima.results.reading.MOST_ROWS", 60)
+    assert len(results.read(table)) == 60
+    monkeypatch.setattr("prima.results.reading.MOST_ROWS", 59)
+    with pytest.raises(UsageError, match="it has more than 59 rows"):
+        results.read(table)
+
+
+def test_a_file_of_another_kind_is_no_table(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"name a table that ends with \.csv or \.parquet\."):
+        results.read(write(tmp_path, runs()).rename(tmp_path / "sweep.txt"))
+
+
 def test_a_dictionary_that_repeats_itself_makes_no_larger_page(tmp_path: Path) -> None:
     table = write(tmp_path, runs())
     plain = results.make(results.read(table), tmp_path)

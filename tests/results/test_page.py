@@ -125,6 +125,49 @@ def test_the_map_has_an_order_in_each_cell_and_links_where_there_is_a_transcript
     assert strip.found["map"] == [["policy", "Order"], ["prima", "1"], ["fifo", "2 +1"]]
 
 
+def test_the_map_has_a_level_for_no_value_and_tells_which_cells_have_no_runs(
+    tmp_path: Path,
+) -> None:
+    made = [row | {"when.at": None} if row["when.at"] == 3 else row for row in runs()]
+    made = [row for row in made if (row["policy"], row["when.at"]) != ("prima", 9)]
+    data = results.read(write(tmp_path, made))
+    head, *rows = Tables(results.make(data, tmp_path, ["policy", "when.at"])).found["map"]
+    assert head[1:] == ["0", "1", "2", "4", "5", "6", "7", "8", "9", "(nothing)"]
+    assert rows == [["prima", *["1"] * 8, "–", "1"], ["fifo", *["2"] * 7, "3", "3", "2"]]
+    drawn = results.draw(data, ["policy", "when.at"])
+    (orders,) = (one.inline() for one in drawn if one.name == "orders")
+    assert orders.count('class="frame"') == 1, "the cell without runs is empty"
+
+
+def test_of_many_outcomes_the_most_frequent_are_listed(tmp_path: Path) -> None:
+    made = [row | {"failures": f"f{max(row['run'], 5)}"} for row in runs()]
+    page = results.make(results.read(write(tmp_path, made)), tmp_path)
+    rows = list(Tables(page).by_name("outcomes"))
+    assert len(rows) == 51 and rows[0]["Runs"] == "6 (10.0%)"
+    assert [*rows[-1].values()] == ["others", "–", "5 other outcomes", "5 (8.3%)"]
+
+
+def test_where_all_measures_differ_nothing_is_told_to_be_the_same(tmp_path: Path) -> None:
+    head = "run,scenario,policy,seed,exit,ended,failures,order,transcript,seconds\r\n"
+    rows = "".join(f"{at},s.xml,prima,1,0,quiet,,abc,,{at}.5\r\n" for at in range(4))
+    (tmp_path / "t.csv").write_text(head + rows, newline="")
+    page = results.make(results.read(tmp_path / "t.csv"), tmp_path)
+    assert [row["Measure"] for row in Tables(page).by_name("measures")] == ["seconds (s)"]
+    assert 'id="constant"' not in page
+
+
+@pytest.mark.parametrize(
+    "field", ["weather", {"name": "weather", "role": "factr"}, {"name": "weather"}]
+)
+def test_what_a_dictionary_tells_wrongly_is_left_out(tmp_path: Path, field: object) -> None:
+    table = write(tmp_path, [row | {"weather": "sun"} for row in runs()])
+    path = tmp_path / "sweep" / "dictionary.json"
+    told = json.loads(path.read_text())
+    path.write_text(json.dumps(told | {"fields": [field, *told["fields"]]}))
+    note = "Columns that no dictionary describes are left out: weather."
+    assert results.read(table).notes == [note]
+
+
 def test_links_begin_at_the_page(table: Path) -> None:
     page = results.make(results.read(table), table.parent / "pages" / "new")
     assert "../../sweep/orders/aaaaaaaaaaaa.jsonl" in Tables(page).links
