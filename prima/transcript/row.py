@@ -261,18 +261,13 @@ def _note_row(record: Entry) -> Row:
 def _load_row(record: Entry) -> Row | None:
     if record.actor == "environment":
         return _place_row(record)
-    if record.actor != "mediator":
-        return None
     if record.phase == "load":
         return Row(record.time, "R", record.app, f"starts {record.app}", kind="load")
     return _plain(record, f"ends {record.app}: {record.outcome}", "unload")
 
 
 def _interrupt_row(record: Entry, asked: dict[str, Entry]) -> Row:
-    request = asked.get(record.behavior, record)
-    what = describe(record.command, record.text, request.args)
-    what = "the unit" if record.command == "iu" else what
-    return _plain(record, f"breaks off {what}", "interrupt")
+    return _plain(record, f"breaks off {_requested(record, asked)}", "interrupt")
 
 
 def _fail_row(record: Entry) -> Row:
@@ -287,13 +282,20 @@ def _emergency_row(record: Entry) -> Row:
 
 
 def _collision_row(record: Entry) -> Row:
-    return _plain(record, f"{record.command} loses the {record.device}", "collision")
+    what = "the unit" if record.command == "iu" else record.command
+    return _plain(record, f"{what} loses the {record.device}", "collision")
 
 
 def _starve_row(record: Entry, asked: dict[str, Entry]) -> Row:
-    request = asked.get(base(record.behavior), record)
-    what = describe(request.command, request.text, request.args)
+    what = _requested(record, asked)
     return _plain(record, f"still waits after {_waited(record)}: {what}", "starve")
+
+
+def _requested(record: Entry, asked: dict[str, Entry]) -> str:
+    """The Command, or the unit, that a record is about."""
+    request = asked.get(base(record.behavior), record)
+    unit = request.command == "iu"
+    return "the unit" if unit else describe(request.command, request.text, request.args)
 
 
 BY_RECORD: dict[str, Callable[[Entry], Row | None]] = {

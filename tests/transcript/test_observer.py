@@ -134,6 +134,16 @@ def test_words_that_begin_with_the_next_utterance_are_not_between_two() -> None:
     assert observe(in_time(*topic)).broken == 0
 
 
+@pytest.mark.parametrize(("leaves", "count"), [(False, 1), (True, 0)])
+def test_who_leaves_the_user_itself_is_not_left(leaves: bool, count: int) -> None:
+    """The robot drives away for another application: from whom it talks to, but not on its way."""
+    goes = records_of("ea", 2, whole(2, 9), "topological-move", leaves=leaves, feedback=True)
+    other = records_of("fa", 1, whole(3, 5), "topological-move", leaves=True, feedback=True)
+    asks = [one | {"engages": True} for one in question("ea", 1, 0.0, 2.0, "filled")]
+    told = in_time(asks, goes, other)
+    assert observe(told).left == count
+
+
 def test_parts_of_a_unit_that_runs_leave_a_reaction_one() -> None:
     unit = [
         records_of("ea", 1, whole(2, 6, 2), "iu", reactive=True, cause=1),

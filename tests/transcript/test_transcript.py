@@ -154,7 +154,9 @@ def test_the_table_fits_its_columns_and_breaks_no_word(columns: int, why: bool) 
 def test_a_table_is_read_back_as_it_was(columns: int) -> None:
     made = rows(*LONG, "short")
     made[1].event = True
-    back = read_table(format_rows(made, columns=columns))
+    printed = format_rows(made, columns=columns)
+    back = read_table(printed)
+    assert read_table(printed.replace("\n", "\n\n")) == back, "lines without anything are nothing"
     assert [(row.app, row.event) for row in back] == [(row.app, row.event) for row in made]
     assert [row.what for row in back[:3]] == list(LONG[:3])
     assert [row.what for row in back[4:]] == [LONG[4], "short"]
