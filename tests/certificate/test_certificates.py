@@ -127,3 +127,50 @@ def test_texts_of_constants_that_change_are_not_known(tmp_path: Path, change: st
     script = f"<script>const list = ['Hi.']; {change};</script>"
     (price,) = priced(tmp_path, script + block('<speak><value expr="list[0]"/></speak>'))
     assert not price.known
+
+
+VALUES = "".join(f'<speak><value expr="{at}"/></speak>' for at in range(8))
+WAITS = "not known how long Commands that are not reactions wait: "
+ALSO = (
+    '<form id="f{0}"><block><goto next="#f{1}"/></block>'
+    '<on event="touch"><speak>I too.</speak></on></form>'
+)
+DOOR = FA.replace("<speak>Yes?</speak>", '<topological-move to="door"/>')
+TURNS = '<form id="f"><block><turn angle="3"/><goto next="#f"/></block></form>'
+LONG = f'<iu longest="90s"><speak>So.</speak><pause time="60s"/><pause time="30s"/></iu><speak>{"word " * 300}</speak>'
+TOLD = {
+    "more places than are listed": (
+        block(VALUES), FA, ["an expression gives its text, at ", "    not known: 3 more such places"],
+    ),
+    "others wait for what is not known": (
+        block(VALUES), FA, [f"  {WAITS}an expression gives its text, at ", f"  {WAITS}3 more such"],
+    ),
+    "what it does about the same event": (
+        "".join(ALSO.format(at, at + 1) for at in range(7)) + '<form id="f7"/>', FA,
+        [" and for what theirs does about the same event at ", " and 2 more such places (F2)\n"],
+    ),
+    "all that it does": (
+        '<form id="q"><field name="a" type="boolean"><prompt>Well?</prompt><noinput><exit/></noinput>'
+        "<nomatch><exit/></nomatch></field><block><exit/></block></form>",
+        DOOR, [", for all that theirs does (K1, K2), and while the user speaks\n"],
+    ),
+    "those that leave": (
+        block("<tracking-human/>"), f'{DOOR}<form id="m"><block><topological-move to="door"/></block></form>',
+        ["goes on until its goal is reached\n", "    waiting: those that leave the user (K1)\n"],
+    ),
+    "a loop that keeps nothing": (TURNS, FA, ["  nothing: others than reactions wait up to "]),
+    "long activities": (
+        block(LONG), FA,
+        ["\nWhat of theirs is longer than a run's patience, 60 s by default (E6)\n  unit at ",
+         " s: it ends then\n  speak at ", " s: it may be refused\n"],
+    ),
+}  # fmt: skip
+"""What a certificate says in rarer cases: the EA, the FA, and pieces of the text in order."""
+
+
+@pytest.mark.parametrize(("body", "own", "pieces"), TOLD.values(), ids=TOLD)
+def test_a_certificate_tells_it(tmp_path: Path, body: str, own: str, pieces: list[str]) -> None:
+    text = format_certificate(certified(tmp_path, body, own))
+    for piece in pieces:
+        _, found, text = text.partition(piece)
+        assert found, piece

@@ -39,6 +39,11 @@ def test_e3_additional_arguments_are_for_an_fa_and_those_that_the_robot_has() ->
     assert stage.told("fa") == ["error.semantic"]
 
 
+def test_e3_a_text_is_for_commands_that_speak() -> None:
+    assert refused(replace(SILENT, text="Hi")) == "turn cannot say anything."
+    assert refused(Command("speak")) == "speak has nothing to say."
+
+
 def test_e3_what_the_robot_lacks_is_unsupported_and_what_nobody_knows_is_wrong() -> None:
     table = {name: row for name, row in TABLE_4_2.items() if name != "turn"}
     stage = Stage(table=table, refuses=True)

@@ -10,6 +10,7 @@ import pytest
 
 from prima import api
 from prima.report import make
+from prima.transcript.rows import GrowingTable
 from prima.transcript.rules import RULES
 from tests import ROOT
 from tests.helpers.certifying import FA, TOUCH, block, write
@@ -68,10 +69,13 @@ def test_what_gives_way_is_told_with_its_unit(tmp_path: Path) -> None:
     assert "it gives way to mine#1 (rule X2)." in why(made, "breaks off the unit")
     reasons = why(made, '"It is a rather')
     assert "the unit theirs#1 gives way to mine#1 (rule X2)." in reasons
-    starts = [one for one in reasons if one.startswith("started")]
-    assert starts == ["started inside the unit theirs#1 (rule U4)."], (
-        "its unit's start is no reason"
-    )
+
+
+def test_of_units_in_units_the_inner_one_is_named(tmp_path: Path) -> None:
+    inner = '<iu><par><iu><speak>Good morning.</speak></iu><gesture name="bow"/></par></iu>'
+    reasons = why(pair(tmp_path, block(inner), "prima"), '"Good')
+    starts = [one for one in reasons if "started" in one]
+    assert starts == ["started inside the unit theirs#2 (rule U4)."], reasons
 
 
 def test_what_is_put_in_is_told_with_what_it_precedes() -> None:
@@ -100,3 +104,6 @@ def test_without_a_mediator_a_pair_collides_in_one_row(tmp_path: Path) -> None:
     lost = [row.what for row in made.rows() if "loses" in row.what]
     assert lost == ["tracking-human loses the human-detection"]
     assert len([one for one in made.records if one["phase"] == "collision"]) > 10, "in each loop"
+    growing = GrowingTable()
+    shown = [row.what for record in made.records for row in growing.add([record])]
+    assert [what for what in shown if "loses" in what] == lost
