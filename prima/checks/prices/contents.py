@@ -64,7 +64,10 @@ def contents_of(part: Item | Handler) -> list[Sequence[Act]]:
 
 def inside(unit: Unit) -> list[Item | Handler]:
     """The content of a unit: its items, and the handlers of both."""
-    return [*unit.handlers, *(part for item in unit.items for part in (item, *item.handlers))]
+    found: list[Item | Handler] = [*unit.handlers]
+    for item in unit.items:
+        found += [item, *item.handlers]
+    return found
 
 
 def runs_once(content: Sequence[Act]) -> bool:
