@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
 from prima import cli
+from prima.markup.limits import LIMITS
 from tests.helpers.bad_input import GOOD, Prima, Result, stage
 
 
@@ -17,6 +19,8 @@ def prima(
 ) -> Prima:
     """The command line in this process, in the test's own folder."""
     monkeypatch.chdir(tmp_path)
+    for name, number in asdict(LIMITS).items():
+        monkeypatch.setattr(LIMITS, name, number)  # undone, whatever --limit raises
 
     def call(*args: object) -> Result:
         monkeypatch.setattr(sys, "argv", ["prima", *map(str, args)])
