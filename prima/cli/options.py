@@ -134,7 +134,7 @@ why_option = click.option(
 
 
 def check_why(why: bool, form: str, output: str | None = None) -> None:
-    """Refuse --why where no table is printed, but JSON, or a file written.
+    """Refuse --why where records are printed or written in place of a table.
 
     Raises:
         UsageError: it is given there.

@@ -150,7 +150,7 @@ class Content(Speaker):
             self.forget(item, context)
         for whole in names:
             scope, name = self._declared(node, whole, context, local)
-            with self.failing(node, "namelist"):  # as the session's do
+            with self.failing(node, "namelist"):  # the session's stay
                 self.engine.unset(scope, name)
             for item in named[name] if scope is context.dialog else ():
                 self.forget(item, context)

@@ -20,6 +20,7 @@ from prima.script.globals import HANDLED, IDENTIFIER, RESERVED
 from prima.script.known import Known, NameScope
 from prima.script.names import Names, expression_names, script_names, whole_scopes
 from prima.script.slips import is_bare, or_text, value_elsewhere
+from prima.script.walk import OBJECTS
 
 PARTS = ("name", "message", "data")
 TOLD = ("session.time", *(f"event.{part}" for part in PARTS))
@@ -38,8 +39,6 @@ FIELDS = {
 FIELD = re.compile(r"data\s*\??\.\s*([A-Za-z_$][\w$]*)")
 GIVEN = ("session", "sensor")
 """The variables of the scope ``application``."""
-SCOPED = ("document", "dialog", "application")
-"""Scopes that may prefix the name of a variable."""
 ABSENT = {
     "console": 'Write <log expr="..."/>.',
     "alert": 'Write <log expr="..."/>.',
@@ -220,7 +219,7 @@ class Variables:
         for form, assign in self.facts.acts.of(Assign):
             names = self.facts.known_in(form)
             head, dot, rest = assign.name.partition(".")
-            name = rest.partition(".")[0] if dot and head in SCOPED else head
+            name = rest.partition(".")[0] if dot and head in OBJECTS else head
             if head not in names and ".".join(assign.name.split(".")[:2]) in TOLD:
                 yield NOT_ASSIGNED.at(assign.node.attribute_place("name"), name=assign.name)
             elif name not in names and IDENTIFIER.fullmatch(name):
@@ -257,7 +256,7 @@ class Variables:
     @cached_property
     def _whole(self) -> set[str]:
         """Names of scopes that variables have, or that some code uses as a whole, for any member."""
-        hidden = (scope for scope in SCOPED if scope in self.facts.known_in(None))
+        hidden = (scope for scope in OBJECTS if scope in self.facts.known_in(None))
         return {*hidden, *(scope for names in self._names for scope in whole_scopes(names.uses))}
 
     @property
