@@ -16,7 +16,6 @@ from prima.cli.options import (
     limit_option,
     on_option,
     policy_option,
-    raise_limits,
     workers_option,
 )
 from prima.cli.printing import print_json, put, tell
@@ -67,7 +66,6 @@ def explore(
     resume: bool,
     form: str,
     isolate: str,
-    limits: tuple[str, ...],
 ) -> None:
     """Find every order of events that other timings bring, and those that break something.
 
@@ -84,7 +82,6 @@ def explore(
     from prima.experiments.explore import Exploration, ExplorationPlan
     from prima.experiments.explored import carried_out
 
-    raise_limits(limits)
     if resume and output is None:
         raise UsageError("--resume needs the folder: -o FOLDER.")
     if step == 0:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from prima.cli.options import PathName, SuggestingChoice, or_stdout, output_option
+from prima.cli.options import PathName, SuggestingChoice, limit_option, or_stdout, output_option
 from prima.cli.outputs import check_output
 from prima.cli.printing import echo, tell, tell_cut, write_for_programs
 from prima.errors import UsageError
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     " a world's map.",
 )
 @click.option("--row", type=int, help="Draw the tree as of this row of the transcript's table.")
+@limit_option
 @output_option("The file to write; else to stdout.", callback=or_stdout)
 def graph(file: str, to: str | None, what: str | None, row: int | None, output: str | None) -> None:
     """Draw the states of an application, the trees and streams of a run, or a world's map.

@@ -28,7 +28,6 @@ from prima.cli.options import (
     paths_option,
     patience_option,
     policy_option,
-    raise_limits,
     why_option,
 )
 from prima.cli.outputs import check_output
@@ -116,7 +115,6 @@ def live(
     hosts: tuple[str, ...],
     isolate: str,
     maps: tuple[str, ...],
-    limits: tuple[str, ...],
     form: str,
 ) -> None:
     """Run applications on a robot, in real time, with the journal as transcript.
@@ -139,7 +137,6 @@ def live(
     from prima.live.visit import LiveSettings
 
     leave_to_python()
-    raise_limits(limits)
     chosen = Chosen(robot or "", scenario or "", world or "", fas, eas, maps, services or "")
     check_usage(chosen, output, journal, checks)
     check_why(why, form)

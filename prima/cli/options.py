@@ -78,13 +78,6 @@ def paths_option(option: str, name: str, meaning: str, **more: Any) -> Callable[
 
 
 format_option = formats_option("text", "json")
-limit_option = click.option(
-    "--limit",
-    "limits",
-    metavar="NAME=NUMBER",
-    multiple=True,
-    help="Raise a limit on documents: bytes, elements, attributes, depth or problems.",
-)
 map_option = click.option(
     "--map",
     "maps",
@@ -184,13 +177,15 @@ def policy_option(meaning: str, many: bool = False, **more: Any) -> Callable[[An
     return click.option(*names, multiple=many, shell_complete=suggesting(*POLICIES), **more)
 
 
-def raise_limits(given: tuple[str, ...]) -> None:
+def _raise_limits(
+    context: click.Context, parameter: click.Parameter, given: tuple[str, ...]
+) -> None:
     """Raise limits on documents, given as ``NAME=NUMBER``.
 
     Raises:
         UsageError: there is no such limit, or it cannot be that high.
     """
-    from prima.markup.limits import HIGHEST, LIMITS
+    from prima.markup.limits import HIGHEST, set_limits
 
     names = ("bytes", "elements", "attributes", "depth", "problems")
     for text in given:
@@ -201,4 +196,15 @@ def raise_limits(given: tuple[str, ...]) -> None:
         most = getattr(HIGHEST, name)
         if not (number.isascii() and number.isdigit() and 0 < int(number[:12]) <= most):
             raise UsageError(f'--limit {text}: write a whole number up to {most}, as "{name}=200".')
-        setattr(LIMITS, name, int(number))
+        set_limits({name: int(number)})
+
+
+limit_option = click.option(
+    "--limit",
+    "limits",
+    metavar="NAME=NUMBER",
+    multiple=True,
+    expose_value=False,
+    callback=_raise_limits,
+    help="Raise a limit on documents: bytes, elements, attributes, depth or problems.",
+)

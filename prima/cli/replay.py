@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 from click.exceptions import Exit
 
-from prima.cli.options import PathName
+from prima.cli.options import PathName, limit_option
 from prima.cli.outputs import check_output
 from prima.cli.printing import echo, tell, tell_cut, write_for_programs
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 @click.argument("transcript", type=PathName())
 @click.argument("scenario", type=PathName(), required=False)
 @click.option("-o", "--output", type=PathName(), help="Write the replayed transcript here.")
+@limit_option
 def replay(transcript: str, scenario: str | None, output: str | None) -> None:
     """Run a transcript's inbound events again and check that the result is the same.
 

@@ -28,7 +28,6 @@ from prima.cli.options import (
     paths_option,
     patience_option,
     policy_option,
-    raise_limits,
     why_option,
     workers_option,
 )
@@ -92,7 +91,6 @@ def run(
     workers: int | None,
     resume: bool,
     maps: tuple[str, ...],
-    limits: tuple[str, ...],
     form: str,
 ) -> None:
     """Run scenarios in simulation and print the mediated transcript, or a row for each run.
@@ -116,7 +114,6 @@ def run(
     """
     from prima.experiments.plan import Options
 
-    raise_limits(limits)
     applications = bool(fas or eas)
     _check_source(bool(scenarios or lists), applications, bool(says), bool(maps))
     options = Options(bound, patience, isolate, hosts, seed, resume=resume)

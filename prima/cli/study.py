@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 from click.exceptions import Exit
 
-from prima.cli.options import PathName, formats_option, policy_option
+from prima.cli.options import PathName, formats_option, limit_option, policy_option
 from prima.cli.printing import print_json, put, write_for_programs
 from prima.cli.progress import show_count
 
@@ -13,6 +13,7 @@ from prima.cli.progress import show_count
 @click.command()
 @click.argument("scenarios", nargs=-1, type=PathName())
 @policy_option("Only this policy; may be repeated: {}.", many=True)
+@limit_option
 @formats_option("text", "json", "csv")
 def study(scenarios: tuple[str, ...], policies: tuple[str, ...], form: str) -> None:
     """Run situations under every policy and measure the effects on units, streams and channel.

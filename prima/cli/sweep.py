@@ -19,7 +19,6 @@ from prima.cli.options import (
     output_option,
     patience_option,
     policy_option,
-    raise_limits,
     workers_option,
 )
 from prima.cli.outputs import check_output
@@ -82,7 +81,6 @@ def sweep(
     bound: int | None,
     patience: int | None,
     isolate: str,
-    limits: tuple[str, ...],
 ) -> None:
     """Run scenarios over many values, and write one tidy table, a row for each run.
 
@@ -101,7 +99,6 @@ def sweep(
     from prima.experiments.studyfile import question_of
     from prima.experiments.sweep import Output, Sweep
 
-    raise_limits(limits)
     question = question_of(
         scenarios,
         _vary(varied),

@@ -21,7 +21,6 @@ from prima.cli.options import (
     limit_option,
     map_option,
     policy_option,
-    raise_limits,
     why_option,
 )
 from prima.cli.printing import tell, tell_problems, write_for_programs
@@ -72,7 +71,6 @@ def talk(
     why: bool,
     hosts: tuple[str, ...],
     maps: tuple[str, ...],
-    limits: tuple[str, ...],
     form: str,
 ) -> None:
     """Play the user of a run: type what they say and do, and watch the robot react.
@@ -93,7 +91,6 @@ def talk(
     from prima.api.rehearsing import fetcher
     from prima.talk import Conversation, Game
 
-    raise_limits(limits)
     check_why(why, form)
     _check_options(scenario, bool(fas or eas), bool(world or robot), bool(maps), step and real_time)
     loaded = _loaded(scenario, fas, eas, world, robot, maps)

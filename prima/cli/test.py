@@ -16,7 +16,6 @@ from prima.cli.options import (
     format_option,
     limit_option,
     policy_option,
-    raise_limits,
 )
 from prima.cli.outputs import check_output, same_file
 from prima.cli.printing import coloured, echo, print_json, put, tell
@@ -72,7 +71,6 @@ def test(
     coverage_xml: str | None,
     fail_under: float | None,
     junit_file: str | None,
-    limits: tuple[str, ...],
     form: str,
 ) -> None:
     """Run scenarios, and check what they expect.
@@ -96,9 +94,6 @@ def test(
     from prima.testing.running import run_all
 
     _check_options(update, yes, policy, form)
-    raise_limits(limits)
-    if limits and jobs > 1:
-        raise UsageError("--limit works in one process: leave out --jobs.")
     chosen = _chosen(find(paths or ["."]), word)
     _check_outputs(chosen, junit_file, coverage_xml)
     cover = cover or coverage_xml is not None or fail_under is not None

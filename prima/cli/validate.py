@@ -19,7 +19,6 @@ from prima.cli.options import (
     limit_option,
     map_option,
     paths_option,
-    raise_limits,
 )
 from prima.cli.printing import coloured, echo, print_json, put, tell, tell_line
 from prima.cli.progress import show_count
@@ -57,7 +56,6 @@ def validate(
     fas: tuple[str, ...],
     robot: str | None,
     maps: tuple[str, ...],
-    limits: tuple[str, ...],
 ) -> None:
     """Check documents of any kind: applications, worlds, robots, scenarios, VoiceXML.
 
@@ -73,7 +71,6 @@ def validate(
     prima validate site/voice/main.vxml --map https://example.org/app/=site/
     prima validate --with documents/fa/follow.xml documents/ea/museum.xml
     """
-    raise_limits(limits)
     _check_options(bool(fas), bool(robot), watch, strict)
     if fas:
         if any((watch, notes, strict, maps, form in ("short", "sarif"))):

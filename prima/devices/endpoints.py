@@ -22,6 +22,8 @@ NAMED = re.compile(r"\{([A-Za-z_][\w-]*)\}")
 """A placeholder for a sent value in a prompt."""
 VARIABLE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 HEADER = re.compile(r"[!#$%&'*+.^_`|~0-9A-Za-z-]+")
+COMPUTED = frozenset({"connection", "content-length", "host", "transfer-encoding"})
+"""Headers that follow from the request: another value would spoil it."""
 SAFE = frozenset(["get", "put"])
 """Methods that may be repeated (RFC 9110, 9.2.2)."""
 TYPES = {"text": "string", "number": "number", "boolean": "boolean"}
@@ -262,6 +264,9 @@ def _read_headers(reader: Reader, node: Node, made: Endpoint) -> None:
         if not HEADER.fullmatch(name):
             message = f'"{name}" is not the name of a header.'
             reader.problem(child, "bad-value", message, "name", 'Write as in "X-Api-Key".')
+        if name.lower() in COMPUTED:
+            message = f"{name} follows from the request and cannot be set."
+            reader.problem(child, "bad-value", message, "name", "Remove the header.")
         if ("value" in child.attributes) == ("variable" in child.attributes):
             message = "<header> needs exactly one of value, variable."
             reader.problem(

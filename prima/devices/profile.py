@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from prima.devices.goals import LISTEN, SAY
 from prima.devices.reading import Reader
-from prima.devices.settings import DriverSettings, read_driver, share_devices
+from prima.devices.settings import SLOTS, WRITTEN_SLOT, DriverSettings, read_driver, share_devices
 from prima.devices.vocabulary.robot import ROBOT
 from prima.errors import Place, Problem, meant, suggestion
 from prima.interpreter.events import near
@@ -147,8 +147,21 @@ def _read_drivers(reader: Reader, profile: Profile) -> None:
                 reader.known(does, "command", {*profile.commands, SAY, LISTEN}, "Command")
             if does.get("gesture"):
                 reader.known(does, "gesture", profile.gestures, "gesture")
+            _check_slots(reader, does, profile)
         profile.drivers.append(read_driver(reader, node))
     share_devices(profile.drivers, profile.devices)
+
+
+def _check_slots(reader: Reader, does: Node, profile: Profile) -> None:
+    """Warn about misspelt placeholders; a driver of one's own may have others."""
+    row = profile.commands.get(does.get("command") or "gesture")
+    known = SLOTS | (row.arguments.keys() | row.extra if row is not None else set())
+    for node in does.all("set"):
+        for name in WRITTEN_SLOT.findall(node.get("value")):
+            if name not in known and (word := near(name, known)):
+                message = f'There is no value "{{{name}}}", so this argument lacks it.'
+                hint = meant(word, *value_span(node, "value", name))
+                reader.problem(node, "no-such-argument", message, "value", hint, "warning")
 
 
 def _lacks(reader: Reader, node: Node, device: str, profile: Profile, message: str) -> None:

@@ -17,6 +17,15 @@ from prima.messages import Json
 
 SLOT = re.compile(r"\{([a-z][a-z-]*)\}")
 """A placeholder for a Command's value."""
+WRITTEN_SLOT = re.compile(r"\{([\w-]+)\}")
+"""What an author may have meant as one."""
+DEGREES = ("angle", "heading", "pan", "tilt", "down", "turn", "turn-speed")
+"""Values that are also available in radians: ``{NAME-radians}``."""
+SLOTS = frozenset(f"{name}-radians" for name in DEGREES) | {
+    *("text", "lang", "language", "x", "y", "heading", "heading-z", "heading-w"),
+    *("turn", "turn-speed", "down", "seconds"),
+}
+"""The placeholders that do not have the name of an argument."""
 SENSES = ("event", "sensor", "as")
 DOES = ("command", "gesture")
 

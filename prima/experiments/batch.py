@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 from prima.errors import TOO_MUCH, DocumentError, PrimaError, UsageError
 from prima.experiments.ledger import KEPT, InputDigests, earlier_row, key_of
 from prima.experiments.plan import LEDGER, TRANSCRIPT, BatchPlan, BatchRow, Job, Options
+from prima.markup.limits import set_limits
 from prima.pool import Died, cores, spread
 
 if TYPE_CHECKING:
@@ -91,7 +92,7 @@ def _dead(job: Job, died: Died) -> BatchRow:
 
 def _begin(options: Options) -> None:
     """Apply the parent's limits, and silence stderr: only the parent prints."""
-    options.apply_limits()
+    set_limits(options.limits)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
 
 

@@ -25,8 +25,3 @@ class ExperimentSettings:
         """The options as arguments of :func:`prima.api.rehearse`."""
         names = ("bound", "patience", "isolate", "hosts", "seed")
         return {name: getattr(self, name) for name in names}
-
-    def apply_limits(self) -> None:
-        """Set the limits on documents of this process, which may be another one."""
-        for name, number in self.limits.items():
-            setattr(LIMITS, name, number)

@@ -26,6 +26,7 @@ from prima.loading.applications import digest
 from prima.loading.files import Files, in_place_of_files, read_file
 from prima.loading.writing import write_whole
 from prima.markup.collecting import seldom_collected
+from prima.markup.limits import set_limits
 from prima.messages import Json
 from prima.sim.paths import ScenarioValue
 from prima.testing.checking import Failure, check
@@ -154,7 +155,7 @@ class Stage:
 
     def run(self, variant: Variant) -> Made:
         """Make a run; errors are in its result."""
-        self.settings.apply_limits()
+        set_limits(self.settings.limits)
         try:
             with in_place_of_files(self.files), seldom_collected():
                 return self._run(variant)

@@ -9,14 +9,12 @@ from typing import ClassVar, Final
 
 from prima.devices import voice
 from prima.devices.goals import LISTEN, SAY, At, Begin
-from prima.devices.settings import Does, Senses
+from prima.devices.settings import DEGREES, Does, Senses
 from prima.live.driver import Refused, TaskDriver, speaks
 from prima.live.reports import SenseReports
 from prima.live.threads import call_in
 from prima.messages import Json
 
-DEGREES: Final = ("angle", "heading", "pan", "tilt", "down", "turn", "turn-speed")
-"""Values that are also available in radians: ``{NAME-radians}``."""
 FLUSH_S: Final = 0.05
 """How long sensor values are collected before the newest is reported."""
 SAFE_S: Final = 2.0

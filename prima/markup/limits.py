@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from prima.errors import MOST_TOLD, DocumentError, Place
@@ -25,6 +26,12 @@ HIGHEST = Limits(1_000_000_000, 20_000_000, 10_000, 200, 20_000_000)
 """How far the limits can be raised, within the capacity of the machine."""
 LIMITS = Limits()
 """The limits of this process."""
+
+
+def set_limits(numbers: Mapping[str, int]) -> None:
+    """Set limits of this process, by name."""
+    for name, number in numbers.items():
+        setattr(LIMITS, name, number)
 
 
 def too_large(file: str, size: int) -> DocumentError:

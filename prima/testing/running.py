@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Literal
 from prima import api
 from prima.errors import TOO_MUCH, DocumentError, PrimaError, RunError, UsageError
 from prima.loading import Loaded, load_scenario
+from prima.markup.limits import LIMITS, set_limits
 from prima.pool import Died, spread
 from prima.testing.checking import Failure, check
 from prima.testing.coverage import Coverage, covered
@@ -162,7 +163,8 @@ def run_all(paths: list[str], choice: TestOptions, jobs: int = 1) -> Iterator[Re
     if jobs == 1:
         yield from (run_one(path, choice) for path in paths)
         return
-    with closing(spread(partial(_run_or_error, choice), paths, jobs)) as made:
+    begin = partial(set_limits, asdict(LIMITS))
+    with closing(spread(partial(_run_or_error, choice), paths, jobs, begin)) as made:
         for _path, found in made:
             if isinstance(found, Died):
                 raise RunError("a test process was killed; the remaining tests are not run.")

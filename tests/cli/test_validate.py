@@ -234,6 +234,30 @@ def test_a_limit_can_be_raised_and_lowered(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    "verb",
+    [
+        ("graph", "long.xml", "--to", "dot"),
+        ("run", "s.xml"),
+        ("replay", "s.jsonl", "s.xml"),
+        ("study", "s.xml"),
+        ("test", "s.xml", "t.xml", "--jobs", "2"),
+    ],
+)
+def test_every_verb_that_reads_documents_has_limits(tmp_path: Path, verb: tuple[str, ...]) -> None:
+    (tmp_path / "long.xml").write_text(GOOD + " " * 2_000_000)
+    parts = f'world="{ROOT}/documents/worlds/office.xml" robot="{ROOT}/documents/robots/papero.xml"'
+    for name in ("s", "t"):
+        text = f'<scenario xmlns="urn:prima:scenario:1" version="1.0" id="{name}" {parts}>'
+        inside = '<robot at="entrance"/><application src="long.xml" kind="fa"/>'
+        (tmp_path / f"{name}.xml").write_text(f"{text}{inside}</scenario>")
+    raised = ("--limit", "bytes=3000000")
+    assert prima("run", "s.xml", "-o", "s.jsonl", *raised, cwd=tmp_path).returncode == 0
+    done = prima(*verb, cwd=tmp_path)
+    assert done.returncode == 1 and "--limit bytes=" in done.stdout + done.stderr
+    assert prima(*verb, *raised, cwd=tmp_path).returncode == 0
+
+
+@pytest.mark.parametrize(
     "given",
     ["elments=3", "bytes", "bytes=", "bytes=-1", "bytes=1e9", "depth=100000", "=3", "bytes=٣"],
 )

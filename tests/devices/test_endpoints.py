@@ -38,6 +38,7 @@ def services(inside: str, grammars: Grammars = no_grammar) -> list[Endpoint]:
         ('most="10000001">', "is out of range: from 1 to 10000000."),
         ('><slot name="s" kind="number" choices="1|2"/>', "Only texts have choices."),
         ('><header name="a b" value="x"/>', '"a b" is not the name of a header.'),
+        ('><header name="Host" value="x"/>', "Host follows from the request and cannot be set."),
         ('><header name="A"/>', "<header> needs exactly one of value, variable."),
         ('><header name="A" value="x" variable="X"/>', "needs exactly one of value, variable."),
     ],

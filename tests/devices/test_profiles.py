@@ -84,3 +84,23 @@ def test_the_steps_of_a_motion_follow_each_other_and_repeat() -> None:
     first, second = (0.1, 0.0), (0.0, 90.0)
     times = (0, 999, 1000, 1499, 1500, 2600)
     assert [motion.at(time) for time in times] == [first, first, second, second, first, second]
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [
+        ("{agnle}", [("agnle", "angle")]),
+        ("[{angle_radians}, {Angle}]", [("angle_radians", "angle-radians"), ("Angle", "angle")]),
+        ("{bwo}", [("bwo", "bow")]),
+        ("{own-thing} {angle} {turn-radians} {bow} {language}", []),
+        ('{"angle": 1}', []),
+    ],
+)
+def test_a_misspelt_placeholder_is_told(value: str, told: list[tuple[str, str]]) -> None:
+    does = f"<does command='turn' by='a'><set name='a' value='{value}'/></does>"
+    more = f"<device name='locomotion'/><allows command='turn' argument='bow'/><driver kind='naoqi'>{does}</driver>"
+    warnings = read_robot("r.xml", f"{HEAD}{more}</robot>".encode()).warnings
+    assert [one.message for one in warnings] == [
+        f'There is no value "{{{slot}}}", so this argument lacks it.' for slot, _ in told
+    ]
+    assert [one.fixes[0].edits[0].text for one in warnings] == [near for _, near in told]

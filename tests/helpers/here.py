@@ -14,7 +14,7 @@ from subprocess import CompletedProcess
 from unittest.mock import patch
 
 from prima import cli
-from prima.markup.limits import LIMITS
+from prima.markup.limits import LIMITS, set_limits
 
 
 def prima(
@@ -74,8 +74,7 @@ def _own_process(input: str | bytes) -> Iterator[None]:
         for number, one in enumerate(kept):  # stdout is closed where nobody reads it any more
             os.dup2(one, number)
             os.close(one)
-        for name, number in limits.items():
-            setattr(LIMITS, name, number)
+        set_limits(limits)
 
 
 def _stream(encoding: str) -> io.TextIOWrapper:
