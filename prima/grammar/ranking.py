@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from typing import TYPE_CHECKING, NamedTuple
 
+from prima.digraphs import rings
 from prima.grammar.chart import Cell, ChartWay
 from prima.grammar.model import BuiltIn, Reference, Rule, Tag, Words
-from prima.grammar.rings import rings
 from prima.grammar.text import MatchedUtterance
 
 if TYPE_CHECKING:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
+from prima.digraphs import led_to
 from prima.errors import UsageError
 from prima.errors.visible import visible
-from prima.grammar.rings import led_to
 
 LONGEST = 300
 """Maximum length of a text in a picture."""

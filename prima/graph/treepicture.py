@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from html import escape
 from itertools import accumulate
 
-from prima.grammar.rings import led_to
+from prima.digraphs import led_to
 from prima.graph.layout import THREAD, LayoutEdge, arrange, depths
 from prima.graph.model import Graph, GraphNode
 from prima.graph.svg import box, fit, head, measure, picture, text, wrap

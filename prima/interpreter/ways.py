@@ -6,7 +6,7 @@ from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 
-from prima.grammar.rings import led_to, rings
+from prima.digraphs import led_to, rings
 from prima.interpreter.entering import ContentFacts, EnteredDocument, Entering, FormTarget
 
 Onward = Mapping[FormTarget, Sequence[FormTarget]]

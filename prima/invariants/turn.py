@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.grammar.rings import led_to
+from prima.digraphs import led_to
 from prima.invariants.memory import Memory
 from prima.invariants.model import AB, LINKED, WAITING, Record, Tree, base
 

@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 
 from prima import loading
+from prima.digraphs import led_to
 from prima.errors import DocumentError, Problem, UsageError, nearest_word
-from prima.grammar.rings import led_to
 from prima.loading.files import GivenFiles, in_place_of_files
 from prima.lsp.scan import ScannedText
 from prima.lsp.tables import BY_NAMESPACE, BY_ROOT

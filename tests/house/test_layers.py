@@ -18,7 +18,7 @@ from tests import ROOT
 PACKAGE = ROOT / "prima"
 
 LAYERS = [
-    {"errors", "version"},
+    {"digraphs", "errors", "version"},
     {"messages", "language"},
     {"markup", "transcript"},
     {"script"},
@@ -112,7 +112,7 @@ INSIDE = {
         {"__init__"},
     ],
     "grammar": [
-        {"abnferrors", "errors", "rings", "text", "numbers", "vocabulary"},
+        {"abnferrors", "errors", "text", "numbers", "vocabulary"},
         {"media"},
         {"abnfheader", "dates", "model"},
         {"assent"},

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from prima.checks.prices.model import Gap, Outline, PricedReaction, PricedState
-from prima.grammar.rings import rings
+from prima.digraphs import rings
 
 Node = tuple[str, str | int]
 """A reaction by its number, or a state or an event by its name."""

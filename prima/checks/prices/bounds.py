@@ -14,8 +14,8 @@ from prima.checks.prices.model import (
     PricedState,
     devices_of,
 )
+from prima.digraphs import rings
 from prima.errors import Place
-from prima.grammar.rings import rings
 from prima.markup.tree import Node
 
 MANY_STATES = 8

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
+from prima.digraphs import led_to
 from prima.errors import Diagnosis, Problem
 from prima.errors.diagnoses.behaviour import SHARED_DEVICE
 from prima.errors.diagnoses.values import NOTHING_TO_SAY
-from prima.grammar.rings import led_to
 from prima.interpreter.acts import CommandRun, StepTemplate, Text, run_commands
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.elements import Field, Form, Prompt, Unit

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from prima.digraphs import led_to
 from prima.errors import Diagnosis, Problem
 from prima.errors.diagnoses.behaviour import UNREACHABLE
-from prima.grammar.rings import led_to
 from prima.interpreter.acts import Exit, Goto, Handler, Return, Throw, all_acts
 from prima.interpreter.checks.facts import Facts, name_of
 from prima.interpreter.deadcontent import DEAD_CONTENT

@@ -1,4 +1,4 @@
-"""Graphs of nodes of any kind: what leads where, and cycles."""
+"""Directed graphs of nodes of any kind: what leads where, and cycles."""
 
 from __future__ import annotations
 
