@@ -158,6 +158,28 @@ def test_a_line_is_what_the_user_says(monkeypatch: pytest.MonkeyPatch) -> None:
     asyncio.run(play())
 
 
+def test_a_sensor_that_the_robot_lacks_is_not_touched(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    async def play() -> None:
+        with stdin(monkeypatch) as types:
+            async with Harness() as one:
+                types("/touch hed\n/touch nose\n/event touch.nose\n/touch back\n")
+                await one.until(lambda: len(one.told) == 2)
+                one.driver.profile.touch = frozenset()
+                types("/touch back\n")
+                await one.until(lambda: len(one.told) == 3)
+        touched = Occurred("touch.back", "user", {"sensor": "back"})
+        assert one.told[1:] == [touched, touched], "a robot without any takes every name"
+
+    asyncio.run(play())
+    nose = 'There is no touch sensor "nose". There is back and head.'
+    assert capsys.readouterr().err.splitlines() == [
+        'There is no touch sensor "hed". Did you mean "head"?',
+        *(nose, nose),
+    ]
+
+
 def test_the_last_line_counts_without_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
     async def play() -> None:
         source, sink = os.pipe()

@@ -14,10 +14,11 @@ from prima.devices.profile import Profile
 from prima.devices.settings import DriverSettings
 from prima.errors import UsageError
 from prima.errors.visible import visible
+from prima.interpreter.surroundings import nearest
 from prima.live.driver import Driver, speaks
 from prima.live.drivers.console.commands import HERE, Typed, help_text, read_typed, waits
 from prima.live.drivers.console.lines import LineSource
-from prima.messages import Heard
+from prima.messages import Heard, Occurred
 from prima.sim.map import Map
 
 TYPED_MS = 100
@@ -148,6 +149,8 @@ class ConsoleDriver(Driver):
     async def _carry_out(self, typed: Typed) -> None:
         if isinstance(typed.news, Sees) and not self._sees:
             raise UsageError("Another driver sees the user: human-detection is not this one's.")
+        if isinstance(typed.news, Occurred) and typed.news.name.startswith("touch."):
+            self._check_sensor(typed.news.name.removeprefix("touch."))
         if typed.news is not None:
             self.tell(typed.news)
         elif typed.said:
@@ -160,6 +163,12 @@ class ConsoleDriver(Driver):
             self._print(help_text())
         else:
             signal.raise_signal(signal.SIGINT)
+
+    def _check_sensor(self, name: str) -> None:
+        """Raise a UsageError if the robot has other touch sensors, but not this one."""
+        known = self.profile.touch
+        if known and name not in known:
+            raise UsageError(f'There is no touch sensor "{name}". {nearest(name, known).text}')
 
     async def _wait(self, lasts: int | None) -> None:
         if lasts is None:
