@@ -109,10 +109,12 @@ class Endpoint:
         Raises:
             Unfit: the answer does not match the document.
         """
-        if self.slots:
+        if self.slots and not self.model:
             return self._filled(answer)
         if not isinstance(answer, dict):
             raise Unfit("the answer is not a JSON object")
+        if self.model:
+            return self._filled(answer)
         for name, value in answer.items():
             if isinstance(value, dict | list):
                 raise Unfit(f'"{name}" of the answer is not flat; name its parts with <slot>')

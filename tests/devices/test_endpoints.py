@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from prima.devices.endpoints import Endpoint, Grammars, filled_by_grammar, read_services
+from prima.devices.endpoints import Endpoint, Grammars, Unfit, filled_by_grammar, read_services
 from prima.errors import DocumentError
 from prima.grammar import Grammar, load
 from prima.messages import Json
@@ -101,6 +101,14 @@ def test_a_model_is_told_what_a_slot_is_for_and_secrets_are_named() -> None:
     (model,) = services(MODEL.format(more))
     assert model.slots[0].schema() == {"type": "string", "description": "The mood."}
     assert (model.headers, model.variables) == ({}, {"X-Key": ("", "KEY")})
+
+
+@pytest.mark.parametrize("answer", [[], "happy", None, 1.5])
+def test_a_model_has_to_answer_an_object_even_if_it_need_not_fill_a_slot(answer: Json) -> None:
+    (model,) = services(MODEL.format('<slot name="s" required="false"/></language-model>'))
+    assert model.reply({}) == {}
+    with pytest.raises(Unfit, match="the answer is not a JSON object"):
+        model.reply(answer)
 
 
 def test_a_model_is_asked_for_slots_by_their_names() -> None:
