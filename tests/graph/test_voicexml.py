@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
 
+from prima.graph import text
 from tests.helpers.graphs import drawn, named, vxml, ways
 
 
@@ -70,6 +72,27 @@ def test_voicexml_menus_links_submits_and_ends(tmp_path: Path) -> None:
     }
     assert named(graph, "main").notes == ['asks "Which ...?"']
     assert "only if computed" in named(graph, "sub").marks
+
+
+def test_json_names_what_an_edge_leads_to_out_of_the_picture(tmp_path: Path) -> None:
+    graph = drawn(
+        tmp_path,
+        vxml(
+            '<form id="a"><block><if cond="x"><goto expr="y"/><elseif cond="y"/>'
+            '<goto next="http://h.example/x"/><elseif cond="z"/><goto next="gone.vxml"/>'
+            '<elseif cond="w"/><exit/></if><goto next="#b"/></block></form><form id="b"/>'
+        ),
+        "a.vxml",
+    )
+    edges = json.loads(text.data(graph))["edges"]
+    assert all({*edge} - {"where"} == {"from", "to", "kind", "labels"} for edge in edges)
+    assert {edge["kind"]: edge.get("where") for edge in edges} == {
+        "computed": "y",
+        "outside": "http://h.example/x",
+        "missing": "gone.vxml",
+        "exit": None,
+        "go": None,
+    }
 
 
 def test_the_documents_of_an_application_are_drawn_together(tmp_path: Path) -> None:
