@@ -122,7 +122,8 @@ class _Reader(GrammarChecker):
         if node.tag == "tag":
             self.document.globals.append(Tag(node.own_text, partial(node.attribute_place, "")))
         elif node.tag == "lexicon" and not node.get("uri"):
-            self.note(node, "missing-attribute", "<lexicon> needs a uri.")
+            message, remedy = "<lexicon> needs a uri.", 'Write <lexicon uri="words.pls"/>.'
+            self.note(node, "missing-attribute", message, remedy)
         elif node.tag == "meta":
             self._meta(node)
 
@@ -130,7 +131,8 @@ class _Reader(GrammarChecker):
         given = [name for name in ("name", "http-equiv") if name in node.attributes]
         if len(given) != 1 or "content" not in node.attributes:
             message = "<meta> has content, and either a name or http-equiv."
-            self.note(node, "missing-attribute", message)
+            remedy = 'Write <meta name="author" content="..."/>.'
+            self.note(node, "missing-attribute", message, remedy)
         self.document.meta[node.get("name") or node.get("http-equiv")] = node.get("content")
 
     # Rules (section 3)

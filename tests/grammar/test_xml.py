@@ -35,6 +35,21 @@ def test_what_is_misplaced_is_told_with_its_place(
     assert (problem.message, problem.remedy) == (message, remedy)
 
 
+@pytest.mark.parametrize(
+    ("header", "remedy"),
+    [
+        ("<lexicon/>", 'Write <lexicon uri="words.pls"/>.'),
+        ("<meta name='a'/>", 'Write <meta name="author" content="..."/>.'),
+        ("<meta name='a' http-equiv='b' content='c'/>", 'Write <meta name="author" content="..."/>.'),
+    ],
+)  # fmt: skip
+def test_what_a_header_lacks_is_told_with_what_to_write(header: str, remedy: str) -> None:
+    with pytest.raises(GrammarError) as caught:
+        load(GRAMMAR.format(header, "a"))
+    (problem,) = caught.value.problems
+    assert (problem.code, problem.remedy) == ("missing-attribute", remedy)
+
+
 def test_metadata_holds_what_it_likes() -> None:
     metadata = '<metadata><x:a xmlns:x="urn:x">text</x:a><item/></metadata>'
     assert load(GRAMMAR.format(metadata, "a")).match("a")
