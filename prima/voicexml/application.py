@@ -70,6 +70,8 @@ class VoiceInterpreter(App[AnyEngine]):
         if self.over or not (self.waits.run or self.waits.calling):
             return
         if not _hangs_up(event) and not self._is_taken(event):
+            if (context := self._shared.context) is not None:
+                self._machine.events.count(context, thrown_of_event(event))
             return
         self.waits.cause = event.serial if event.reactive else None
         self._tell(event)

@@ -30,7 +30,7 @@ class Events:
 
     def handle(self, context: Context, thrown: Thrown, depth: int = 0) -> Flow:
         """Find an event's handler and run it, or do what the platform does (5.2.4, 5.2.5)."""
-        self._count(context, thrown)
+        self.count(context, thrown)
         try:
             if isinstance(thrown, HungUp):
                 yield from self._hang_up(thrown)
@@ -72,7 +72,7 @@ class Events:
             Thrown: for a condition that fails.
         """
         held = context.counters
-        self._count(context, thrown)
+        self.count(context, thrown)
         try:
             return self.find(context, thrown)
         finally:
@@ -97,7 +97,7 @@ class Events:
         yield from self.finish(context)
         raise GoOut(thrown.reason, True, thrown.source)
 
-    def _count(self, context: Context, thrown: Thrown) -> None:
+    def count(self, context: Context, thrown: Thrown) -> None:
         """Count an event where it was thrown, under its name and all prefixes (5.2.2).
 
         Only names that a handler uses are counted.

@@ -327,6 +327,26 @@ def test_an_event_of_the_robot_counts_for_those_handlers_alone_that_name_it() ->
     assert call.logs() == ["named", "named"]
 
 
+@pytest.mark.parametrize(
+    ("handlers", "logged"),
+    [
+        ('<catch event="touch" count="2"><log>2</log></catch>', ["2", "2"]),
+        ('<catch event="touch" count="2" cond="false"><log>2</log></catch>', []),
+        ('<catch event="touch.back" count="2"><log>2</log></catch>', []),
+    ],
+)
+def test_an_event_of_the_robot_counts_though_no_handler_takes_it(  # 5.2.2
+    handlers: str, logged: list[str]
+) -> None:
+    call = Call(
+        f"<form><field name='f' type='boolean'><prompt>Well?</prompt>{handlers}</field></form>"
+    )
+    call.play()
+    for _ in range(3):
+        call.event("touch.head")
+    assert (call.logs(), call.said()) == (logged, ["Well?"])
+
+
 def test_commands_of_the_robot_stand_among_prompts() -> None:
     call = Call(
         """<form xmlns:p="urn:prima:dialogue:1"><block>Look. <p:point-by-hand angle="30"/> There.
