@@ -50,7 +50,8 @@ def assigning(code: str, at: At) -> Iterator[Problem]:
         return
     found = (node for node in parsed.walk() if node.type == "assignment_expression")
     if (first := next(found, None)) is not None:
-        yield ASSIGNING_CONDITION.at(at(parsed.start(first.children[1])))
+        sign = next(one for one in first.children if one.type == "=")
+        yield ASSIGNING_CONDITION.at(at(parsed.start(sign)))
 
 
 def may_compare(code: str) -> bool:
@@ -70,9 +71,9 @@ def compared(code: str) -> Iterator[Compared]:
 
 def _sides(node: Node) -> tuple[Node, Node] | None:
     """The name and the text that a comparison compares."""
-    if node.type != "binary_expression" or node.children[1].type not in EQUALITY:
+    sign, left, right = map(node.child_by_field_name, ("operator", "left", "right"))
+    if sign is None or left is None or right is None or sign.type not in EQUALITY:
         return None
-    left, _, right = node.children
     if left.type == "string":
         left, right = right, left
     return (left, right) if (left.type, right.type) == ("identifier", "string") else None
