@@ -21,6 +21,11 @@ from prima.markup.wellformed import explain
 
 UNVERSIONED = re.compile(r"<\?xml(?:\s*\?>|\s++(?!version\b))")
 """The beginning of an XML declaration without its version (XML 1.0, 2.8)."""
+DECLARATION = re.compile(
+    r"""<\?xml(?![\s?])[^>]*>|<\?xml\s+version\s*=\s*("[^"]*"|'[^']*')"""
+    r"""(\s+encoding\s*=\s*("[^"]*"|'[^']*'))?(\s+standalone\s*=\s*("[^"]*"|'[^']*'))?\s*\?>"""
+)
+"""An XML declaration, or another instruction."""
 
 
 def parse(file: str, data: bytes, vocabularies: Sequence[Vocabulary] = ()) -> Node:
@@ -52,20 +57,19 @@ def parse(file: str, data: bytes, vocabularies: Sequence[Vocabulary] = ()) -> No
 
 
 def _check_declaration(file: str, text: str) -> None:
-    """Refuse an XML declaration that lacks its version, or has it behind the encoding.
+    """Refuse an XML declaration that is not well-formed, such as one without its version.
 
     Raises:
         DocumentError: it does so.
     """
-    if UNVERSIONED.match(text):
+    if not DECLARATION.fullmatch(text):
         place = Place(file)
         encoding = ENCODING.match(text.encode())
         right = f'<?xml version="1.0" encoding="{encoding[1].decode() if encoding else "UTF-8"}"?>'
         spans = () if "\n" in text else (Span.of(place, text),)
         hint = replaced(f"Write {right}.", right, *spans)
-        raise DocumentError.of(
-            place, "not-xml", "The XML declaration does not begin with a version.", hint
-        )
+        wrong = "does not begin with a version" if UNVERSIONED.match(text) else "is written wrongly"
+        raise DocumentError.of(place, "not-xml", f"The XML declaration {wrong}.", hint)
 
 
 def _beyond(much: LimitReached) -> DocumentError:

@@ -47,6 +47,11 @@ REMEDIES = (
     (r"Sequence '\]\]>'", "Write ]]&gt;."),
     (r"[Cc]omment", "A comment ends with --> and holds no --."),
     (r"CData", "It ends with ]]>."),
+    (r"ParsePI", "Write &lt; for a < that begins no tag, or remove the <? and what follows it."),
+    (r"parse QName", "Remove the colon: here a name has none, or something before and behind it."),
+    (r"XML declaration|declaration expecting|Blank needed|Invalid PI name",
+     'Write the first line as <?xml version="1.0" encoding="UTF-8"?>.'),
+    (r"\Aexpected '>'", "A closing tag holds its name alone: </name>."),
 )  # fmt: skip
 """The parser's messages, with remedies."""
 PLAINER = (
@@ -77,6 +82,8 @@ WIDE = {
     "＞": "This bracket has full width: write >.",
 }
 """Characters that editors substitute for those of XML, with the right ones."""
+SPACED_TAG = re.compile(r"""\s+(/?)([\w-]+)(\s+[\w:-]+\s*=\s*["'][^<>]*)?\s*/?>""")
+"""The rest of a tag with a space behind its <."""
 OPEN_QUOTE = re.compile(r"""=\s*(["'])[^"'<]*\Z""")
 TEMPLATE = re.compile(r"<%|<\?php|<\?=")
 
@@ -206,12 +213,25 @@ def _not_well_formed(
             remedy = wide
         elif hint := endtags.remedy(source, place, message, vocabularies):
             remedy, fixes = hint
+        elif spaced := _spaced_tag(source, place, message, vocabularies):
+            remedy = spaced
         elif "XML declaration" in message and "</" in source.text[: offset_of(source, place)]:
             remedy = "A second document begins here: keep one of them."
     if TEMPLATE.search(source.text):
         remedy, fixes = "A server makes the document from this: run what it makes.", ()
     sentence = f"This is not well-formed XML: {sentence.rstrip('.')}."
     return DocumentError.of(place, "not-xml", sentence, Hint(remedy, fixes))
+
+
+def _spaced_tag(
+    source: Source, place: Place, message: str, vocabularies: Sequence[Vocabulary]
+) -> str:
+    """The remedy for a tag with a space behind its <; nothing for a < that begins no tag."""
+    found = SPACED_TAG.match(source.text, offset_of(source, place))
+    if "invalid element name" not in message or found is None:
+        return ""
+    known = any(found[2] in one.tags for one in vocabularies)
+    return f"Write <{found[1]}{found[2]} without the space." if known else ""
 
 
 def _translated(table: Iterable[tuple[str, str]], message: str) -> str:
