@@ -199,10 +199,10 @@ def _allow(reader: Reader, rows: dict[str, CommandType]) -> None:
 def _check_devices(reader: Reader, profile: Profile) -> None:
     """Warn about a device of the robot's own that none of its Commands needs: likely a typo."""
     own = {name for node in reader.root.all("adds") for name in node.get("devices").split()}
-    free = (set(DEVICES) | own) - profile.devices
+    free = set(DEVICES) - profile.devices  # a device that an <adds> lacks is reported there
     for node in reader.root.all("device"):
         name = node.get("name")
-        if name in DEVICES or name in own:
+        if name in DEVICES or name in own or not name:
             continue
         message = f'No Command of this robot needs a device "{name}".'
         hint = meant(near(name, free), *value_span(node, "name"))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, Any
 
 from prima.errors import DocumentError, Hint, Problem, Severity, has_errors
 from prima.interpreter.surroundings import nearest
-from prima.language.values import DRAWABLE, is_beyond, outside, read_value
+from prima.language.values import DRAWABLE, NAME, is_beyond, outside, read_value
 from prima.markup.reader import read_tree
 from prima.markup.spans import nearest_allowed, value_span
 from prima.markup.tree import Node
@@ -28,7 +29,8 @@ def unknown_name(node: Node, name: str, words: Collection[str], wrong: str) -> l
     word = node.attributes.get(name)
     if word is None or word in words:
         return []
-    hint = nearest(word, words, *value_span(node, name))
+    named = [one for one in words if re.fullmatch(NAME, one)]  # others are reported where they are
+    hint = nearest(word, named, *value_span(node, name))
     message = f'{wrong} "{word}".'
     return [Problem(node.attribute_place(name), "error", "no-such-name", message, hint)]
 

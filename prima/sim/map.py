@@ -82,7 +82,7 @@ def read_world(file: str, data: bytes) -> Map:
     for node in reader.root.all("wall"):
         x1, y1, x2, y2 = _ends(reader, node)
         world.walls.append(((x1, y1), (x2, y2)))
-        if (x1, y1) == (x2, y2):
+        if (x1, y1) == (x2, y2) and {"x2", "y2"} <= node.attributes.keys():
             message = "The wall has no length: it begins where it ends."
             reader.problem(node, "bad-value", message, "x2", "Write its other end.", "warning")
     _read_areas(reader, world, seen)

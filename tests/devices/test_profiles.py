@@ -104,3 +104,26 @@ def test_a_misspelt_placeholder_is_told(value: str, told: list[tuple[str, str]])
         f'There is no value "{{{slot}}}", so this argument lacks it.' for slot, _ in told
     ]
     assert [one.fixes[0].edits[0].text for one in warnings] == [near for _, near in told]
+
+
+@pytest.mark.parametrize(
+    ("device", "adds", "remedies"),
+    [
+        ("light", "lights", ['Name it in an <adds devices="light">', 'Did you mean "light"?']),
+        ("lights", "lights,", ['Name it in an <adds devices="lights">', 'Did you mean "lights"?']),
+    ],
+)
+def test_a_device_and_the_command_that_needs_it_are_mended_alike(
+    device: str, adds: str, remedies: list[str]
+) -> None:
+    text = f'{HEAD}<device name="{device}"/><adds command="glow" devices="{adds}"/></robot>'
+    with pytest.raises(DocumentError) as error:
+        read_robot("r.xml", text.encode())
+    found = sorted(one.remedy for one in error.value.problems)
+    assert all(one.startswith(start) for one, start in zip(found, sorted(remedies), strict=True))
+
+
+def test_what_a_robot_gives_no_name_is_told_once() -> None:
+    with pytest.raises(DocumentError) as error:
+        read_robot("r.xml", f"{HEAD}<device/></robot>".encode())
+    assert [one.code for one in error.value.problems] == ["missing-attribute"]

@@ -36,7 +36,7 @@ def check_commands(
     heard = {name for handler in handlers_of(document, acts) for name in handler.events}
     robot = Ability(commands, devices, heard)
     cannot: list[Problem] = []
-    for command in document_commands(document):
+    for command in [one for one in document_commands(document) if one.type]:
         row = commands.get(command.type)
         if row is None or row.substitute:
             cannot.append(robot.problem(command.node, command.type))
@@ -96,7 +96,7 @@ def _arguments(command: CommandTemplate, row: CommandType) -> Iterator[Problem]:
     """The problems of arguments of a Command that only a robot's profile defines."""
     by_params = command.node.tag == "command"  # arguments of others are attributes, checked already
     for name, _ in command.extra:
-        if name not in row.extra and not (by_params and name in row.arguments):
+        if name and name not in row.extra and not (by_params and name in row.arguments):
             yield _no_argument(command, row, name, by_params)
     if by_params:
         given = dict(command.extra)
