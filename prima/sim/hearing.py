@@ -63,6 +63,12 @@ CANNOT = UNSUPPORTED_COMMAND.says(
     "Name another Command, or a robot that can do it.",
 )
 NEVER_RAISED = UNKNOWN_EVENT.says('Nothing raises an event "{name}".')
+OWN_ALONE = frozenset({"noinput", "nomatch", "suspended", "resumed"})
+"""Events that the application alone gets which they concern."""
+NOT_SEEN = UNKNOWN_EVENT.says(
+    'Only an application gets the event "{name}": here it never happens.',
+    "Name what its handler says or does.",
+)
 NO_END = UNKNOWN_EVENT.says('No application ends with "{name}".')
 
 
@@ -106,7 +112,7 @@ def _corners(
 ) -> Iterator[Problem]:
     """A corner's event that is waited for but that no corner of the world raises: likely a typo."""
     corners = {corner.event for corner in world.corners} - {"corner"}
-    known = {*corners, *_raised(nodes, events)}
+    known = {*STANDARD, *corners, *_raised(nodes, events)}
     known.update(*(thrown_in(root) for root in pages))
     begins = {name for one in known for name in beginnings(one)}
     for place, name in _waiting(nodes, events, pages):
@@ -126,9 +132,9 @@ def _no_corner(place: Place, name: str, corners: set[str]) -> Iterator[Problem]:
 
 
 def _raised(nodes: list[Node], events: list[KnownEvents]) -> set[str]:
-    """The events of the language, of the scenario, and those that applications raise."""
-    known = {*STANDARD, *(node.get("name") for node in nodes if node.tag == "event")}
-    return known | {raised.name for one in events for raised in one.raised}
+    """The events of the scenario, and those that applications raise."""
+    made = {node.get("name") for node in nodes if node.tag == "event"}
+    return made | {raised.name for one in events for raised in one.raised}
 
 
 def _waiting(
@@ -227,11 +233,14 @@ def _unheard(nodes: list[Node], events: list[KnownEvents]) -> Iterator[Problem]:
 
 def _triggers(nodes: list[Node], events: list[KnownEvents], cast: Cast) -> Iterator[Problem]:
     """Triggers and expectations of an event whose name is likely a typo."""
-    known = _raised(nodes, events) | {f"touch.{sensor}" for sensor in cast.robot.touch}
+    made = _raised(nodes, events)
+    known = {*STANDARD, *made, *(f"touch.{sensor}" for sensor in cast.robot.touch)}
     known |= {corner.event for corner in cast.world.corners}
     begins = {name for one in known for name in beginnings(one)}
     for node, attribute, name in _awaited(nodes):
         ending = ENDINGS if attribute == "reason" else frozenset()
+        if name in OWN_ALONE - made and attribute != "reason":
+            yield NOT_SEEN.at(node.attribute_place(attribute), name=name)
         if name in begins or name in ending:
             continue
         if name.startswith(OPEN):

@@ -227,6 +227,7 @@ def scenario(content: str, attributes: str = "") -> str:
         '<never ends="ask" reason="error.semantic"/>',
         '<in-order><expect event="human.found"/></in-order>',
         '<when at="10s"><say>Tea.</say></when>',
+        '<when at="1s"><event name="noinput"/></when><expect event="noinput"/>',
         '<expect state="start" at="10s"/>',
         '<expect state="start" at="end"/>',
         '<person x="4" y="3"/>',
@@ -241,6 +242,8 @@ def test_what_is_right_in_a_scenario_is_not_told(tmp_path: Path, content: str) -
     ("content", "says"),
     [
         ('<in-order><expect event="mesage"/></in-order>', 'Did you mean "message"?'),
+        ('<expect event="noinput"/>', "Name what its handler says or does."),
+        ('<when on="nomatch"><say>Tea.</say></when>', "Name what its handler says or does."),
         ('<when at="8s" after="3s"><say>Tea.</say></when>', "or a later until."),
         ('<person x="2" y="9"/>', "They are between -1 and 3."),
     ],
