@@ -124,7 +124,9 @@ class _Rules:
 def _misplaced(child: Node, parent: Node, vocabulary: Vocabulary) -> Problem:
     tag = child.tag
     if child.namespace != vocabulary.namespace:
-        return FOREIGN.at(child.place, tag=tag, namespace=child.namespace)
+        known = vocabulary.child(parent.key, tag)
+        hint = Hint(hints.OWN_NAMESPACE if known else hints.REMOVE)
+        return FOREIGN.at(child.place, hint, tag=tag, namespace=child.namespace)
     if tag not in vocabulary.tags:
         return UNKNOWN.at(child.place, _known_instead(child, parent, vocabulary), tag=tag)
     hint = Hint(hints.misplaced_remedy(tag, parent, vocabulary))
@@ -204,8 +206,8 @@ def _unknown_attribute(node: Node, name: str, rules: _Rules, missing: list[Attri
     """The problem of an unknown attribute; a missing one that it means is not reported as well."""
     known = list(rules.known)
     hint = _other_attribute(node, name, rules) or _missing_attribute(node, name, known, missing)
-    if not hint and rules.element.text and name in hints.TEXTS:
-        hint = Hint(f"Write the text inside: <{node.tag}>...</{node.tag}>.")
+    if not hint and rules.element.text:
+        hint = Hint(hints.inside(node, name, "value" in rules.children))
     hint = hint or similar_attribute(node, name, known)
     place = node.attribute_place(name, value=False)
     return NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
@@ -225,11 +227,13 @@ def _other_attribute(node: Node, name: str, rules: _Rules) -> Hint:
 def _missing_attribute(node: Node, name: str, known: list[str], missing: list[Attribute]) -> Hint:
     """The missing attribute that an unknown one means; it is removed from those missing."""
     names = [item.name for item in missing]
-    right = f"{name[:-4]}-expr"
+    computed = [one for one in (f"{name}-expr" for name in names) if one in known]
+    right = f"{name[:-4]}-expr" if name != "expr" else "".join(computed[:1])
     if name.endswith("expr") and right in known:
-        meant_name, hint = name[:-4], replaced(f"Write {right}.", right, attribute_span(node, name))
-    elif near := nearest_word(name, names):
-        meant_name, hint = near, meant(near, attribute_span(node, name))
+        hint = replaced(f"Write {right}.", right, attribute_span(node, name))
+        meant_name = right[:-5]
+    elif near := nearest_word(name, names + computed):
+        meant_name, hint = near.removesuffix("-expr"), meant(near, attribute_span(node, name))
     elif missing:
         meant_name, hint = names[0], Hint(f'Write {names[0]}="...": {missing[0].doc}.')
     else:
@@ -251,7 +255,9 @@ def _value_problem(item: Attribute, is_expression: bool, text: str) -> BadValue 
     bad = _not_of_kind(item.kind, text)
     right = hints.meant_value(item.kind, text, item.default) if bad else ""
     if not bad or not right:
-        return bad
+        code = hints.expression(text) if bad and item.dynamic else ""
+        remedy = f'For an expression write {item.name}-expr="{code}".'
+        return BadValue(bad.wrong, remedy) if bad and code else bad
     value = read_value(item.kind, right)
     if is_beyond(value, item.low, item.high):
         return BadValue(bad.wrong, f'"{right}" {outside(item.kind, item.low, item.high)}')

@@ -88,6 +88,7 @@ MOVED = {
     },
     ("filled", "cond"): 'Put an <if cond="..."> into it.',
     ("grammar", "type"): 'A type of answers belongs to the field: <field type="...">.',
+    ("script", "src"): "Write the code into the <script>.",
 }
 """Attributes that authors give to elements, with the other element that has what they mean."""
 CHOICES = {
@@ -98,11 +99,38 @@ CHOICES = {
 """Values of other languages, with those that are meant."""
 TEXTS = ("text", "value", "say", "content", "message", "name")
 """Attributes that authors give to elements whose text belongs inside."""
+REMOVE = "Remove it."
+OWN_NAMESPACE = "Write it without a namespace of its own: remove its xmlns or its prefix."
+SIGNS = r"""[$\[{*+]|\w\(|\A\s*['"]"""
+"""What an expression has, and hardly a name or a number."""
+WRAPPED = r"\$?\{+([^{}]+)\}+|\$(\w+)"
+"""An expression with signs around it that templates of other languages have."""
 
 
 def other_attribute(tag: str, name: str) -> str:
     """The remedy for an attribute that another one, or another element, has."""
     return OTHERS.get((tag, name)) or MOVED.get((tag, name), "")
+
+
+def inside(node: Node, name: str, values: bool) -> str:
+    """The remedy for an attribute in place of the content of an element that holds text.
+
+    ``values`` is whether it may hold a ``<value>``.
+    """
+    if name == "expr" and values:
+        return 'Write it inside: <value expr="..."/>.'
+    if name in TEXTS and not node.text:
+        return f"Write the text inside: <{node.tag}>...</{node.tag}>."
+    return ""
+
+
+def expression(text: str) -> str:
+    """The expression that is written in place of a value; nothing if it does not look like one."""
+    if len(text) > LONG or not re.search(SIGNS, text):
+        return ""
+    wrapped = re.fullmatch(WRAPPED, text.strip())
+    code = (wrapped[1] or wrapped[2]) if wrapped else text
+    return code.strip().replace('"', "'")
 
 
 def meant_choice(text: str, choices: Collection[str]) -> str:
@@ -170,7 +198,7 @@ def text_remedy(node: Node, spoken: bool, missing: str) -> str:
         return INSIDE[node.tag]
     if missing:
         return f'Write it as {missing}="...".'
-    return "Say it with <speak>, or remove it." if spoken else "Remove it."
+    return "Say it with <speak>, or remove it." if spoken else REMOVE
 
 
 PAUSES = {
@@ -187,7 +215,7 @@ FEW = 8
 def held(parent: Node, inside: Collection[str]) -> str:
     """What an element may hold instead of an unknown one, if that is little."""
     if len(inside) > FEW:
-        return ""
+        return REMOVE
     few = one_of(f"<{tag}>" for tag in inside)
     return f"<{parent.tag}> may hold {few}." if few else f"<{parent.tag}> holds no elements."
 

@@ -39,6 +39,7 @@ MISTAKES = (
     (r"\$\{", "Write the expression alone, without ${ and }."),
     (r"=\s+=", "Write == without a space."),
     (r"<>", "Write != for &lt;&gt;."),
+    (r"\b(?:eq|EQ)\b", "Write == for eq."),
     (r"\b(?:and|AND)\b", "Write &amp;&amp; for and."),
     (r"\b(?:or|OR)\b", "Write || for or."),
     (r"\b(?:not|NOT)\b", "Write ! for not."),
@@ -48,6 +49,8 @@ STATEMENT = re.compile(r"\s*(?:const|for|if|let|return|var|while)\b")
 """How code begins that is no expression."""
 WORDS = re.compile(r"\s*(\w+(?:[ .,!?-]+\w+)*[.,!?]*)\s*", re.ASCII)
 """Words alone, most likely a text without its quotes."""
+TARGET = re.compile(r"\s*#[\w.-]{1,60}\s*")
+"""A target without the quotes of a text."""
 LONGEST_TEXT = 60
 """Characters of code above which it is not guessed to be a text."""
 QUOTES = re.compile("[“”„‟‘’‚‛]")
@@ -79,6 +82,10 @@ def _as_expression(bare: str) -> str:
         return "Write an expression; statements belong in a <script>."
     if bare.rstrip().endswith(";"):
         return "Write the expression without the semicolon."
+    if bare.lstrip().startswith("{"):
+        return "Write the expression alone, without { and }."
+    if TARGET.fullmatch(bare):
+        return f"A target is a text, with quotes of its own: '{bare.strip()}'."
     return "Write \\' for a ' inside a text." if "'" in bare else ""
 
 

@@ -41,6 +41,10 @@ HINTS: dict[str, str | Instead] = {
     "object": Instead("command", 'type="..."'),
     **dict.fromkeys(("end", "finish", "quit"), Instead("exit", "/")),
     **dict.fromkeys(("repeat", "retry"), Instead("reprompt", "/")),
+    **dict.fromkeys(
+        ("for", "loop", "while"),
+        "Write <foreach>; or go to the form again, with what counts in a variable of the document.",
+    ),
     "stop": Instead("stop-moving"),
     "move": Instead("topological-move"),
 }
