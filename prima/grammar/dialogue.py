@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -39,7 +40,9 @@ if TYPE_CHECKING:
 
 TWO_RULES = DUPLICATE_ID.says('There are two rules "{name}".', "Rename one.")
 NO_RULE = NO_SUCH_RULE.says('There is no rule "{name}".')
-TEXT_BESIDE_RULES = STRAY_TEXT.says("This grammar has rules; its own text has no effect.")
+TEXT_BESIDE_RULES = STRAY_TEXT.says(
+    "This grammar has rules; its own text has no effect.", "Write it into a <rule>, or remove it."
+)
 EMPTY_GRAMMAR = EMPTY_ANSWER.says("This grammar has no words.", "Write what it takes.")
 NO_ITEMS = EMPTY_ANSWER.says(
     "This <one-of> has no items: nothing matches it.",
@@ -51,6 +54,13 @@ BARRED = BAD_TOKEN.says(
     "Write <one-of> with an <item> for each answer.",
     "warning",
 )
+OF_ABNF = BAD_TOKEN.says(
+    'There is no "{sign}" here: it has no meaning between words.',
+    'Write <item repeat="0-1"> for what may be left out, <ruleref uri="#..."/> for a rule.',
+    "warning",
+)
+SIGN = re.compile(r"\[|\$(?=[^\W\d])|#(?:ABNF|JSGF)\b")
+"""What grammars in the ABNF form, and their kin, hold beside words."""
 TAG_IS_TEXT = BAD_VALUE.says(
     'A <tag> is text here, not code: the value is "{text}".',
     "Write the value alone, or name a .grxml file with src.",
@@ -81,16 +91,25 @@ class DialogueGrammarReader:
         if rules and node.text:
             self.note(TEXT_BESIDE_RULES, node)
         if not rules:
-            if not node.nodes and not fold(node.text):
-                self.note(EMPTY_GRAMMAR, node)
             if "root" in node.attributes:
                 self.note(NO_RULE, node, "root", NO_RULES, name=node.get("root"))
-            self._define("root", self._expansion(node))
-        self.document.root = node.get("root", rules[0].get("id")) if rules else "root"
+            self._define("", self._expansion(node))  # no reference names it
+        if self._is_wordless():
+            self.note(EMPTY_GRAMMAR, node)
+        self.document.root = node.get("root", rules[0].get("id")) if rules else ""
         self._rule_named(node, self.document.root, "root")
         self._resolve(node)
         index_choices([self.document])
         return Grammar(self.document, "", self.document.where)
+
+    def _is_wordless(self) -> bool:
+        """Whether no part of the grammar holds a word, and nothing else is wrong with it."""
+        every = [one for one in self.node.walk() if one.tag != "tag"]
+        told = any(one.tag == "one-of" and not one.all("item") for one in every)
+        told |= any(
+            one.tag == "ruleref" and _named(one) not in self.document.rules for one in every
+        )
+        return not told and not any(fold(one.text) for one in every)
 
     def _rule(self, node: Node) -> None:
         name = node.get("id")
@@ -130,6 +149,8 @@ class DialogueGrammarReader:
             if isinstance(item, str):
                 if "|" in item:
                     self.note(BARRED, node)
+                elif sign := SIGN.search(item):
+                    self.note(OF_ABNF, node, sign=sign[0])
                 if folded := fold(item):
                     parts.append(Words(folded, tuple(folded.split())))
             elif (part := self._part(item)) is not None:

@@ -87,3 +87,31 @@ def test_a_comparison_with_what_no_answer_gives_is_told(answers: str, cond: str,
     content = '<block><var name="y"/></block>{}<block><exit/></block>'
     asked = f'<block cond="{cond}"><speak>Good.</speak></block>'
     assert warned(form("a", field + content.format(asked)), "never-equal") == told
+
+
+@pytest.mark.parametrize(
+    ("grammar", "code"),
+    [
+        ("[please] tea", "bad-token"),
+        ("#ABNF 1.0; root $tea; $tea = tea;", "bad-token"),
+        ("$tea please", "bad-token"),
+        ("<one-of><item>[very] good</item></one-of>", "bad-token"),
+        ("5 $ for C#, or #1", ""),
+        ("<tag>tea</tag>", "empty-answer"),
+        ("<item/>", "empty-answer"),
+        ('<rule id="tea"><ruleref uri="#tea"/></rule>', "empty-answer"),
+        ('<rule id="tea"><tag>tea</tag></rule>', "empty-answer"),
+        ("<one-of/>", "empty-answer"),
+        ('tea <ruleref uri="#root"/>', "no-such-rule"),
+        ('<ruleref uri="#root"/>', "no-such-rule"),
+        ('<rule id="a"><ruleref uri="#b"/></rule><rule id="b">tea</rule>', ""),
+    ],
+)
+def test_a_grammar_that_no_words_can_match_is_told_once(grammar: str, code: str) -> None:
+    body = (
+        f'<field name="drink"><prompt>Tea?</prompt><grammar>{grammar}</grammar>'
+        "<noinput><exit/></noinput><filled><exit/></filled></field>"
+    )
+    _, problems = read_document("app.xml", APP.format(form("a", body)).encode())
+    assert [one.code for one in problems] == ([code] if code else [])
+    assert all(one.remedy for one in problems)

@@ -38,7 +38,8 @@ BAD_TOKEN = Diagnosis(
     (
         "A word of a grammar cannot be said or typed: a quote that is not closed, a key that "
         "no telephone has, or in the ABNF form a question mark, which SRGS reserves (2.5). In "
-        "PRIMA's own language a | between words is a warning: it has no meaning there."
+        "PRIMA's own language signs of the ABNF form between words, such as | and [, are a warning: "
+        "they have no meaning there."
     ),
     rule="SRGS 1.0, 2.1",
 )
