@@ -246,22 +246,25 @@ def _value_problem(item: Attribute, is_expression: bool, text: str) -> BadValue 
     if is_expression:
         return _not_of_kind("expression", text)
     if item.choices:
-        if text in item.choices:
-            return None
-        near = hints.meant_choice(text, item.choices)
-        remedy = f'Did you mean "{near}"?' if near else f"Write {one_of(item.choices)}."
-        only = item.choices[0] if len(item.choices) == 1 else ""
-        return BadValue("is not allowed here.", remedy, right=near or only)
+        return None if text in item.choices else _no_choice(item, text)
     bad = _not_of_kind(item.kind, text)
-    right = hints.meant_value(item.kind, text, item.default) if bad else ""
-    if not bad or not right:
-        code = hints.expression(text) if bad and item.dynamic else ""
-        remedy = f'For an expression write {item.name}-expr="{code}".'
-        return BadValue(bad.wrong, remedy) if bad and code else bad
-    value = read_value(item.kind, right)
-    if is_beyond(value, item.low, item.high):
-        return BadValue(bad.wrong, f'"{right}" {outside(item.kind, item.low, item.high)}')
-    return BadValue(bad.wrong, f'Write "{right}".', right=right)
+    if bad is None:
+        return None
+    if right := hints.meant_value(item.kind, text, item.default):
+        value = read_value(item.kind, right)
+        if is_beyond(value, item.low, item.high):
+            return BadValue(bad.wrong, f'"{right}" {outside(item.kind, item.low, item.high)}')
+        return BadValue(bad.wrong, f'Write "{right}".', right=right)
+    code = hints.expression(text) if item.dynamic else ""
+    written = f'For an expression write {item.name}-expr="{code}".'
+    return BadValue(bad.wrong, written) if code else bad
+
+
+def _no_choice(item: Attribute, text: str) -> BadValue:
+    near = hints.meant_choice(text, item.choices)
+    remedy = f'Did you mean "{near}"?' if near else f"Write {one_of(item.choices)}."
+    only = item.choices[0] if len(item.choices) == 1 else ""
+    return BadValue("is not allowed here.", remedy, right=near or only)
 
 
 def _not_of_kind(kind: str, text: str) -> BadValue | None:

@@ -45,13 +45,16 @@ def assigning(code: str, at: At) -> Iterator[Problem]:
         return
     whole = inner(parsed)
     if whole is not None and whole.type == "arrow_function":
-        sign = next(one for one in whole.children if one.type == "=>")
-        yield FUNCTION_CONDITION.at(at(parsed.start(sign)))
+        yield FUNCTION_CONDITION.at(at(parsed.start(_sign(whole, "=>"))))
         return
     found = (node for node in parsed.walk() if node.type == "assignment_expression")
     if (first := next(found, None)) is not None:
-        sign = next(one for one in first.children if one.type == "=")
-        yield ASSIGNING_CONDITION.at(at(parsed.start(sign)))
+        yield ASSIGNING_CONDITION.at(at(parsed.start(_sign(first, "="))))
+
+
+def _sign(node: Node, sign: str) -> Node:
+    """The part of a node that is its sign; comments may be beside it."""
+    return next(one for one in node.children if one.type == sign)
 
 
 def may_compare(code: str) -> bool:

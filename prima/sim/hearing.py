@@ -234,13 +234,12 @@ def _unheard(nodes: list[Node], events: list[KnownEvents]) -> Iterator[Problem]:
 def _triggers(nodes: list[Node], events: list[KnownEvents], cast: Cast) -> Iterator[Problem]:
     """Triggers and expectations of an event whose name is likely a typo."""
     made = _raised(nodes, events)
+    yield from _unseen(nodes, made)
     known = {*STANDARD, *made, *(f"touch.{sensor}" for sensor in cast.robot.touch)}
     known |= {corner.event for corner in cast.world.corners}
     begins = {name for one in known for name in beginnings(one)}
     for node, attribute, name in _awaited(nodes):
         ending = ENDINGS if attribute == "reason" else frozenset()
-        if name in OWN_ALONE - made and attribute != "reason":
-            yield NOT_SEEN.at(node.attribute_place(attribute), name=name)
         if name in begins or name in ending:
             continue
         if name.startswith(OPEN):
@@ -251,6 +250,12 @@ def _triggers(nodes: list[Node], events: list[KnownEvents], cast: Cast) -> Itera
             yield NO_SENSOR.at(place, hint, name=sensor)
         else:
             yield from _unknown(node, attribute, name, near(name, chain(ending, known)))
+
+
+def _unseen(nodes: list[Node], made: set[str]) -> Iterator[Problem]:
+    for node, attribute, name in _awaited(nodes):
+        if name in OWN_ALONE - made and attribute != "reason":
+            yield NOT_SEEN.at(node.attribute_place(attribute), name=name)
 
 
 def _other_end(name: str, events: list[KnownEvents], cast: Cast) -> str:
