@@ -57,7 +57,9 @@ UNDECLARED_VARIABLE = Diagnosis(
         "grammar's tag uses a name that no tag of the grammar declares: at run time such an "
         "answer does not match. In VoiceXML and in tags, a variable that typeof tests anywhere "
         "may be missing. A misspelt part of event.data is undefined; so is in PRIMA's own language "
-        "a member of document, dialog or application that nothing declares."
+        "a member of document, dialog or application that nothing declares. So is a misspelt part "
+        "of sensor.human or sensor.position; and a <watch> that reads a part of another sensor "
+        "without ?. fails until there is a value."
     ),
     rule="VoiceXML 2.0, 5.1",
 )

@@ -20,6 +20,7 @@ from prima.interpreter.checks.questions import check_first_prompts, check_leavin
 from prima.interpreter.checks.reachable import check_handlers, check_reachable
 from prima.interpreter.checks.robot import check_commands
 from prima.interpreter.checks.rounds import check_endless, check_rounds
+from prima.interpreter.checks.sensors import check_sensors
 from prima.interpreter.checks.targets import check_items, check_targets
 from prima.interpreter.checks.throws import check_throws
 from prima.interpreter.deadcontent import dead_content
@@ -36,6 +37,7 @@ CHECKS: tuple[Callable[[Facts], Iterator[Problem]], ...] = (
     check_reachable,
     check_items,
     check_code,
+    check_sensors,
     check_contents,
     check_comparisons,
     check_calls,
