@@ -87,6 +87,8 @@ FIRST = frozenset(name.partition(".")[0] for name in STANDARD)
 """Prefixes of standard events."""
 OWN = ("end", "cancel", "interrupted", "expired")
 """Prefixes of events of the application's own Commands."""
+OPEN = (*OWN, "touch", "reply")
+"""Prefixes of events with the name of a sensor, a Command or a service."""
 
 
 @dataclass(slots=True)
@@ -122,6 +124,9 @@ def slip_of(name: str, known: Iterable[str]) -> str:
         return f"error.device.{meant}" if meant else ""
     if found := near(name, known):
         return found
+    first, _, rest = name.partition("_")
+    if rest and first in OPEN:
+        return f"{first}.{rest}"
     first, _, rest = name.partition(".")
     meant = near(first, FIRST) if rest and first not in FIRST else ""
     return f"{meant}.{rest}" if meant else ""

@@ -72,6 +72,23 @@ def test_the_remedy_for_an_undeclared_variable_can_be_followed(
 
 
 @pytest.mark.parametrize(
+    ("event", "meant"),
+    [
+        *(
+            ("touch_head", "touch.head"),
+            ("end_q-and-a", "end.q-and-a"),
+            ("tuch.head", "touch.head"),
+        ),
+        *(("touch", ""), ("touch.head_left", ""), ("exhibit_touched", ""), ("message_board", "")),
+    ],
+)
+def test_a_sign_in_place_of_the_dot_is_told(event: str, meant: str, tmp_path: Path) -> None:
+    form = f'<form id="m"><block><exit/></block><on event="{event}"><exit/></on></form>'
+    found = problems(tmp_path, app(form), "unknown-event")
+    assert [one["remedy"] for one in found] == ([f'Did you mean "{meant}"?'] if meant else [])
+
+
+@pytest.mark.parametrize(
     ("device", "meant"), [("camera", ""), ("gripper", ""), ("speeker", "speaker"), ("arm", "")]
 )
 def test_a_robot_may_have_a_device_of_its_own(device: str, meant: str, tmp_path: Path) -> None:
