@@ -13,6 +13,8 @@ from prima.interpreter.diagnoses import (
     NEEDS_ARGUMENT,
     NEEDS_EITHER,
     NEEDS_VALUE,
+    NEVER_FITS,
+    NEVER_WITHIN,
     ONLY_A_PAUSE,
     ONLY_ONE,
     SAYS_NOTHING,
@@ -27,11 +29,19 @@ from prima.language.arguments import (
     excluding_arguments,
     missing_argument,
 )
-from prima.language.commands import LETTER_MS, PATIENCE_MS, TABLE_4_2, CommandType, too_long
+from prima.language.commands import (
+    LETTER_MS,
+    PATIENCE_MS,
+    TABLE_4_2,
+    Argument,
+    CommandType,
+    too_long,
+)
 from prima.language.values import XML_SPACE, BadValue, is_beyond, outside, read_value
 from prima.markup.spans import nearest_allowed
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute
+from prima.script.literals import plain_literal
 
 if TYPE_CHECKING:
     from prima.interpreter.grammars import Fetch
@@ -210,6 +220,7 @@ class AttributeReader:
                 if bare in node.attributes:
                     self.exclusive(node, bare, key)
                 args[bare] = self.code(text, node, key)
+                self._check_literal(node, key, argument)
                 continue
             try:
                 check_argument(bare, argument, text)
@@ -219,6 +230,18 @@ class AttributeReader:
                     hint = nearest_allowed(argument, text, node, key)
                     self.problem(BEYOND, node, key, hint, wrong=error.wrong)
         return args
+
+    def _check_literal(self, node: Node, key: str, argument: Argument) -> None:
+        """Note a literal as an expression whose value a Command never takes: error.semantic."""
+        value = plain_literal(node.get(key))
+        try:
+            if value is not None:
+                check_argument(key, argument, value)
+        except BadValue as error:
+            number = argument.kind == "duration" and not isinstance(value, str | bool)
+            hint = Hint("A number counts seconds." if number else error.remedy)
+            diagnosis = NEVER_WITHIN if error.beyond else NEVER_FITS
+            self.problem(diagnosis, node, key, hint, wrong=error.wrong)
 
     def check_complete(self, node: Node, row: CommandType, text: Text | None) -> None:
         """Check that a Command has what it needs, beyond its schema."""

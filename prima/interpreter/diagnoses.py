@@ -25,6 +25,8 @@ from prima.errors.diagnoses.values import (
 )
 
 BEYOND = OUT_OF_RANGE.says("{wrong}")
+NEVER_FITS = BAD_VALUE.says("{wrong}", severity="warning")
+NEVER_WITHIN = OUT_OF_RANGE.says("{wrong}", severity="warning")
 NEEDS_EITHER = MISSING_ATTRIBUTE.says("<{tag}> needs either {first} or {second}.")
 NEEDS_VALUE = MISSING_ATTRIBUTE.says("<param> needs a value or an expr.")
 NEEDS_ARGUMENT = MISSING_ATTRIBUTE.says("{wrong}")

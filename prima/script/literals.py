@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
-from prima.script.parse import Code, Node, parse_expression
+from prima.script.parse import Code, Node, inner, parse_expression
 
 WORDS = {"true": True, "false": False, "null": None}
 NUMBER = frozenset("0123456789.eE+-")
@@ -38,6 +38,19 @@ def literal(code: Code, node: Node, depth: int = 0) -> Any:
         if operand.type == "number":
             return -number(code, operand)
     return _plain(code, node)
+
+
+def plain_literal(expression: str) -> float | str | bool | None:
+    """The value of an expression that is a number, a text or a truth value; None if it is not."""
+    code = parse_expression(expression)
+    node = inner(code) if code is not None and code.sound else None
+    if code is None or node is None or node.type in ("array", "object"):
+        return None
+    try:
+        value: float | str | bool | None = literal(code, node)
+    except Beyond:
+        return None
+    return value
 
 
 def fresh(value: Any) -> Any:

@@ -9,7 +9,8 @@ BAD_VALUE = Diagnosis(
     "Bad value",
     (
         "An attribute's text is not of the attribute's kind: a time has its unit (2s, 500ms), "
-        "a number is written in digits, and so on."
+        "a number is written in digits, and so on. A literal as the expression of a Command's "
+        "argument is checked in the same way: a warning, as at run time it is error.semantic."
     ),
 )
 
