@@ -97,7 +97,6 @@ USAGES: list[Any] = [
     (["run", "s.xml", "--policy", ""], 2, "policy"),
     (["run", "s.xml", "-o", "s.xml"], 2, "s.xml"),
     (["talk", "s.xml", "--map", "http://a.example/=a"], 2, "--map works only with --fa and --ea"),
-    (["test", "s.xml", "--limit", "depth=200", "--jobs", "2"], 2, "--limit works in one process: leave out --jobs."),
     (["test", "s.xml", "--yes"], 2, "--yes works only with --update."),
     (["test", "s.xml", "--update", "--policy", "fifo"], 2, "leave out --policy."),
     (["test", "s.xml", "--update", "--format", "json"], 2, "leave out --format json."),

@@ -214,7 +214,7 @@ MEANING = [
     ("event-comma", form('<on event="touch,message"/>'), "2:25", 'holds a comma. Write "touch message".'),
     ("html", block("<speak><b>x</b></speak>"), "2:28", "Speech is plain text"),
     ("empty-grammar", grammar(""), "2:30", "no words"),
-    ("script-src", block('<script src="x.js"/>'), "2:29", "It has no attributes"),
+    ("script-src", block('<script src="x.js"/>'), "2:29", "Write the code into the <script>."),
     ("language", form("<block><exit/></block>").replace("<form", '<form xml:lang="en"'), "2:7", "root element"),
     ("goto-case", block('<goto next="#G"/>') + form("", "g"), "2:33", 'Did you mean "g"?'),
     ("send-both", block('<send to="a" event="b"/>'), "2:41", "Keep one of them. [exclusive]"),

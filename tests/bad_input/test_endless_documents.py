@@ -141,11 +141,11 @@ def test_happenings(prima: Prima, tmp_path: Path, name: str, happens: str, code:
 # Grammars ---------------------------------------------------------------------------
 GRAMMARS = [
     ("left", '<rule id="a"><ruleref uri="#a"/>x</rule>'),
-    ("mutual", '<rule id="a"><ruleref uri="#b"/></rule><rule id="b"><ruleref uri="#a"/></rule>'),
+    ("mutual", '<rule id="a"><ruleref uri="#b"/></rule><rule id="b"><ruleref uri="#a"/>x</rule>'),
     ("exponential", '<rule id="a"><item repeat="0-"><item repeat="0-"><item repeat="0-">a</item></item></item>b</rule>'),
     ("choices", '<rule id="a">' + '<item repeat="0-1">a</item>' * 40 + "</rule>"),
     ("repeats", '<item repeat="0-999"><item repeat="0-999">a</item></item>'),
-    ("nothing", '<item repeat="1-"><item repeat="0-1"/></item>'),
+    ("nothing", '<item repeat="1-"><item repeat="0-1"/></item>b'),
     ("long", "<item>a</item>" * 5_000),
 ]  # fmt: skip
 
