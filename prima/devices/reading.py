@@ -13,7 +13,7 @@ from prima.markup.reader import read_tree
 from prima.markup.spans import nearest_allowed, value_span
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Attribute, Vocabulary
-from prima.messages import Json
+from prima.messages import SERVICE, Json
 
 if TYPE_CHECKING:
     from prima.language.distributions import Quantile
@@ -29,7 +29,8 @@ def unknown_name(node: Node, name: str, words: Collection[str], wrong: str) -> l
     word = node.attributes.get(name)
     if word is None or word in words:
         return []
-    named = [one for one in words if re.fullmatch(NAME, one)]  # others are reported where they are
+    # What is no name is reported where it is given.
+    named = [one for one in words if re.fullmatch(NAME, one.removeprefix(SERVICE))]
     hint = nearest(word, named, *value_span(node, name))
     message = f'{wrong} "{word}".'
     return [Problem(node.attribute_place(name), "error", "no-such-name", message, hint)]

@@ -15,9 +15,17 @@ from prima.language.commands import TABLE_4_2, WRITTEN
 from prima.markup.spans import instead, value_span
 from prima.markup.tree import Node
 
-NO_SENSOR = NO_SUCH_NAME.says('The robot has no touch sensor "{name}".', severity="warning")
-NO_VOICE = NO_SUCH_NAME.says('The robot has no voice for "{name}".', severity="warning")
-NOT_THERE = NO_SUCH_NAME.says('{whose} no {what} "{name}".', severity="warning")
+NO_SENSOR = NO_SUCH_NAME.says(
+    'The robot has no touch sensor "{name}".',
+    "Name another, or add it to the robot's document.",
+    "warning",
+)
+NO_VOICE = NO_SUCH_NAME.says(
+    'The robot has no voice for "{name}".', "Add a <voice> to the robot's document.", "warning"
+)
+NOT_THERE = NO_SUCH_NAME.says(
+    '{whose} no {what} "{name}".', "Name another, or add it there.", "warning"
+)
 
 PLACED = {"to": "place", "toward": "place or thing", "name": "gesture"}
 """Arguments of Commands that name something in the surroundings."""

@@ -153,7 +153,9 @@ class Pages:
 
 
 NO_DIALOG = NO_SUCH_FORM.says(
-    'There is no dialog "{name}" in {page}: this will be error.badfetch.', severity="warning"
+    'There is no dialog "{name}" in {page}: this will be error.badfetch.',
+    'Name another, or add <form id="{name}"> there.',
+    "warning",
 )
 NO_DIALOGS = NO_SUCH_FORM.says(
     "{page} has no dialog: this will be error.badfetch.", "Name another document.", "warning"

@@ -16,7 +16,7 @@ from prima.voicexml.sketched import unit_errors
 from prima.voicexml.upgrade import VERSIONS, old, upgrade
 from prima.voicexml.vocabulary import NAMESPACE, VOICEXML
 
-TWO_DIALOGS = DUPLICATE_ID.says('There are two dialogs "{name}".')
+TWO_DIALOGS = DUPLICATE_ID.says('There are two dialogs "{name}".', "Rename one.")
 READ_AS_VOICEXML = NO_NAMESPACE.says(
     "The root element <vxml> has no namespace: it is read as VoiceXML."
 )

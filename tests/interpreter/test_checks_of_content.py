@@ -165,7 +165,9 @@ def test_a_member_that_nothing_declares_is_warned_of_and_undefined(
     scope, _, name = member.partition(".")
     says = f'The scope "{scope}" declares no variable "{name}": it is undefined.'
     assert problem.message == says
-    assert problem.remedy == (f'Did you mean "{meant}"?' if meant else "")
+    assert problem.remedy == (
+        f'Did you mean "{meant}"?' if meant else "Name a variable that it has."
+    )
     head = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="fa" id="app">'
     assert problem.place.column == len(head) + form.index(member) + len(scope) + 2
     bench = Bench(f'<form id="m"><block><log expr="String({member})"/></block>{ENDS}</form>')

@@ -18,13 +18,20 @@ from prima.language.commands import TABLE_4_2, CommandType
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
 
-NO_COMMAND = UNSUPPORTED_COMMAND.says('This robot has no Command "{command}".', severity="error")
+NO_COMMAND = UNSUPPORTED_COMMAND.says(
+    'This robot has no Command "{command}".',
+    "Add it to the robot's document, or name another.",
+    "error",
+)
 CANNOT = UNSUPPORTED_COMMAND.says(
     "This robot cannot do {command}{lacks}. At run time it is {event}.{substitute}",
     'Handle it: <{handler} event="{event}">.',
 )
 CANNOT_HANDLED = UNSUPPORTED_COMMAND.says(CANNOT.message)
-NO_ARGUMENT = NO_SUCH_ARGUMENT.says('This robot\'s {command} has no additional argument "{name}".')
+NO_ARGUMENT = NO_SUCH_ARGUMENT.says(
+    'This robot\'s {command} has no additional argument "{name}".',
+    'Remove it, or write <allows command="{command}" argument="{name}"/> for the robot.',
+)
 
 
 def check_commands(

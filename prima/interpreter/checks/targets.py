@@ -15,15 +15,17 @@ from prima.markup.tree import Node
 from prima.script.choices import choices
 from prima.script.known import NameScope
 
-UNKNOWN_FORM = NO_SUCH_FORM.says('There is no form "{name}" to go to.')
-UNKNOWN_ITEM = NO_SUCH_ITEM.says('There is no form item "{name}" to go to.')
+ADD_FORM = 'Name another, or add <form id="{name}">.'
+NAME_ITEM = "Name an item of this form."
+UNKNOWN_FORM = NO_SUCH_FORM.says('There is no form "{name}" to go to.', ADD_FORM)
+UNKNOWN_ITEM = NO_SUCH_ITEM.says('There is no form item "{name}" to go to.', NAME_ITEM)
 COMPUTED_FORM = NO_SUCH_FORM.says(
-    'There is no form "{name}" to go to: this throws error.badfetch.', severity="warning"
+    'There is no form "{name}" to go to: this throws error.badfetch.', ADD_FORM, "warning"
 )
 COMPUTED_ITEM = NO_SUCH_ITEM.says(
-    'There is no form item "{name}" to go to: this throws error.badfetch.', severity="warning"
+    'There is no form item "{name}" to go to: this throws error.badfetch.', NAME_ITEM, "warning"
 )
-UNKNOWN_FIELD = NO_SUCH_ITEM.says('There is no field "{name}".')
+UNKNOWN_FIELD = NO_SUCH_ITEM.says('There is no field "{name}".', "Name a field of this form.")
 TWO_ITEMS = DUPLICATE_NAME.says('The form "{form}" has two items named "{name}".', "Rename one.")
 
 

@@ -72,7 +72,9 @@ NO_FIELD = UNDECLARED_VARIABLE.says(
     'The data of {event} has no "{name}"; it has {known}.', severity="warning"
 )
 UNDEFINED = UNDECLARED_VARIABLE.says(
-    'The scope "{scope}" declares no variable "{name}": it is undefined.', severity="warning"
+    'The scope "{scope}" declares no variable "{name}": it is undefined.',
+    "Name a variable that it has.",
+    "warning",
 )
 NO_SENSOR = UNDECLARED_VARIABLE.says(
     "No <watch> is in force here: sensor is there only where one is.",
@@ -80,7 +82,7 @@ NO_SENSOR = UNDECLARED_VARIABLE.says(
     severity="warning",
 )
 IN_SCRIPT = UNDECLARED_VARIABLE.says(
-    'The script uses "{name}", which is not declared.', severity="warning"
+    'The script uses "{name}", which is not declared.', "Declare it: var {name};", "warning"
 )
 
 HIDDEN_ARRAY = DUPLICATE_NAME.says(

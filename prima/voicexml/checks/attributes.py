@@ -28,9 +28,9 @@ READ_AS = BAD_VALUE.says(
     '{name} "{value}" is read as "{right}".', 'Write "{right}".', severity="warning"
 )
 NOT_ALLOWED = BAD_VALUE.says('{name} "{value}" is not allowed here.')
-NO_ATTRIBUTE = UNKNOWN_ATTRIBUTE.says('<{tag}> has no attribute "{name}".')
+NO_ATTRIBUTE = UNKNOWN_ATTRIBUTE.says('<{tag}> has no attribute "{name}".', "Remove it.")
 NEEDS = MISSING_ATTRIBUTE.says('<{tag}> needs the attribute "{name}".')
-NEEDS_ONE = MISSING_ATTRIBUTE.says("<{tag}> needs {names}.")
+NEEDS_ONE = MISSING_ATTRIBUTE.says("<{tag}> needs {names}.", "Write one of them.")
 HAS_BOTH = EXCLUSIVE.says('<{tag}> has both "{name}" and {other}.', "Keep one of them.")
 
 

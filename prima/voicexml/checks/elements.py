@@ -16,13 +16,18 @@ from prima.voicexml.arranging import items_in
 from prima.voicexml.checks.attributes import missing
 from prima.voicexml.elements import INPUTS
 
-NUMBERED = EXCLUSIVE.says("This menu numbers its choices itself: a choice may add *, # or 0 alone.")
-OF_ITEM = UNKNOWN_ATTRIBUTE.says(
-    '<{tag}> in <{item}> has no "{name}": it belongs to this <{item}>.'
+NUMBERED = EXCLUSIVE.says(
+    "This menu numbers its choices itself: a choice may add *, # or 0 alone.",
+    "Remove this dtmf, or that of the <menu>.",
 )
-TWO_ITEMS = DUPLICATE_NAME.says('Two items of the form have the name "{name}".')
-NO_INPUT_ITEM = NO_SUCH_ITEM.says('The form has no input item "{name}".')
-BEHIND_ELSE = AFTER_ELSE.says("<{tag}> comes after <else>.")
+OF_ITEM = UNKNOWN_ATTRIBUTE.says(
+    '<{tag}> in <{item}> has no "{name}": it belongs to this <{item}>.', "Remove it."
+)
+TWO_ITEMS = DUPLICATE_NAME.says('Two items of the form have the name "{name}".', "Rename one.")
+NO_INPUT_ITEM = NO_SUCH_ITEM.says(
+    'The form has no input item "{name}".', "Name an input item of this form."
+)
+BEHIND_ELSE = AFTER_ELSE.says("<{tag}> comes after <else>.", "Put the <else> last.")
 
 
 def _check_menu(menu: Node) -> Iterator[Problem]:

@@ -23,7 +23,7 @@ from prima.voicexml.vocabulary import COMMANDS, HOLDING, NAMESPACE, PRIMA_NAMESP
 QUESTIONS = frozenset({"field", "initial", "menu"})
 """Elements that ask the user."""
 
-UNKNOWN_COMMAND = UNKNOWN_ELEMENT.says("PRIMA has no Command <{tag}>.")
+UNKNOWN_COMMAND = UNKNOWN_ELEMENT.says("PRIMA has no Command <{tag}>.", "Remove it.")
 NOT_HERE = MISPLACED_ELEMENT.says(
     "A Command is not allowed in <{parent}>.", "It is allowed in prompts and executable content."
 )
@@ -37,8 +37,10 @@ UNIT_NOT_HERE = MISPLACED_ELEMENT.says(
 HOLDS_NONE = MISPLACED_ELEMENT.says(
     "<{tag}> is not allowed in <p:{parent}>.", "A Command holds text, <value> and <param>."
 )
-NO_ATTRIBUTE = UNKNOWN_ATTRIBUTE.says('<{tag}> has no attribute "{name}".')
-NO_COMMAND = UNSUPPORTED_COMMAND.says('This robot has no Command "{command}".')
+NO_ATTRIBUTE = UNKNOWN_ATTRIBUTE.says('<{tag}> has no attribute "{name}".', "Remove it.")
+NO_COMMAND = UNSUPPORTED_COMMAND.says(
+    'This robot has no Command "{command}".', "Add it to the robot's document, or name another."
+)
 ONLY_ONE = EXCLUSIVE.says("{wrong}", "Keep one of them.", "warning")
 HAS_BOTH = EXCLUSIVE.says(
     '<p:{tag}> has both "{name}" and "{name}-expr".', "Keep one of them.", "warning"

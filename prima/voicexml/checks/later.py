@@ -64,13 +64,17 @@ NO_URI = BAD_VALUE.says(
     "{name} is empty: this will be error.badfetch.", "Write a URI.", severity="warning"
 )
 NO_DIALOG = NO_SUCH_FORM.says(
-    'There is no dialog "{name}" here: this will be error.badfetch.', severity="warning"
+    'There is no dialog "{name}" here: this will be error.badfetch.',
+    'Name another, or add <form id="{name}">.',
+    "warning",
 )
 NO_ITEM = NO_SUCH_ITEM.says(
-    'This {tag} has no item "{name}" to go to: this will be error.badfetch.', severity="warning"
+    'This {tag} has no item "{name}" to go to: this will be error.badfetch.',
+    "Name another item.",
+    "warning",
 )
 NO_PROPERTY = BAD_VALUE.says(
-    'There is no property "{name}" in VoiceXML: it has no effect.', severity="warning"
+    'There is no property "{name}" in VoiceXML: it has no effect.', "Remove it.", "warning"
 )
 BAD_PROPERTY = BAD_VALUE.says('{name} "{value}" is not allowed.', severity="warning")
 TWO_MEANINGS = EXCLUSIVE.says("{wrong}", "At run time it is error.badfetch.", "warning")

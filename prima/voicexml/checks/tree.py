@@ -61,7 +61,7 @@ HOLDS_TEXT = STRAY_TEXT.says('<{tag}> holds text: "{text}".')
 IGNORED = WRONG_NAMESPACE.says(
     '<{tag}> is of another namespace, "{namespace}".', "It is ignored.", "warning"
 )
-UNKNOWN_HERE = UNKNOWN_ELEMENT.says("There is no <{tag}> in VoiceXML.")
+UNKNOWN_HERE = UNKNOWN_ELEMENT.says("There is no <{tag}> in VoiceXML.", "Remove it.")
 NOT_HERE = MISPLACED_ELEMENT.says(
     "<{tag}> is not allowed in {holder}.", "It is allowed in {others}."
 )
