@@ -82,8 +82,8 @@ WIDE = {
     "＞": "This bracket has full width: write >.",
 }
 """Characters that editors substitute for those of XML, with the right ones."""
-SPACED_TAG = re.compile(r"""\s+(/?)([\w-]+)(\s+[\w:-]+\s*=\s*["'][^<>]*)?\s*/?>""")
-"""The rest of a tag with a space behind its <."""
+SPACED_TAG = re.compile(r"""\s+(/?)([\w-]+)(?:\s+[\w:-]+\s*=\s*["']|\s*/?>)""")
+"""The beginning of a tag with a space behind its <."""
 OPEN_QUOTE = re.compile(r"""=\s*(["'])[^"'<]*\Z""")
 TEMPLATE = re.compile(r"<%|<\?php|<\?=")
 
