@@ -1,4 +1,4 @@
-"""What validation tells of sensors that a document reads."""
+"""Checks of the sensors that a document reads."""
 
 from __future__ import annotations
 

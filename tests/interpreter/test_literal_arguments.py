@@ -1,4 +1,4 @@
-"""What validation tells of literals in the place of expressions of Commands' arguments."""
+"""Checks of literals in the place of expressions of Commands' arguments."""
 
 from __future__ import annotations
 
