@@ -55,7 +55,7 @@ BARRED = BAD_TOKEN.says(
     "warning",
 )
 OF_ABNF = BAD_TOKEN.says(
-    'There is no "{sign}" here: it has no meaning between words.',
+    '"{sign}" has no meaning between the words of this grammar.',
     'Write <item repeat="0-1"> for what may be left out, <ruleref uri="#..."/> for a rule.',
     "warning",
 )

@@ -64,9 +64,9 @@ CANNOT = UNSUPPORTED_COMMAND.says(
 )
 NEVER_RAISED = UNKNOWN_EVENT.says('Nothing raises an event "{name}".')
 OWN_ALONE = frozenset({"noinput", "nomatch", "suspended", "resumed"})
-"""Events that the application alone gets which they concern."""
+"""Events that only the application concerned gets."""
 NOT_SEEN = UNKNOWN_EVENT.says(
-    'Only an application gets the event "{name}": here it never happens.',
+    'Only the application concerned gets "{name}": a scenario never sees it.',
     "Name what its handler says or does.",
 )
 NO_END = UNKNOWN_EVENT.says('No application ends with "{name}".')
