@@ -1,4 +1,4 @@
-"""Checks for triggers of a scenario that never occur, and for events in it that nobody handles."""
+"""Checks of a scenario with its applications, world and robot: what is never there or said."""
 
 from __future__ import annotations
 
@@ -7,13 +7,12 @@ from itertools import chain, product
 
 from prima.devices.profile import Profile
 from prima.errors import Hint, Place, Problem, Span, meant, suggestion
-from prima.errors.diagnoses.names import UNKNOWN_EVENT, UNSUPPORTED_COMMAND
+from prima.errors.diagnoses.names import UNSUPPORTED_COMMAND
 from prima.interpreter.acts import type_of
 from prima.interpreter.elements import Document
 from prima.interpreter.events import STANDARD, KnownEvents, event_place, near
 from prima.interpreter.selection import beginnings
 from prima.interpreter.surroundings import (
-    NO_SENSOR,
     PLACED,
     Sayings,
     Surroundings,
@@ -25,9 +24,10 @@ from prima.interpreter.surroundings import (
 )
 from prima.language.commands import TABLE_4_2
 from prima.language.values import read_value
-from prima.markup.spans import instead, value_span
+from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.sim.asked import check_replies, check_services
+from prima.sim.awaited import MOST, OPEN, awaited, check_awaited, raised
 from prima.sim.devices import Cast
 from prima.sim.expected import COMMANDS, check_values
 from prima.sim.map import Map
@@ -38,17 +38,6 @@ from prima.voicexml.caught import caught_in, thrown_in
 from prima.voicexml.pages import Pages, spoken_in
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
-ENDINGS = frozenset({"exit", "unloaded"})
-"""The reasons for an application's end other than names of events."""
-OPEN = (
-    *("end.", "cancel.", "interrupted.", "expired.", "reply.", "error.service."),
-    *("error.unsupported.", "error.badfetch."),
-)
-"""Beginnings of events that continue with a name from outside the language."""
-OF_COMMANDS = ("end", "cancel", "interrupted", "expired", "error.unsupported")
-"""Those that continue with the name of a Command."""
-MOST = 500
-"""Only so many triggers of a kind are checked: each is compared with all possible utterances."""
 WORDS = (
     ("answer", "to", True),
     ("when", "asked", True),
@@ -62,14 +51,6 @@ CANNOT = UNSUPPORTED_COMMAND.says(
     "This robot cannot do {command}: it lacks {lacks}. This never happens.",
     "Name another Command, or a robot that can do it.",
 )
-NEVER_RAISED = UNKNOWN_EVENT.says('Nothing raises an event "{name}".')
-OWN_ALONE = frozenset({"noinput", "nomatch", "suspended", "resumed"})
-"""Events that only the application concerned gets."""
-NOT_SEEN = UNKNOWN_EVENT.says(
-    'Only the application concerned gets "{name}": a scenario never sees it.',
-    "Name what its handler says or does.",
-)
-NO_END = UNKNOWN_EVENT.says('No application ends with "{name}".')
 
 
 def check_hearing(cast: Cast) -> list[Problem]:
@@ -89,7 +70,7 @@ def check_hearing(cast: Cast) -> list[Problem]:
     if pages:
         return problems  # what a VoiceXML application accepts is known only at run time
     places = {one.place for one in corners}
-    triggers = [one for one in _triggers(nodes, events, cast) if one.place not in places]
+    triggers = [one for one in check_awaited(nodes, events, cast) if one.place not in places]
     return [*problems, *_unheard(nodes, events), *triggers]
 
 
@@ -112,7 +93,7 @@ def _corners(
 ) -> Iterator[Problem]:
     """A corner's event that is waited for but that no corner of the world raises: likely a typo."""
     corners = {corner.event for corner in world.corners} - {"corner"}
-    known = {*STANDARD, *corners, *_raised(nodes, events)}
+    known = {*STANDARD, *corners, *raised(nodes, events)}
     known.update(*(thrown_in(root) for root in pages))
     begins = {name for one in known for name in beginnings(one)}
     for place, name in _waiting(nodes, events, pages):
@@ -131,12 +112,6 @@ def _no_corner(place: Place, name: str, corners: set[str]) -> Iterator[Problem]:
         yield Problem(place, "warning", "unknown-event", message, remedy)
 
 
-def _raised(nodes: list[Node], events: list[KnownEvents]) -> set[str]:
-    """The events of the scenario, and those that applications raise."""
-    made = {node.get("name") for node in nodes if node.tag == "event"}
-    return made | {raised.name for one in events for raised in one.raised}
-
-
 def _waiting(
     nodes: list[Node], events: list[KnownEvents], pages: list[Node]
 ) -> Iterator[tuple[Place, str]]:
@@ -146,16 +121,8 @@ def _waiting(
             yield event_place(handler.node, name), name
     for node, name in chain.from_iterable(caught_in(root) for root in pages):
         yield event_place(node, name), name
-    for node, attribute, name in _awaited(nodes):
+    for node, attribute, name in awaited(nodes):
         yield node.attribute_place(attribute), name
-
-
-def _awaited(nodes: list[Node]) -> Iterator[tuple[Node, str, str]]:
-    """The events named by triggers and expectations: element, attribute, name."""
-    for node in [one for one in nodes if one.tag in ("when", "expect", "never")][:MOST]:
-        for attribute in ("on", "event", "reason"):
-            if name := node.get(attribute):
-                yield node, attribute, name
 
 
 def _in_voicexml(root: Node, names: Surroundings) -> Iterator[Problem]:
@@ -229,64 +196,6 @@ def _unheard(nodes: list[Node], events: list[KnownEvents]) -> Iterator[Problem]:
             near_one = meant(near(name, heard), *value_span(node, "name"))
             remedy = near_one or "Remove it, or handle it."
             yield Problem(node.attribute_place("name"), "warning", "unheard-event", message, remedy)
-
-
-def _triggers(nodes: list[Node], events: list[KnownEvents], cast: Cast) -> Iterator[Problem]:
-    """Triggers and expectations of an event whose name is likely a typo."""
-    made = _raised(nodes, events)
-    yield from _unseen(nodes, made)
-    known = {*STANDARD, *made, *(f"touch.{sensor}" for sensor in cast.robot.touch)}
-    known |= {corner.event for corner in cast.world.corners}
-    begins = {name for one in known for name in beginnings(one)}
-    for node, attribute, name in _awaited(nodes):
-        ending = ENDINGS if attribute == "reason" else frozenset()
-        if name in begins or name in ending:
-            continue
-        if name.startswith(OPEN):
-            yield from _unknown(node, attribute, name, _other_end(name, events, cast))
-        elif name.startswith("touch."):
-            place, sensor = node.attribute_place(attribute), name.removeprefix("touch.")
-            hint = nearest(sensor, cast.robot.touch, *value_span(node, attribute, sensor))
-            yield NO_SENSOR.at(place, hint, name=sensor)
-        else:
-            yield from _unknown(node, attribute, name, near(name, chain(ending, known)))
-
-
-def _unseen(nodes: list[Node], made: set[str]) -> Iterator[Problem]:
-    for node, attribute, name in _awaited(nodes):
-        if name in OWN_ALONE - made and attribute != "reason":
-            yield NOT_SEEN.at(node.attribute_place(attribute), name=name)
-
-
-def _other_end(name: str, events: list[KnownEvents], cast: Cast) -> str:
-    """The event of the Command or service of which another's is likely a typo, or nothing."""
-    first, _, end = name.rpartition(".")
-    known = {*cast.robot.commands, *TABLE_4_2, "iu"} if first in OF_COMMANDS else set()
-    if first in ("reply", "error.service") and not any(one.dynamic for one in events):
-        known = {one.name for one in cast.scenario.services}.union(
-            *(one.services for one in events)
-        )
-    other = near(end, known) if end not in known else ""
-    return f"{first}.{other}" if other else ""
-
-
-def _unknown(node: Node, attribute: str, name: str, other: str | None) -> Iterator[Problem]:
-    """An event that nothing raises: a time, or a typo of ``other``."""
-    if attribute == "on" and _is_time(name):
-        remedy = instead(f'Write at="{name}".', node, "on", "at", name)
-        yield NEVER_RAISED.at(node.attribute_place("on", value=False), remedy, name=name)
-    elif other:
-        diagnosis = NO_END if attribute == "reason" and other in ENDINGS else NEVER_RAISED
-        remedy = meant(other, *value_span(node, attribute))
-        yield diagnosis.at(node.attribute_place(attribute), remedy, name=name)
-
-
-def _is_time(text: str) -> bool:
-    try:
-        read_value("duration", text)
-    except ValueError:
-        return False
-    return True
 
 
 def _late(nodes: list[Node], until: int) -> Iterator[Problem]:

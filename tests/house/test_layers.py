@@ -262,7 +262,7 @@ INSIDE = {
         {"expected", "sensed", "incidents", "services", "telephone", "triggers"},
         {"people"},
         {"devices"},
-        {"asked", "rehearsal"},
+        {"asked", "awaited", "rehearsal"},
         {"hearing"},
         {"__init__"},
     ],
