@@ -28,7 +28,10 @@ MOST_STEPS = 0.1
 """Hundreds of steps that the parser may take per byte; code without faults takes half as many."""
 SHORT = 100
 """Bytes of code up to which work is not counted: counting takes as long as parsing."""
+LINE_END = re.compile("[\\n\\r\u2028\u2029]")
 BRACKET = re.compile(r"[()\[\]{}]")
+CLOSING = {"(": ")", "[": "]", "{": "}", "${": "}"}
+"""The brackets that open, each with the one that closes it."""
 ESCAPE = re.compile(r"\\u(?:([0-9A-Fa-f]{4})|\{0*([0-9A-Fa-f]{1,5})\})")
 ASTRAL = re.compile("[\U00010000-\U0010ffff]")
 LETTER = "\u2135"
@@ -74,12 +77,22 @@ class Code:
 
     @property
     def sound(self) -> bool:
-        """Whether the tree has no faults except optional semicolons that the parser missed."""
-        if not self.root.has_error:
-            return True
-        return not any(
-            node.is_error or (node.is_missing and node.type != ";") for node in self.walk()
-        )
+        """Whether the tree has no faults except semicolons that may be left out.
+
+        Those at the end of a line, of a block or of the code (ECMAScript 5.1, 7.9).
+        """
+        end, missing = 0, False
+        for node in self.walk() if self.root.has_error else ():
+            if node.is_error or (node.is_missing and node.type != ";"):
+                return False
+            if node.child_count or node.type == "comment":
+                continue
+            behind = self.text[end : self.start(node)]
+            if missing and node.type != "}" and not LINE_END.search(behind):
+                return False
+            missing = node.is_missing
+            end = end if missing else self.end(node)
+        return True
 
     def walk(self) -> Iterator[Node]:
         """All nodes in the order of the text, parents first."""
@@ -117,6 +130,25 @@ def parse_expression(code: str) -> Code | None:
 def parse_bracketed(code: str) -> Code | None:
     """The tree of any code in brackets; the last one is cached."""
     return _parse(code, f"({code}\n)", 1)
+
+
+def lone_bracket(code: str) -> tuple[str, int] | None:
+    """The first bracket of a script that closes nothing, or else the last one that is not closed.
+
+    With its offset; None if there is none.
+    """
+    tree = parse_script(code)
+    opened: list[tuple[str, int]] = []
+    for node in [] if tree is None else tree.walk():
+        if tree is None or node.is_missing or node.child_count:
+            continue
+        if node.type in CLOSING:
+            opened.append((node.type, tree.start(node)))
+        elif node.type in CLOSING.values():
+            if not opened or CLOSING[opened[-1][0]] != node.type:
+                return node.type, tree.start(node)
+            opened.pop()
+    return opened[-1] if opened else None
 
 
 def spliced(code: str, edits: Iterable[tuple[int, int, str]]) -> str:

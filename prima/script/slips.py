@@ -36,15 +36,33 @@ def or_text(hint: Hint, name: str) -> Hint:
 STRINGS = re.compile(r"""(["'])(?:\\[\s\S]|(?!\1)[^\\])*(?:\1|(\\?\Z))""")
 """Strings, the last of which may lack its end; no character is read twice."""
 MISTAKES = (
-    (r"\$\{", "Write the expression alone, without ${ and }."),
+    (r"\A[^`]*\$\{", "Write the expression alone, without ${{ and }}."),
     (r"=\s+=", "Write == without a space."),
     (r"<>", "Write != for &lt;&gt;."),
-    (r"\b(?:eq|EQ)\b", "Write == for eq."),
-    (r"\b(?:and|AND)\b", "Write &amp;&amp; for and."),
-    (r"\b(?:or|OR)\b", "Write || for or."),
-    (r"\b(?:not|NOT)\b", "Write ! for not."),
+    (r"\b(?:is not|IS NOT|ne|NE)\b", "Write != for {0}."),
+    (r"\b(?:eq|EQ|is|IS|equals)\b", "Write == for {0}."),
+    (r"\b(?:and|AND)\b", "Write &amp;&amp; for {0}."),
+    (r"\b(?:or|OR)\b", "Write || for {0}."),
+    (r"\b(?:not|NOT)\b", "Write ! for {0}."),
 )
 """Common mistakes, with remedies."""
+REMEDIES = (
+    (r'its "(\W+)" is not closed', "Close the {0}."),
+    (r'its "(\W+)" closes nothing', "Remove the {0}."),
+    ("ends too early", "Complete it, or remove its last sign."),
+    (r"identifier '(\w+)'", "Write an operator before {0}, or put a text into quotes."),
+    ("end of string", "Write the text's quote also at its end."),
+    ("end of comment", "Write */ at the end of the comment."),
+    ("number literal", "A name does not begin with a digit."),
+    ("Unexpected number", "Write an operator before the number; an element of a list is list[0]."),
+    ("field name", "Write a name after the dot."),
+    ("expecting ';'", "Write a ; between two statements of one line."),
+    ("variable name expected", "Write a name after the keyword."),
+    ("function name expected", "Give the function a name."),
+    ("missing initializer", "Give it a value, or write let."),
+    (r"nexpected token .*?'(.+)'", "Write what belongs before the {0}, or remove it."),
+)
+"""What to do about the engine's own messages."""
 STATEMENT = re.compile(r"\s*(?:const|for|if|let|return|var|while)\b")
 """How code begins that is no expression."""
 WORDS = re.compile(r"\s*(\w+(?:[ .,!?-]+\w+)*[.,!?]*)\s*", re.ASCII)
@@ -57,11 +75,12 @@ QUOTES = re.compile("[“”„‟‘’‚‛]")
 """Typographic quotes."""
 
 
-def code_remedy(code: str, *, statements: bool = False, text: bool = True) -> str:
-    """The remedy for code that does not compile because of a common mistake, or nothing.
+def code_remedy(code: str, error: object, *, statements: bool = False, text: bool = True) -> str:
+    """The remedy for code that does not compile.
 
     Args:
         code: The code.
+        error: What is wrong with it.
         statements: Whether it may hold statements, as a script does.
         text: Whether it may have been meant as a text.
     """
@@ -71,9 +90,17 @@ def code_remedy(code: str, *, statements: bool = False, text: bool = True) -> st
     if wide := _of_full_width(bare):
         return f"Write it in characters of half width: {wide}."
     remedy = "" if statements else _as_expression(bare)
-    remedy = remedy or next((right for sign, right in MISTAKES if re.search(sign, bare)), "")
+    remedy = remedy or _of_table(MISTAKES, bare) or _of_table(REMEDIES, str(error))
     words = WORDS.fullmatch(code) if text and len(code) <= LONGEST_TEXT else None
     return or_text(Hint(remedy), words[1]).text if words else remedy
+
+
+def _of_table(table: tuple[tuple[str, str], ...], text: str) -> str:
+    """The remedy whose pattern is in a text, or nothing; ``{0}`` is the pattern's last group."""
+    for pattern, remedy in table:
+        if found := re.search(pattern, text):
+            return remedy.format(found[found.lastindex or 0])
+    return ""
 
 
 def _as_expression(bare: str) -> str:
@@ -86,7 +113,9 @@ def _as_expression(bare: str) -> str:
         return "Write the expression alone, without { and }."
     if TARGET.fullmatch(bare):
         return f"A target is a text, with quotes of its own: '{bare.strip()}'."
-    return "Write \\' for a ' inside a text." if "'" in bare else ""
+    if "'" in bare and not bare.startswith("'"):
+        return "Write \\' for a ' inside a text."
+    return ""
 
 
 def _of_full_width(code: str) -> str:

@@ -10,7 +10,7 @@ import _quickjs as quickjs
 
 from prima.script.evaluation import ScriptError
 from prima.script.names import script_names
-from prima.script.parse import MOST_CODE
+from prima.script.parse import CLOSING, MOST_CODE, lone_bracket
 from prima.script.sandbox import MEMORY_LIMIT, STACK_LIMIT, reason
 
 MOST_NAMES = 5_000
@@ -54,6 +54,8 @@ MOST_SOUND, LONG_CODE = 20_000, 500
 """The size of the cache of compiled code, and the maximum length of code in it."""
 
 
+OF_BRACKETS = re.compile(r"expecting '|nexpected token")
+"""What the engine says where a bracket may lack the other one."""
 PLACE = re.compile(r"<(?:input|anonymous|evalScript)>:(\d+):(\d+)")
 
 
@@ -149,12 +151,26 @@ def column_in(code: str, line: int, column: int) -> int:
     return len(seen.decode(errors="ignore")) + 1
 
 
+def _place(code: str, at: int) -> tuple[int, int]:
+    """The line and column of an offset."""
+    return code.count("\n", 0, at) + 1, at - code.rfind("\n", 0, at)
+
+
+def _alone(code: str, bracket: str, at: int) -> ScriptError:
+    """The error of code with a bracket at an offset that lacks the other one."""
+    lacks = "is not closed" if bracket in CLOSING else "closes nothing"
+    return ScriptError(f'its "{bracket}" {lacks}', place=_place(code, at))
+
+
 def _placed(said: str, code: str) -> ScriptError:
     """The engine's error with its place in the code, without our lines around it."""
     place = PLACE.search(said)
     line, column = (int(place[1]) - 3, int(place[2])) if place else (0, 0)
-    lines = code.split("\n")
-    if line > len(lines):
-        return ScriptError("it ends too early", place=(len(lines), len(lines[-1]) + 1))
+    beyond = line > code.count("\n") + 1
+    if beyond or OF_BRACKETS.search(said):
+        if lone := lone_bracket(code):
+            return _alone(code, *lone)
+        if beyond:
+            return ScriptError("it ends too early", place=_place(code, len(code)))
     there = (line, column_in(code, line, column)) if line > 0 else None
     return ScriptError(reason(said, TIME_LIMIT), place=there)

@@ -190,6 +190,6 @@ def _compiled(expr: Expression, script: bool) -> Problem | None:
             return NOT_CHECKED.at(place, code=shown, error=error)
         found = NOT_ECMASCRIPT.at(place, code=shown, error=error)
         plain = script or expr.attribute in CONDITIONS
-        remedy = code_remedy(expr.code, statements=script, text=not plain)
+        remedy = code_remedy(expr.code, error, statements=script, text=not plain)
         return found._replace(remedy=remedy) if remedy else found
     return None

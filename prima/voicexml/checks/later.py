@@ -289,6 +289,6 @@ def _compile(node: Node, name: str, code: str, checker: IsolatedSyntax) -> Itera
             return
         place = node.code_place(name, error.line, error.column)
         diagnosis = NOT_CHECKED if isinstance(error, EngineLost) else NOT_ECMASCRIPT
-        remedy = code_remedy(code, statements=not name, text=name != "cond")
+        remedy = code_remedy(code, error, statements=not name, text=name != "cond")
         shown = " ".join(code.split())[:LONGEST_CODE]
         yield diagnosis.at(place, Hint(remedy), code=shown, error=error)
