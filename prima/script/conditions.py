@@ -10,6 +10,7 @@ from prima.errors import Hint, Place, Problem, Span, one_of, suggestion
 from prima.errors.diagnoses.conditions import (
     ASSIGNING_CONDITION,
     FUNCTION_CONDITION,
+    LITERAL_CONDITION,
     NEVER_EQUAL,
 )
 from prima.script.parse import Node, inner, parse_expression
@@ -25,6 +26,16 @@ LONGEST = 100
 """Characters of a text above which a comparison is not checked."""
 TRUE_OR_FALSE = 'It is true or false: write "{field}" or "!{field}".'
 
+TRUE_LITERALS = {
+    "object": ("an object", "{ and }"),
+    "array": ("a list", "[ and ]"),
+    "string": ("a text", "its quotes"),
+    "template_string": ("a text", "its quotes"),
+}
+"""The types of nodes that are always true, unless they are an empty text, and their signs."""
+SIGNS = re.compile(r"""\s*[\[{'"`]|[^=]*=""")
+"""How code begins that may assign, or be such a literal."""
+
 At = Callable[[int], Place]
 """Gives the place of a character of some code."""
 
@@ -39,13 +50,17 @@ class Compared(NamedTuple):
 
 
 def assigning(code: str, at: At) -> Iterator[Problem]:
-    """The problem of a condition that assigns a variable, or is a function, by a slip."""
-    parsed = parse_expression(code) if "=" in code else None
+    """The problem of a condition that by a slip assigns a variable, or is always true."""
+    parsed = parse_expression(code) if SIGNS.match(code) else None
     if parsed is None or not parsed.sound:
         return
     whole = inner(parsed)
     if whole is not None and whole.type == "arrow_function":
         yield FUNCTION_CONDITION.at(at(parsed.start(_sign(whole, "=>"))))
+        return
+    if whole is not None and whole.type in TRUE_LITERALS and len(parsed.of(whole)) > 2:
+        kind, signs = TRUE_LITERALS[whole.type]
+        yield LITERAL_CONDITION.at(at(parsed.start(whole)), kind=kind, signs=signs)
         return
     found = (node for node in parsed.walk() if node.type == "assignment_expression")
     if (first := next(found, None)) is not None:

@@ -46,3 +46,26 @@ def test_a_comparison_that_does_not_compile_is_told(code: str, remedy: str) -> N
 def test_the_sign_of_an_assignment_is_the_place_also_behind_a_comment() -> None:
     (problem,) = assigning("size /* the value */ = 'big'", at)
     assert problem.place.column == 22
+
+
+@pytest.mark.parametrize(
+    ("code", "column", "remedy"),
+    [
+        ("{n}", 1, "Write it without { and }."),
+        (" {n: n}", 2, "Write it without { and }."),
+        ("[n > 1]", 1, "Write it without [ and ]."),
+        ("'n > 1'", 1, "Write it without its quotes."),
+        ("`${n} > 1`", 1, "Write it without its quotes."),
+        ("'n = 1'", 1, "Write it without its quotes."),
+    ],
+)
+def test_a_condition_that_is_always_true_is_told(code: str, column: int, remedy: str) -> None:
+    (problem,) = assigning(code, at)
+    assert (problem.place.column, problem.remedy) == (column, remedy)
+
+
+@pytest.mark.parametrize(
+    "code", ["''", "'a' == n", "[n].length", "true", "1", "n", "({n}).n", "n == '='", "/* ' */ n"]
+)
+def test_a_condition_that_may_be_meant_is_not_told(code: str) -> None:
+    assert [*assigning(code, at)] == []

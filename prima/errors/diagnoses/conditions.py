@@ -8,13 +8,18 @@ ASSIGNING_CONDITION = Diagnosis(
     "assigning-condition",
     "Condition that assigns",
     "A condition has = where a comparison, ==, was most likely meant: it changes the variable, and"
-    " holds whenever the new value does. With =>, meant for >=, it is a function, which always holds.",
+    " holds whenever the new value does. With =>, meant for >=, it is a function, which always holds,"
+    " as do a list, a text and what stands in { and }.",
     severity="warning",
     message="This condition gives a variable a value; it does not compare.",
     remedy="Write ==.",
 )
 FUNCTION_CONDITION = ASSIGNING_CONDITION.says(
     "This condition is a function, which is always true; it does not compare.", "Write >=."
+)
+LITERAL_CONDITION = ASSIGNING_CONDITION.says(
+    "This condition is {kind}, which is always true; it does not compare.",
+    "Write it without {signs}.",
 )
 
 NEVER_EQUAL = Diagnosis(
