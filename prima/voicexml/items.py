@@ -46,10 +46,14 @@ class Items:
         filled = self._fill(context, heard)
         if not filled:
             return  # the algorithm just continues (C)
+        self.leave_initial(context)
+        yield from self.run_filled(context, filled)
+
+    def leave_initial(self, context: Context) -> None:
+        """Mark all ``initial`` items, once what the user says has filled an input item (2.3.3)."""
         for item in form_items(context):
             if item.tag == "initial":
                 self.mark(context, item)
-        yield from self.run_filled(context, filled)
 
     def _follow(self, context: Context, node: Node) -> Flow:
         """Go to a link's or choice's target: a dialog, or an event (2.2, 2.5).

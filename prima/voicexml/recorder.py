@@ -117,6 +117,7 @@ class RecordItems:
         size = data.get("size", len(said.encode()))
         shadow = {"duration": ms, "size": size, **more}
         self.items.fill(context, item, said, shadow)
+        self.items.leave_initial(context)
 
 
 def divided(heard: TakenUtterance, ends: bool) -> tuple[str, str]:

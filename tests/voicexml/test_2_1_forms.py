@@ -285,6 +285,16 @@ case(
     <field name="start"/></form><form id="t"><block><return/></block></form>""",
     said=["Trip?"],
 )
+case(
+    "a recording leaves initial before its filled runs",
+    "2.3.3",
+    f"""<form>{TRIP}<record name="r"><prompt>Speak.</prompt><filled><log expr="i"/></filled></record>
+    <initial name="i"><prompt>Trip?</prompt></initial>
+    <field name="start"><prompt>From?</prompt></field></form>""",
+    "Hello.",
+    logs=["true"],
+    said=["Speak.", "From?"],
+)
 
 
 @pytest.mark.parametrize("one", case.made)
