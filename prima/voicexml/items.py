@@ -84,9 +84,12 @@ class Items:
         self.engine.assign(context.application, "lastresult$", RESULTS, context.scopes(local))
 
     def forget_results(self, context: Context) -> None:
-        """While input is waited for, ``application.lastresult$`` is undefined (5.1.5)."""
-        if self.engine.has(context.application, "lastresult$"):
-            self.engine.unset(context.application, "lastresult$")
+        """Once input is waited for, ``application.lastresult$`` is undefined, in callers too (5.1.5)."""
+        waiting: Context | None = context
+        while waiting is not None:
+            if self.engine.has(waiting.application, "lastresult$"):
+                self.engine.unset(waiting.application, "lastresult$")
+            waiting = waiting.caller
 
     def _fill(self, context: Context, heard: TakenUtterance) -> list[Node]:
         """Give items their values (3.1.6): an item's own grammar one, a form's perhaps many."""

@@ -273,7 +273,7 @@ class Machine:
         if fetched is not None:
             yield from root_of(self.shared, fetched)  # its own, which is not the caller's
         inner = Context(context.session, page, nothing, nothing, self.engine.named("dialog"))
-        inner.params, inner.depth = params, context.depth + 1
+        inner.params, inner.depth, inner.caller = params, context.depth + 1, context
         self.shared.context = inner
         try:
             yield from self.execute(inner, page, dialog)

@@ -93,6 +93,8 @@ class Context:
     """Items without a name that have been visited: their guards are set."""
     params: Params | None = None
     depth: int = 0
+    caller: Context | None = None
+    """The context whose subdialog this is."""
     quiet: bool = False
     """Whether the next item is visited without its prompts (5.3.6)."""
 

@@ -235,6 +235,16 @@ case(
     logs=["1,Nara,Nara,voice,Nara,1"],
 )
 case(
+    "no last result outlasts the wait of a subdialog",
+    "5.1.5",
+    f"""<form><field name="f">{CITIES}</field><subdialog src="#s"/><block>
+    <log expr="typeof application.lastresult$"/></block></form>
+    <form id="s"><field name="g">{CITIES}</field><block><return/></block></form>""",
+    "Nara",
+    "Kyoto",
+    logs=["undefined"],
+)
+case(
     "the last result is the root's in a leaf",
     "5.1.5",
     f"""{LEAF}<form><field name="f">{CITIES}</field><block><goto next="other.vxml"/></block></form>
