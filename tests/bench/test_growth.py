@@ -6,6 +6,7 @@ import gc
 import sys
 from collections import Counter
 from collections.abc import Callable
+from cProfile import Profile
 from functools import partial
 from pathlib import Path
 
@@ -39,19 +40,9 @@ TIMES = 200
 
 def calls(work: Callable[[], object]) -> int:
     """How many functions, of Python or not, are called meanwhile."""
-    count = 0
-
-    def called(_frame: object, event: str, _arg: object) -> None:
-        nonlocal count
-        count += event in ("call", "c_call")
-
-    before = sys.getprofile()
-    sys.setprofile(called)
-    try:
-        work()
-    finally:
-        sys.setprofile(before)
-    return count
+    profile = Profile()
+    profile.runcall(work)
+    return sum(one.callcount for one in profile.getstats())
 
 
 def grown(family: Family, folder: Path, work: Callable[[Path], object]) -> float:
