@@ -100,6 +100,7 @@ class Stage:
             UsageError: they are too large.
         """
         assert isinstance(self.files, Kept)
+        self.digests()  # before there is more
         for loaded in self._cast.values():
             for document in loaded.cast.documents:
                 if not isinstance(document, Document):
@@ -119,10 +120,23 @@ class Stage:
         """The values that are varied in a scenario."""
         return self.scripts[scenario].targets
 
+    def _read_named(self, loaded: Loaded) -> None:
+        """Read what documents of VoiceXML name, grammars, scripts and sounds as well, before a run."""
+        from prima.loading.voicedocuments import read_named
+
+        for document in loaded.cast.documents:
+            if not isinstance(document, Document):
+                read_named(document)
+
     def digests(self) -> list[str]:
-        """The SHA-256 of everything that is read."""
+        """The SHA-256 of everything that the scenarios name, without what ``pack`` adds."""
+        return self._digests
+
+    @cached_property
+    def _digests(self) -> list[str]:
         assert isinstance(self.files, Kept)
-        contents = (*self.files.texts.values(), *(data for _, data in self.scenarios))
+        heads = (data + str(size).encode() for data, size in self.files.heads.values())
+        contents = (*self.files.texts.values(), *heads, *(data for _, data in self.scenarios))
         return sorted({digest(data) for data in contents})
 
     def problems(self, variant: Variant) -> list[Problem]:
@@ -149,6 +163,8 @@ class Stage:
                 self._cast.clear()
             with in_place_of_files(self.files):
                 self._cast[key] = load_text(script.path, data)
+                if isinstance(self.files, Kept):
+                    self._read_named(self._cast[key])
         loaded = with_scenario(self._cast[key], script.path, data)
         robot = script.robot_text(variant)
         return loaded if robot is None else with_robot(loaded, robot)

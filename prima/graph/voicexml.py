@@ -35,7 +35,7 @@ from prima.markup.tree import Node
 from prima.voicexml.arranging import is_unit, parts_of
 from prima.voicexml.document import Page, VoiceDocument
 from prima.voicexml.elements import ITEMS
-from prima.voicexml.pages import Pages
+from prima.voicexml.pages import pages_of
 from prima.voicexml.sketch import ASKING
 from prima.voicexml.vocabulary import NAMESPACE
 
@@ -52,7 +52,7 @@ class _VoiceGraph(Transitions[Node]):
 
     def __init__(self, document: VoiceDocument) -> None:
         super().__init__(f"The states of {clean(document.id)}")
-        self.pages = Pages(document.page, document.folder, document.fetch)
+        self.pages = pages_of(document)
         self.first = self.page = document.page
         self.outer: list[Sequence[Taker[Node]]] = []
         """The handlers of the document, and of its root document."""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from os.path import dirname, getsize, isfile
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,7 +29,7 @@ from prima.markup.spans import value_span
 
 if TYPE_CHECKING:
     from prima.markup.tree import Node
-    from prima.voicexml.document import Page
+    from prima.voicexml.document import Page, VoiceDocument
     from prima.voicexml.site import Site
 
 
@@ -71,6 +72,7 @@ def voicexml_problems(
     URIs with a prefix in ``answered`` are a service's.
     """
     from prima.voicexml.caught import check_caught
+    from prima.voicexml.checks import check_failing
     from prima.voicexml.document import FetchError
     from prima.voicexml.listening import check_listening
     from prima.voicexml.pages import Pages
@@ -100,7 +102,9 @@ def voicexml_problems(
         yield from _not_there(page, pages.nodes(page), folder, answered, missing)
         yield from _grammars_of(page, folder, missing, answered)
         yield from check_caught(page.root, pages.thrown)
-        yield from check_listening(page, pages.root(page))
+        yield from check_listening(page, root := pages.root(page))
+        if root is not None:
+            yield from check_failing(page.root, root.root)
     rooted = [(page, pages.root(page)) for page in pages]
     roots = {id(root) for _, root in rooted}
     for page, root in rooted:
@@ -108,6 +112,29 @@ def voicexml_problems(
             yield from check_variables(page, root, script, id(page) in roots)
     yield from check_sketched(rooted)
     yield from (*pages.problems, *pages.between())
+
+
+def read_named(document: VoiceDocument) -> None:
+    """Read all files that an application names literally, as far as they can be read.
+
+    What a grammar refers to is read as well; of a sound only the header.
+    """
+    from prima.voicexml.document import FetchError
+    from prima.voicexml.pages import pages_of
+
+    pages = pages_of(document)
+    for page in pages:
+        named: list[tuple[Callable[[str], object], str]] = [
+            (document.fetch, file) for _, _, file in _files_named(page, pages.nodes(page), ())
+        ]
+        for node in page.root.walk():
+            if node.tag == "audio" and node.get("src"):
+                named.append((document.glance, page.resolve(node.get("src"), node)))
+            elif node.tag == "grammar":
+                _of_files(node, page, Path(document.folder), ())
+        for read, file in named:
+            with suppress(FetchError):
+                read(file)
 
 
 NAMING_FILES = {

@@ -9,11 +9,12 @@ from urllib.parse import unquote, urlsplit
 
 from prima.errors import DocumentError, Hint, Problem, suggestion
 from prima.errors.diagnoses.names import NO_SUCH_FORM, UNDECLARED_VARIABLE
+from prima.errors.diagnoses.values import BAD_VALUE
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.markup.uris import parted
 from prima.voicexml.caught import thrown_in
-from prima.voicexml.document import Fetch, FetchError, Page
+from prima.voicexml.document import Fetch, FetchError, Page, VoiceDocument
 from prima.voicexml.elements import HANDLERS
 from prima.voicexml.reading import read_page
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE, WORDED
@@ -51,6 +52,11 @@ def inherited(root: Node) -> Iterator[Node]:
     """What a leaf inherits of its root document: handlers and links (1.5.2); grammars stay there."""
     for part in root.all("link", *HANDLERS):
         yield from (one for one in part.walk() if one.key != "grammar")
+
+
+def pages_of(document: VoiceDocument) -> Pages:
+    """The documents of an application."""
+    return Pages(document.page, document.folder, document.fetch)
 
 
 class Pages:
@@ -138,8 +144,9 @@ class Pages:
         return self._pages.get(uri)
 
     def between(self) -> Iterator[Problem]:
-        """Dialogs that other documents lack, and params that no called form takes (2.3.4)."""
+        """Dialogs that others lack, roots that have one, params that no called form takes (2.3.4)."""
         for page in self:
+            yield from self._root_of_root(page)
             for node in self.nodes(page):
                 target = self.target(page, node) if node.key in TARGETS else Target()
                 other, name = target.page, target.name
@@ -151,6 +158,12 @@ class Pages:
                 elif dialog is not None and (node.key, dialog.tag) == ("subdialog", "form"):
                     yield from _untaken(node, dialog)
 
+    def _root_of_root(self, page: Page) -> Iterator[Problem]:
+        """An application root that has one itself (1.5.2)."""
+        root = self.root(page)
+        if root is not None and root.application:
+            yield ROOTED_ROOT.at(page.root.attribute_place("application"), page=root.uri)
+
 
 NO_DIALOG = NO_SUCH_FORM.says(
     'There is no dialog "{name}" in {page}: this will be error.badfetch.',
@@ -159,6 +172,11 @@ NO_DIALOG = NO_SUCH_FORM.says(
 )
 NO_DIALOGS = NO_SUCH_FORM.says(
     "{page} has no dialog: this will be error.badfetch.", "Name another document.", "warning"
+)
+ROOTED_ROOT = BAD_VALUE.says(
+    "{page} has an application root itself: this will be error.semantic.",
+    "Name that root, or another document without one.",
+    "warning",
 )
 NOT_TAKEN = UNDECLARED_VARIABLE.says(
     '{form} has no <var name="{name}"/>: this will be error.semantic.',

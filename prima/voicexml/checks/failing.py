@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from prima.errors import Diagnosis, Place, Problem
 from prima.markup.tree import Node
@@ -26,17 +26,26 @@ ALWAYS_FAILS = Diagnosis(
 NO_OBJECTS = Unsupported("error.unsupported.objectname", "this platform has no objects")
 
 
-def check_failing(root: Node) -> Iterator[Problem]:
-    """Warn of what always fails, unless the document expects it; its root document may."""
-    if root.get("application"):
-        return
-    for dialog, item in ((one, item) for one in root.all("form", "menu") for item in one.walk()):
-        for node, place, why in _failures(item):
-            if not any(_expects(one, why.event) for one in (root, dialog, item)):
-                yield ALWAYS_FAILS.at(place, tag=node.tag, why=why.message, event=why.event)
-    for node, place, why in _unrecorded_answers(root):
-        if not any(_expects(one, why.event) for one in (root, *root.walk())):
-            yield ALWAYS_FAILS.at(place, tag=node.tag, why=why.message, event=why.event)
+def check_failing(root: Node, application: Node | None = None) -> Iterator[Problem]:
+    """Warn of what always fails, unless the document expects it, or its ``application`` root."""
+    if root.get("application") and application is None:
+        return  # nobody knows what its root expects
+    roots = (root,) if application is None else (root, application)
+    for dialog in root.all("form", "menu"):
+        for item in dialog.walk():
+            for found in _failures(item):
+                yield from _unexpected(found, (*roots, dialog, item))
+    for found in _unrecorded_answers(root):
+        yield from _unexpected(found, (*roots, *root.walk()))
+
+
+def _unexpected(
+    found: tuple[Node, Place, Unsupported], holders: Iterable[Node]
+) -> Iterator[Problem]:
+    """The problem of what fails, unless a handler in one of the ``holders`` expects it."""
+    node, place, why = found
+    if not any(_expects(one, why.event) for one in holders):
+        yield ALWAYS_FAILS.at(place, tag=node.tag, why=why.message, event=why.event)
 
 
 def _unrecorded_answers(root: Node) -> Iterator[tuple[Node, Place, Unsupported]]:
