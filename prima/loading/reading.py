@@ -245,11 +245,13 @@ class Reading:
             if isinstance(document, Document):
                 self.problems += check_commands(document, robot.commands, robot.devices)
             else:
-                from prima.voicexml import checks, sketched
+                from prima.voicexml import checks, pages, sketched
 
-                root = document.page.root
-                self.problems += checks.check_commands(root, robot.commands, robot.devices)
-                self.problems += sketched.added_in_units(document.page, robot.commands)
+                voice = pages.pages_of(document)
+                for page in voice:
+                    roots = [one.root for one in (page, voice.root(page)) if one is not None]
+                    self.problems += checks.check_commands(roots, robot.commands, robot.devices)
+                    self.problems += sketched.added_in_units(page, robot.commands)
 
     def check_policy(self, scenario: Scenario) -> None:
         """Check the policy: an unknown one, or one that prefers a missing application."""

@@ -14,6 +14,7 @@ from prima.markup.spans import value_span
 from prima.markup.tree import Node
 from prima.messages import SERVICE
 from prima.sim.devices import Cast
+from prima.voicexml.pages import Pages
 
 NAMING = ("next", "src")
 """Attributes of VoiceXML elements that name a service by ``service:NAME``."""
@@ -32,13 +33,16 @@ NOT_IN_REPLY = UNDECLARED_VARIABLE.says(
 )
 
 
-def check_replies(cast: Cast) -> Iterator[Problem]:
-    """Data that handlers read of a reply, if other data was most likely meant."""
+def check_replies(cast: Cast, pages: Sequence[Node]) -> Iterator[Problem]:
+    """Data that handlers read of a reply, if other data was most likely meant.
+
+    ``pages`` are the root elements of all documents of VoiceXML.
+    """
     brought: dict[str, set[str]] = {}
     for one in cast.scenario.services:
         brought.setdefault(one.name, set()).update(*(reply.data for reply in one.replies))
-    for document in cast.documents:
-        root = document.node if isinstance(document, Document) else document.page.root
+    natives = [one.node for one in cast.documents if isinstance(one, Document)]
+    for root in (*natives, *pages):
         for handler in root.walk():
             name = handler.get("event")
             service = name.removeprefix(REPLY)
@@ -58,15 +62,18 @@ def _misread(handler: Node, service: str, brought: set[str]) -> Iterator[Problem
                 yield NOT_IN_REPLY.at(place, hint, service=service, name=name)
 
 
-def check_services(cast: Cast, events: Sequence[KnownEvents]) -> Iterator[Problem]:
+def check_services(
+    cast: Cast, events: Sequence[KnownEvents], voices: Sequence[Pages]
+) -> Iterator[Problem]:
     """Services that do not exist, if another was meant, or that are another application's.
 
-    ``events`` has an entry for each document of PRIMA's own language.
+    ``events`` has an entry for each document of PRIMA's own language, ``voices`` for each
+    application in VoiceXML.
     """
     owners: dict[str, set[str]] = {}
     for service in cast.scenario.services:
         owners.setdefault(service.name, set()).add(service.application)
-    for owner, node, attribute, name in _asks(cast, events):
+    for owner, node, attribute, name in _asks(cast, events, voices):
         place = node.attribute_place(attribute)
         if name in owners and owners[name].isdisjoint(("", owner)):
             yield OF_OTHERS.at(place, name=name, others=one_of(sorted(owners[name])))
@@ -75,15 +82,17 @@ def check_services(cast: Cast, events: Sequence[KnownEvents]) -> Iterator[Proble
             yield NO_SERVICE.at(place, hint, name=name)
 
 
-def _asks(cast: Cast, events: Sequence[KnownEvents]) -> Iterator[tuple[str, Node, str, str]]:
+def _asks(
+    cast: Cast, events: Sequence[KnownEvents], voices: Sequence[Pages]
+) -> Iterator[tuple[str, Node, str, str]]:
     """Who asks a service: the application and its element, the attribute and the name in it."""
-    natives = iter(events)
+    natives, others = iter(events), iter(voices)
     for document in cast.documents:
         if isinstance(document, Document):
             yield from ((document.id, node, "to", name) for node, name in next(natives).asked)
         else:
-            for node, attribute, name in _by_uri(document.page.root):
-                yield document.id, node, attribute, name
+            asking = [one for page in next(others) for one in _by_uri(page.root)]
+            yield from ((document.id, *one) for one in asking)
 
 
 def _by_uri(root: Node) -> Iterator[tuple[Node, str, str]]:

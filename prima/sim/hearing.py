@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from itertools import chain, product
 
 from prima.devices.profile import Profile
@@ -26,6 +26,7 @@ from prima.language.commands import TABLE_4_2
 from prima.language.values import read_value
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
+from prima.session import AnyDocument
 from prima.sim.asked import check_replies, check_services
 from prima.sim.awaited import MOST, OPEN, awaited, check_awaited, raised
 from prima.sim.devices import Cast
@@ -35,7 +36,7 @@ from prima.sim.sensed import check_sensors
 from prima.sim.world import room_beside
 from prima.voicexml.arranging import arguments_of
 from prima.voicexml.caught import caught_in, thrown_in
-from prima.voicexml.pages import Pages, spoken_in
+from prima.voicexml.pages import Pages, pages_of, spoken_in
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
 WORDS = (
@@ -56,17 +57,18 @@ CANNOT = UNSUPPORTED_COMMAND.says(
 def check_hearing(cast: Cast) -> list[Problem]:
     """Warnings about a scenario together with its applications, world and robot."""
     world, documents = cast.world, cast.documents
-    pages = [one.page.root for one in documents if not isinstance(one, Document)]
+    voices = [pages_of(one) for one in documents if not isinstance(one, Document)]
+    pages = [page.root for one in voices for page in one]
     events = [KnownEvents(one) for one in documents if isinstance(one, Document)]
     nodes = list(cast.scenario.node.walk())
-    problems = [*_not_there(cast), *_late(nodes, cast.scenario.until)]
+    problems = [*_not_there(cast, voices), *_late(nodes, cast.scenario.until)]
     problems += [*_outside(nodes, world), *_nobody(nodes), *_unable(nodes, cast.robot)]
     problems += [*check_values(cast.scenario, cast.robot), *check_sensors(nodes, documents)]
     if world.plan is not None:
         problems += world.plan.narrow(room_beside(cast.robot), cast.robot.radius)
     corners = [*_corners(nodes, events, pages, world)]
-    problems += [*corners, *_words(nodes, cast)]
-    problems += [*check_services(cast, events), *check_replies(cast)]
+    problems += [*corners, *_words(nodes, documents, voices)]
+    problems += [*check_services(cast, events, voices), *check_replies(cast, pages)]
     if pages:
         return problems  # what a VoiceXML application accepts is known only at run time
     places = {one.place for one in corners}
@@ -74,7 +76,7 @@ def check_hearing(cast: Cast) -> list[Problem]:
     return [*problems, *_unheard(nodes, events), *triggers]
 
 
-def _not_there(cast: Cast) -> Iterator[Problem]:
+def _not_there(cast: Cast, voices: list[Pages]) -> Iterator[Problem]:
     """Names in documents that neither the world nor the robot has."""
     world, robot = cast.world, cast.robot
     names = Surroundings(
@@ -84,8 +86,9 @@ def _not_there(cast: Cast) -> Iterator[Problem]:
     for document in cast.documents:
         if isinstance(document, Document):
             yield from check_surroundings(document, names)
-        else:
-            yield from _in_voicexml(document.page.root, names)
+    for pages in voices:
+        for page in pages:
+            yield from _in_voicexml(page.root, names, pages.thrown)
 
 
 def _corners(
@@ -125,7 +128,7 @@ def _waiting(
         yield node.attribute_place(attribute), name
 
 
-def _in_voicexml(root: Node, names: Surroundings) -> Iterator[Problem]:
+def _in_voicexml(root: Node, names: Surroundings, thrown: Container[str]) -> Iterator[Problem]:
     """Unknown names in a VoiceXML document: in PRIMA's Commands, and touch sensors."""
     commands = (one for one in root.walk() if one.namespace == PRIMA_NAMESPACE)
     for node in [one for one in commands if type_of(one) in TABLE_4_2]:
@@ -133,22 +136,19 @@ def _in_voicexml(root: Node, names: Surroundings) -> Iterator[Problem]:
         for name, value in arguments_of(node, row).items():
             if name in PLACED.keys() & row.arguments.keys() and value is not None:
                 yield from check_name(node, name, value, names)
-    thrown = {*thrown_in(root)}
     for node, event in caught_in(root):
         if event not in thrown:
             yield from check_sensor(node, event, names)
 
 
-def _sayings(cast: Cast) -> tuple[Sayings, Sayings] | None:
+def _sayings(documents: list[AnyDocument], voices: list[Pages]) -> tuple[Sayings, Sayings] | None:
     """The applications' questions and sentences; None if known only at run time."""
     asked: list[Sequence[object]] = []
     said: list[Sequence[object]] = []
-    for document in cast.documents:
-        if isinstance(document, Document):
-            asked += texts_of(document, True)
-            said += texts_of(document, False)
-            continue
-        pages = Pages(document.page, document.folder, document.fetch)
+    for document in [one for one in documents if isinstance(one, Document)]:
+        asked += texts_of(document, True)
+        said += texts_of(document, False)
+    for pages in voices:
         if pages.open:
             return None
         spoken = [text for page in pages for text in spoken_in(page)]
@@ -157,7 +157,9 @@ def _sayings(cast: Cast) -> tuple[Sayings, Sayings] | None:
     return Sayings(asked), Sayings(said)
 
 
-def _words(nodes: list[Node], cast: Cast) -> Iterator[Problem]:
+def _words(
+    nodes: list[Node], documents: list[AnyDocument], voices: list[Pages]
+) -> Iterator[Problem]:
     """Triggers that wait for words that nobody says; forbidden words, if likely a typo."""
     named = [
         (node, name, asked)
@@ -165,7 +167,7 @@ def _words(nodes: list[Node], cast: Cast) -> Iterator[Problem]:
         for node in [one for one in nodes if one.tag == tag][:MOST]
         if node.get(name)
     ]
-    if named and (sayings := _sayings(cast)) is not None:
+    if named and (sayings := _sayings(documents, voices)) is not None:
         for node, name, asked in named:
             yield from _never_said(node, name, asked, *sayings)
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from prima.errors import Problem, few, suggestion
 from prima.errors.diagnoses.names import UNSUPPORTED_COMMAND
-from prima.errors.diagnoses.structure import MISPLACED_ELEMENT, UNKNOWN_ATTRIBUTE, UNKNOWN_ELEMENT
+from prima.errors.diagnoses.structure import MISPLACED_ELEMENT, MISSING_ATTRIBUTE, UNKNOWN_ATTRIBUTE
 from prima.errors.diagnoses.values import EXCLUSIVE, NOTHING_TO_SAY
 from prima.interpreter.acts import type_of
 from prima.interpreter.checks import given_to
@@ -14,16 +14,15 @@ from prima.interpreter.checks.robot import Ability
 from prima.interpreter.units import ARRANGING, QUESTION
 from prima.language.arguments import excluding_arguments
 from prima.language.commands import TABLE_4_2, CommandType
-from prima.markup.spans import name_spans, similar_attribute, value_span
+from prima.markup.spans import similar_attribute, value_span
 from prima.markup.tree import Node
-from prima.voicexml.arranging import arguments_of, check_arranged
+from prima.voicexml.arranging import arguments_of, check_arranged, unknown_command
 from prima.voicexml.elements import HANDLERS, handler_names
-from prima.voicexml.vocabulary import COMMANDS, HOLDING, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
+from prima.voicexml.vocabulary import HOLDING, NAMESPACE, PRIMA_NAMESPACE, VOICEXML
 
 QUESTIONS = frozenset({"field", "initial", "menu"})
 """Elements that ask the user."""
 
-UNKNOWN_COMMAND = UNKNOWN_ELEMENT.says("PRIMA has no Command <{tag}>.", "Remove it.")
 NOT_HERE = MISPLACED_ELEMENT.says(
     "A Command is not allowed in <{parent}>.", "It is allowed in prompts and executable content."
 )
@@ -52,9 +51,8 @@ SAYS_NOTHING = NOTHING_TO_SAY.says(
 
 def check_guest(node: Node, parent: Node) -> list[Problem]:
     """Check an element of PRIMA's language among VoiceXML's own."""
-    if node.tag not in (*COMMANDS, *ARRANGING):
-        hint = suggestion(node.tag, [*COMMANDS, *ARRANGING], *name_spans(node))
-        return [UNKNOWN_COMMAND.at(node.place, hint, tag=node.tag)]
+    if problem := unknown_command(node):
+        return [problem]
     problems: list[Problem] = []
     if parent.key not in HOLDING and VOICEXML.child(parent.key, "assign") is None:
         diagnosis = ARRANGING_NOT_HERE if node.tag in ARRANGING else NOT_HERE
@@ -78,24 +76,38 @@ def _check_content(command: Node) -> Iterator[Problem]:
 
 
 def _check_arguments(node: Node) -> Iterator[Problem]:
+    known = _known(node)
+    for name in _unknown(node, known):
+        hint = similar_attribute(node, name, known)
+        place = node.attribute_place(name, value=False)
+        yield NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
+
+
+def _known(node: Node) -> set[str]:
+    """The arguments that a Command's element may have as attributes."""
     row = TABLE_4_2.get(node.tag)
-    known = set(row.arguments) if row is not None else {"type"}
-    for name in node.attributes:
-        if name.removesuffix("-expr") not in known and not name.startswith(("xml:", "{")):
-            hint = similar_attribute(node, name, known)
-            place = node.attribute_place(name, value=False)
-            yield NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
+    return set(row.arguments) if row is not None else {"type"}
+
+
+def _unknown(node: Node, known: set[str]) -> list[str]:
+    """The attributes of a Command's element that are none of its arguments."""
+    own = (one for one in node.attributes if not one.startswith(("xml:", "{")))
+    return [one for one in own if one.removesuffix("-expr") not in known]
 
 
 def check_commands(
-    root: Node, commands: Mapping[str, CommandType], devices: frozenset[str]
+    roots: Sequence[Node], commands: Mapping[str, CommandType], devices: frozenset[str]
 ) -> list[Problem]:
-    """Warn of Commands that a robot adds or lacks: at run time they cause events."""
-    heard = {name for one in root.walk() if one.tag in HANDLERS for name in handler_names(one)}
+    """Warn of Commands that a robot adds or lacks: at run time they cause events.
+
+    ``roots`` are the root elements of the document and of its application root, if it has one.
+    """
+    nodes = [one for root in roots for one in root.walk()]
+    heard = {name for one in nodes if one.tag in HANDLERS for name in handler_names(one)}
     robot = Ability(commands, devices, heard, handler="catch")
     problems: list[Problem] = []
     lacking: list[Problem] = []
-    for node in root.walk():
+    for node in roots[0].walk():
         if name := _asked_for(node):
             lacking += [robot.problem(node, name)] if robot.lacks(name) else []
         elif node.namespace == PRIMA_NAMESPACE and node.tag == "command" and node.get("type"):
@@ -127,8 +139,11 @@ def command_problems(node: Node, row: CommandType) -> list[Problem]:
     """Arguments and texts that make a Command fail with an event when it is requested."""
     given = arguments_of(node, row)
     says = bool(node.own_text.strip() or node.all("value"))
+    told = {MISSING_ATTRIBUTE.code} if _unknown(node, _known(node)) else set()
     found = [
-        one._replace(severity="warning") for one in given_to(node, row, given, says, prefix="p:")
+        one._replace(severity="warning")
+        for one in given_to(node, row, given, says, prefix="p:")
+        if one.code not in told  # an attribute meant for it is reported already
     ]
     if excluding := excluding_arguments(row, given):
         found.append(ONLY_ONE.at(node.place, wrong=excluding))
