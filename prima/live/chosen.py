@@ -42,6 +42,8 @@ class Chosen:
             return load_scenario(self.scenario, robot=self.robot)
         given = self.world or None, self.robot or None, self.maps, bool(self.world)
         loaded = stage(self.fas, self.eas, (), *given)
+        own = {name for one in loaded.cast.robot.drivers for name in one.places}
+        loaded.problems = [one for one in loaded.problems if not _is_of_place(one, own)]
         if self.services:
             endpoints, loaded.files[self.services] = load_services(self.services)
             _check_owners(endpoints, [one.id for one in loaded.cast.documents])
@@ -74,6 +76,12 @@ class Chosen:
         if self.robot:
             recorded["document"] = read_file(self.robot).decode("utf-8", "replace")
         return recorded
+
+
+def _is_of_place(problem: Problem, names: set[str]) -> bool:
+    """Whether a problem is that the site's map lacks a place; robots' own maps may have it."""
+    of_place = problem.code == "no-such-name" and problem.get("what").startswith("place")
+    return of_place and problem.get("name").strip() in names
 
 
 def _check_owners(endpoints: Iterable[Endpoint], known: list[str]) -> None:
