@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from lark import Token, UnexpectedCharacters, UnexpectedInput, UnexpectedToken
@@ -37,6 +38,8 @@ _RESERVED = {
     "+": 'Write <1-> for once or more; a sign that is said, in quotes: "+".',
 }
 """Remedies for signs with another meaning, here or in other languages (2.5)."""
+_NAMED = re.compile(r"(\$[^\s;=|*+<>()\[\]{}/$\"!]+)\s*\Z")
+"""The name of a rule at the end of a text."""
 _UNCLOSED = {
     '"': 'A quote is opened and not closed: write the other ".',
     "{": "A tag is opened and not closed: write }, or }!} if it begins with {!{.",
@@ -56,7 +59,9 @@ def unexpected(source: Source, error: UnexpectedInput) -> Problem:
         at = len(text) - len(text[error.pos_in_stream :].lstrip())
     found = text[at : at + 20].split("\n")[0].strip()
     message = f'"{found}" is not allowed here.' if found else "The grammar ends too early."
-    remedy = _remedy(error, found, token)
+    rule = _NAMED.search(text[:at]) if found[:1] == "=" else None
+    begins = f'If {rule[1]} is a new rule, end the one before it with ";".' if rule else ""
+    remedy = begins or _remedy(error, found, token)
     return Problem(source.at(at), "error", "not-abnf", message, remedy)
 
 

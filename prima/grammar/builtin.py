@@ -11,6 +11,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Literal
 from urllib.parse import unquote
 
+from prima.errors import suggestion
 from prima.grammar import dates
 from prima.grammar.assent import assent
 from prima.grammar.model import BuiltIn
@@ -47,6 +48,14 @@ PARTS = {"cent": "", "cents": "", "penny": "", "pennies": "", "pence": "GBP", "p
 
 class Conflict(ValueError):
     """Parameters of a built-in type that exclude each other."""
+
+
+class WrongParameter(ValueError):
+    """A parameter that a built-in type does not have, or that is of another kind."""
+
+    def __init__(self, message: str, remedy: str) -> None:
+        super().__init__(message)
+        self.remedy = remedy
 
 
 COURTESY = re.compile(
@@ -117,11 +126,14 @@ def _parameters(name: str, text: str) -> dict[str, str]:
     known = {"digits": LENGTHS, "boolean": ("y", "n")}.get(name, ())
     for key, value in given.items():
         if key not in known:
-            raise ValueError(f'The built-in type {name} has no parameter "{key[:40]}".')
+            message = f'The built-in type {name} has no parameter "{key[:40]}".'
+            raise WrongParameter(message, suggestion(key, known).text)
         if name == "digits" and re.fullmatch("[0-9]{1,4}", value) is None:
-            raise ValueError(f'{key} is a number of digits, not "{value[:40]}".')
+            message = f'{key} is a number of digits, not "{value[:40]}".'
+            raise WrongParameter(message, f"Write a whole number up to 9999, such as {key}=4.")
         if name == "boolean" and re.fullmatch("[0-9*#A-D]", value) is None:
-            raise ValueError(f'{key} is one key, not "{value[:40]}".')
+            message = f'{key} is one key, not "{value[:40]}".'
+            raise WrongParameter(message, "Write one key: 0 to 9, *, # or A to D.")
     if name == "digits":
         _check_lengths(given)
     elif name == "boolean" and given.get("y", "1") == given.get("n", "2"):

@@ -8,7 +8,7 @@ from urllib.parse import urlsplit
 
 from prima.errors import Hint, PrimaError, Span, meant
 from prima.errors.diagnoses.names import RELATIVE
-from prima.grammar.builtin import built_in, uri_mode
+from prima.grammar.builtin import WrongParameter, built_in, uri_mode
 from prima.grammar.errors import (
     GrammarError,
     NotThere,
@@ -221,7 +221,8 @@ class Library:
             found = built_in(reference.uri, document.lang)
         except ValueError as error:
             kind = UnsupportedBuiltIn
-            self.problems.unsupported(kind, reference.where, "no-such-name", str(error))
+            remedy = error.remedy if isinstance(error, WrongParameter) else ""
+            self.problems.unsupported(kind, reference.where, "no-such-name", str(error), remedy)
             return None
         if (mode := uri_mode(reference.uri)) and mode != document.mode:
             self._other_mode(document, mode, reference)

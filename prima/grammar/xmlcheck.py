@@ -55,9 +55,10 @@ class GrammarChecker:
         known = GRAMMAR.attributes[node.tag].keys() | more
         for name in node.attributes:
             if name not in known and ":" not in name and not name.startswith("{"):
-                message = f"<{node.tag}> has no attribute {name}."
-                hint = similar_attribute(node, name, known)
-                self.note(node, "unknown-attribute", message, hint, name)
+                message = f'<{node.tag}> has no attribute "{name}".'
+                hint = similar_attribute(node, name, ["xml:lang"] if name == "lang" else known)
+                where = partial(node.attribute_place, name, value=False)
+                self.problems.note(where, "unknown-attribute", message, hint)
         lang = node.attributes.get("xml:lang")
         if lang is not None and not is_language(lang):
             message = f'"{lang[:40]}" names no language.'

@@ -18,9 +18,21 @@ def nearby(path: Path, name: str, *spans: Span, listed: dict[Path, list[Path]]) 
 
     ``path`` is where the file would be, ``name`` how a document writes that, in the ``spans``.
     """
-    folder, slash, _ = name.rpartition("/")
+    folder, slash, file = name.rpartition("/")
     other = alike(path, listed)
+    if not other and slash and not path.parent.is_dir() and (beside := _folder_alike(path)):
+        above, slash, _ = folder.rpartition("/")
+        folder, slash, other = f"{above}{slash}{beside}", "/", file
     return meant(f"{folder}{slash}{other}" if other else "", *spans)
+
+
+def _folder_alike(path: Path) -> str:
+    """The folder with such a file that the wrong name of its folder most likely means."""
+    try:
+        beside = islice(path.parent.parent.iterdir(), MOST_BESIDE)
+        return near(path.parent.name, [one.name for one in beside if isfile(one / path.name)])
+    except (OSError, ValueError):
+        return ""
 
 
 def beside(folder: Path, name: str) -> str:

@@ -29,6 +29,8 @@ OTHER_FORMS = (
 )
 """Beginnings of texts in other formats, with descriptions and remedies."""
 REMEDIES = (
+    (r"Namespace prefix p ", 'Write the name without "p:", or declare it: xmlns:p="...". '
+     'PRIMA\'s Commands in VoiceXML need xmlns:p="urn:prima:dialogue:1".'),
     (r"Namespace prefix (\S+) ", 'Write the name without "{0}:", or declare it: xmlns:{0}="...".'),
     (r"Char 0x0|Document is empty|PCDATA invalid Char value 0|Invalid character",
      "Remove the character; an editor may not show it. Save the file as UTF-8."),

@@ -6,10 +6,16 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
-from prima.errors import Hint, Problem, one_of
+from prima.errors import Hint, Problem, one_of, replaced, suggestion
 from prima.errors.diagnoses.behaviour import SHARED_DEVICE
 from prima.errors.diagnoses.reading import TOO_DEEP
-from prima.errors.diagnoses.structure import EMPTY, MISPLACED_ELEMENT, STRAY_TEXT, UNKNOWN_ATTRIBUTE
+from prima.errors.diagnoses.structure import (
+    EMPTY,
+    MISPLACED_ELEMENT,
+    STRAY_TEXT,
+    UNKNOWN_ATTRIBUTE,
+    UNKNOWN_ELEMENT,
+)
 from prima.errors.diagnoses.values import BAD_VALUE
 from prima.interpreter.acts import CommandTemplate, arrange, type_of
 from prima.interpreter.units import (
@@ -23,7 +29,8 @@ from prima.interpreter.units import (
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.language.values import BadValue, milliseconds, read_value
-from prima.markup.spans import similar_attribute
+from prima.markup.hints import meant_value
+from prima.markup.spans import name_spans, similar_attribute, value_span
 from prima.markup.tree import Node
 from prima.messages import Command, Cue, Step
 from prima.voicexml.elements import ITEMS
@@ -149,6 +156,7 @@ def _last(steps: list[Step]) -> list[int]:
 NESTED_TOO_DEEP = TOO_DEEP.says(
     "There are more than {most} such elements inside each other.", "Divide them."
 )
+UNKNOWN_COMMAND = UNKNOWN_ELEMENT.says("PRIMA has no Command <{tag}>.", "Remove it.")
 NO_COMMAND = EMPTY.says("This <p:{tag}> holds no Command.", "Write Commands into it.")
 NO_ITEM = EMPTY.says("This <p:iu> holds no form item.", "Write {items} into it, or remove it.")
 NO_TEXT_HERE = STRAY_TEXT.says(
@@ -171,7 +179,7 @@ def check_arranged(node: Node, problems: list[Problem], depth: int = 0) -> list[
         problems.append(NESTED_TOO_DEEP.at(node.place, most=DEEPEST))
         return []
     found = [*_branches(node, problems, depth)]
-    if not node.nodes:
+    if not node.nodes and not node.text:
         problems.append(NO_COMMAND.at(node.place, tag=node.tag))
     if not depth or node.tag == "iu":
         _check_now(node, problems)
@@ -245,10 +253,20 @@ def check_own(node: Node, key: str, problems: list[Problem]) -> None:
             read_value(known[name].kind, text)
         except BadValue as error:
             place = node.attribute_place(name)
-            hint = Hint(error.remedy)
+            right = meant_value(known[name].kind, text, known[name].default)
+            spans = value_span(node, name) if right else ()
+            hint = replaced(f'Write "{right}".', right, *spans) if right else Hint(error.remedy)
             problems.append(
                 NOT_OF_ITS_KIND.at(place, hint, name=name, value=text, wrong=error.wrong)
             )
+
+
+def unknown_command(node: Node) -> Problem | None:
+    """The problem of an element that PRIMA's language lacks in VoiceXML, if it is one."""
+    if node.namespace != PRIMA_NAMESPACE or node.tag in (*COMMANDS, *ARRANGING):
+        return None
+    hint = suggestion(node.tag, [*COMMANDS, *ARRANGING], *name_spans(node))
+    return UNKNOWN_COMMAND.at(node.place, hint, tag=node.tag)
 
 
 def _fits(child: Node, node: Node, problems: list[Problem]) -> bool:
@@ -256,12 +274,22 @@ def _fits(child: Node, node: Node, problems: list[Problem]) -> bool:
     own = child.namespace == PRIMA_NAMESPACE
     if own and child.tag in (*COMMANDS, *(one for one in ARRANGING if one != node.tag)):
         return True
+    if problem := unknown_command(child):
+        problems.append(problem)
+        return False
     name = child.tag if not own else f"p:{child.tag}"
-    remedy = "Write what is said as <p:speak>." if child.tag in ("prompt", "audio") else ""
     others = [f"<p:{one}>" for one in ARRANGING if one != node.tag]
-    remedy = remedy or f"It holds Commands of the robot, {one_of(others)}."
+    remedy = _as_command(child) or f"It holds Commands of the robot, {one_of(others)}."
     problems.append(NOT_HERE.at(child.place, Hint(remedy), name=name, parent=node.tag))
     return False
+
+
+def _as_command(child: Node) -> str:
+    """The Command to write instead of an element of VoiceXML, or without its prefix."""
+    if child.tag in ("prompt", "audio"):
+        return "Write what is said as <p:speak>."
+    own = child.namespace == NAMESPACE and child.tag in COMMANDS
+    return f"Write <p:{child.tag}>." if own else ""
 
 
 def _check_now(node: Node, problems: list[Problem]) -> None:

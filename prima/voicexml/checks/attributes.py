@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 
-from prima.errors import Hint, Problem, one_of, replaced
+from prima.errors import Hint, Problem, nearest_word, one_of, replaced
 from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE, UNKNOWN_ATTRIBUTE
 from prima.errors.diagnoses.values import BAD_VALUE, EXCLUSIVE
 from prima.language.values import NUMBER, read_value
@@ -38,11 +38,24 @@ def check_attributes(node: Node) -> Iterator[Problem]:
     """Attributes that are unknown, wrong or missing."""
     for name in node.attributes:
         yield from _check_attribute(node, name)
+    told = _meant(node)
     for item in VOICEXML.elements[node.key].attributes:
-        if item.required and item.name not in node.attributes and node.key != "vxml":
+        given = item.name in node.attributes or item.name in told
+        if item.required and not given and node.key != "vxml":
             yield missing(node, item.name)  # a document's version is checked elsewhere
     for line in ALTERNATIVES.get(node.key, ()):
-        yield from _check_alternatives(node, line.split())
+        yield from _check_alternatives(node, line.split(), told)
+
+
+def _meant(node: Node) -> set[str]:
+    """The attributes that unknown ones most likely mean: that they are missing is not told as well."""
+    known = VOICEXML.attributes[node.key]
+    return {nearest_word(one, known) for one in node.attributes if _is_unknown(one, known)}
+
+
+def _is_unknown(name: str, known: Container[str]) -> bool:
+    """Whether an attribute is none of those known, nor one of XML itself or of another namespace."""
+    return name not in known and not name.startswith(("xml:", "xsi:", "{"))
 
 
 def _kind(node: Node, name: str) -> str:
@@ -61,7 +74,7 @@ def _check_attribute(node: Node, name: str) -> Iterator[Problem]:
     elif kind:
         if not fits(kind, text):
             yield bad_value(node, name, text, kind)
-    elif name not in known and not name.startswith(("xml:", "xsi:", "{")):
+    elif _is_unknown(name, known):
         hint = similar_attribute(node, name, known)
         place = node.attribute_place(name, value=False)
         yield NO_ATTRIBUTE.at(place, hint, tag=node.tag, name=name)
@@ -179,7 +192,7 @@ def instead_of(node: Node, name: str, text: str, kind: str) -> Hint:
     return Hint(REMEDIES.get(kind, f"Write {one_of(kind.split())}."))
 
 
-def _check_alternatives(node: Node, names: list[str]) -> Iterator[Problem]:
+def _check_alternatives(node: Node, names: list[str], told: set[str]) -> Iterator[Problem]:
     """Check attributes that exclude each other, and those of which one is required."""
     needed = names[-1] == "!"
     names = names[:-1] if needed else names
@@ -189,7 +202,7 @@ def _check_alternatives(node: Node, names: list[str]) -> Iterator[Problem]:
     if len(given) > 1:
         place = node.place if given[1] == "content" else node.attribute_place(given[1])
         yield HAS_BOTH.at(place, tag=node.tag, name=given[0], other=_called(given[1]))
-    elif needed and not given:
+    elif needed and not given and told.isdisjoint(names):
         yield NEEDS_ONE.at(node.place, tag=node.tag, names=one_of(map(_called, names)))
 
 

@@ -17,6 +17,7 @@ from prima.language.commands import TABLE_4_2
 from prima.markup.spans import instead, value_span
 from prima.markup.tree import Node
 from prima.markup.uris import parted
+from prima.messages import SERVICE
 from prima.script.compile import compiled
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.shared import IsolatedSyntax, syntax
@@ -136,10 +137,13 @@ def _targets(node: Node, dialogs: set[str]) -> Iterator[Problem]:
     for attribute in ("next", "src"):
         target = node.get(attribute)
         name = parted(target)[1]
+        here = target.startswith("#") and node.key != "grammar"
+        sent = target.startswith(SERVICE) and node.key == "submit" and name != ""
         if attribute in node.attributes and not target.strip() and node.key != "audio":
             yield NO_URI.at(node.attribute_place(attribute), name=attribute)
-        if dialogs and target.startswith("#") and node.key != "grammar" and name not in dialogs:
-            hint = suggestion(name, dialogs, *value_span(node, attribute, target[1:]))
+        if dialogs and (here or sent) and name not in dialogs:
+            written = target.partition("#")[2]
+            hint = suggestion(name, dialogs, *value_span(node, attribute, written))
             yield NO_DIALOG.at(node.attribute_place(attribute), hint, name=name)
 
 
@@ -208,7 +212,7 @@ def _property_problems(node: Node) -> Iterator[Problem]:
 
 def _type_problems(node: Node) -> Iterator[Problem]:
     """An unknown built-in type: the field throws error.unsupported.builtin (2.3.1)."""
-    from prima.grammar.builtin import TYPES, Conflict, built_in
+    from prima.grammar.builtin import Conflict, WrongParameter, built_in
 
     attribute = "type" if node.key == "field" else "src"
     kind = node.get("type") if node.key == "field" else node.get("src").strip()
@@ -220,12 +224,22 @@ def _type_problems(node: Node) -> Iterator[Problem]:
     except Conflict as error:
         yield TWO_MEANINGS.at(place, wrong=error)
     except ValueError as error:
-        name = kind.partition("?")[0].rpartition("/")[2]
-        hint = Hint(f"Write {one_of(TYPES)}{', or a <grammar>' if attribute == 'type' else ''}.")
-        if name not in TYPES:
-            hint = suggestion(name, TYPES, *value_span(node, attribute, name)) or hint
+        wrong = error.remedy if isinstance(error, WrongParameter) else ""
+        hint = Hint(wrong) or _other_type(node, attribute, kind)
         text = f"{hint.text} At run time it is error.unsupported.builtin."
         yield UNKNOWN_TYPE.at(place, hint._replace(text=text), wrong=error)
+
+
+def _other_type(node: Node, attribute: str, kind: str) -> Hint:
+    """The built-in type that a wrong one most likely means, or all of them."""
+    from prima.grammar.builtin import TYPES
+
+    name = kind.partition("?")[0].rpartition("/")[2]
+    spans = value_span(node, attribute, name)
+    hint = suggestion(name, TYPES, *spans) if name not in TYPES else Hint()
+    return hint or Hint(
+        f"Write {one_of(TYPES)}{', or a <grammar>' if attribute == 'type' else ''}."
+    )
 
 
 def grammar_problems(

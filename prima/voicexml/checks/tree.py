@@ -115,10 +115,17 @@ def _check_children(node: Node, stack: list[Node], problems: list[Problem]) -> N
                 stack.append(child)
         else:
             foreign = True
-            problems.append(IGNORED.at(child.place, tag=child.tag, namespace=child.namespace))
+            problems.append(_ignored(child))
     if foreign:
         kept = (NAMESPACE, PRIMA_NAMESPACE, SRGS)
         node.held = [one for one in node.content if isinstance(one, str) or one.namespace in kept]
+
+
+def _ignored(child: Node) -> Problem:
+    """The problem of an element of another namespace, which may be PRIMA's, misspelt."""
+    near = nearest_word(child.namespace, [PRIMA_NAMESPACE])
+    hint = Hint(f'It is ignored. Did you mean "{near}"?' if near else "")
+    return IGNORED.at(child.place, hint, tag=child.tag, namespace=child.namespace)
 
 
 def _misplaced(child: Node, node: Node) -> Problem:
