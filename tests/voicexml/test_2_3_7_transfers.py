@@ -1,4 +1,4 @@
-"""Calls that a scenario's telephone connects, refuses or ends: VoiceXML 2.0, 2.3.7; 2.1, 7."""
+"""Calls that a scenario's telephone connects, refuses or ends: VoiceXML 2.0, 2.3.7; 2.1, 9."""
 
 from __future__ import annotations
 
@@ -237,7 +237,7 @@ def test_a_destination_by_an_expression_that_fails_is_error_semantic() -> None:
     assert call.logs()[0].startswith("error.semantic")
 
 
-# 2.3.7.1 Blind; 2.1, 7 Consultation --------------------------------------------------------
+# 2.3.7.1 Blind; 2.1, 9 Consultation --------------------------------------------------------
 @pytest.mark.parametrize("more", ["", 'bridge="false"', 'type="blind"'])
 def test_a_blind_transfer_takes_the_caller_away(place: Path, more: str) -> None:
     made = run(place, transfer(more), '<transfer outcome="busy" after="2s"/>')

@@ -64,7 +64,7 @@ case(
 )
 case(
     "a subdialog's source may be computed",
-    "2.1, 8",
+    "2.3.4",
     """<form><subdialog name="s" srcexpr="'#' + 't'"/><block><log>back</log></block></form>
     <form id="t"><block><log>in</log><return/></block></form>""",
     logs=["in", "back"],
@@ -275,7 +275,7 @@ def test_disconnect_of_an_undeclared_variable_is_error_semantic() -> None:  # 2.
     assert call.ended.startswith("error.semantic")
 
 
-def test_a_consultation_transfer_takes_the_caller_away() -> None:  # 2.1, 7
+def test_a_consultation_transfer_takes_the_caller_away() -> None:  # 2.1, 9
     call = Call(
         """<form><transfer name="t" dest="tel:+1" type="consultation"/>
         <catch event="connection.disconnect.transfer"><log>gone</log><exit/></catch></form>"""

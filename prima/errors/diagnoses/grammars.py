@@ -51,7 +51,7 @@ FORMAT = Diagnosis(
         "The grammar's format is not read: JSGF, GSL or another. SRGS is read, as XML or "
         "ABNF. Or its media type names the other of these two forms, or neither."
     ),
-    rule="SRGS 1.0, 1.4",
+    rule="SRGS 1.0, Appendix G",
 )
 
 LANGUAGE = Diagnosis(

@@ -16,7 +16,7 @@ if > {CONTENT} elseif else | Content under a condition; elseif and else divide i
 elseif | Divides an if.
   cond*: expression | the condition
 else | Divides an if.
-foreach > {CONTENT} | Runs its content once for every element of an array. | VoiceXML 2.1, 8
+foreach > {CONTENT} | Runs its content once for every element of an array. | VoiceXML 2.1, 6
   item*: variable | the variable of the element
   array*: expression | the array
 log > value #text | Writes a line into the transcript. | VoiceXML 5.3.13
