@@ -50,6 +50,13 @@ def note_end(memory: Memory, record: Record) -> None:
             return
         if not (memory.is_given_up(ab) or ab.silent):
             memory.report(3, "U2", f"{ab.shown} ends before its goal, but its state goes on")
+    if record["outcome"] == "again":
+        memory.report(3, "U2", f"{ab.shown} is recorded as going on, but has no next loop")
+    _ended(memory, ab)
+
+
+def _ended(memory: Memory, ab: AB) -> None:
+    """An AB has ended, and its application hears of it."""
     hears_of(memory, ab)
     if not (ab.inserted or ab.command == "iu"):
         hears_surely(memory, ab)

@@ -54,6 +54,8 @@ def check_windows(memory: Memory) -> None:
 
 def note_stream_end(memory: Memory, record: Record) -> None:
     """C1: a stream ends without ABs; its end is recorded when it happens, and once."""
+    if record["tree"] in memory.told_ends:
+        memory.report(13, "C1", f"the end of {record['tree']} is recorded twice")
     memory.told_ends.add(record["tree"])
     tree = memory.trees.get(record["tree"])
     if tree is None:

@@ -239,6 +239,7 @@ FALSEHOODS = (
     Falsehood("resume", SUSPENDED, drop(0, phase="resume"), "13 (C2)"),
     Falsehood("end-untold", RIVALS, drop(0, phase="stream-end"), "13 (C1)"),
     Falsehood("end-told-twice", RIVALS, double({"time": 1}, phase="start"), "3 (U1)"),
+    Falsehood("stream-ends-twice", RIVALS, double({}, phase="stream-end"), "13 (C1)", "twice"),
     # The rules that are told, and what became of whom.
     *(
         Falsehood(f"alone-{rule}", BROKEN, told_as(rule), "13 (S2)")
@@ -326,6 +327,7 @@ FALSEHOODS = (
     Falsehood("heard-of", LEFT, heard_of, "15 (O3)"),
     Falsehood("elsewhere", LEFT, change(-1, FIRST, tree="fa:9", parent=None), "15 (O3)"),
     Falsehood("loops-on", LEFT_LOOPING, change(-1, {"phase": "end"}, outcome="again"), "3 (O3)"),
+    Falsehood("no-loops", RIVALS, change(0, {"phase": "end"}, outcome="again"), "3 (U2)", "no next loop"),
     Falsehood("stops-looping", LEFT_LOOPING, drop(0, phase="leave"), "3 (U2)"),
     Falsehood("listens-on", LEFT_ASKING, listens_on, "3 (O3)"),
     # Who starts.
