@@ -26,7 +26,7 @@ class Question:
     left: int = 0
     """When that time would have ended if nobody had spoken (ms)."""
     deaf: bool = False
-    """Whether its recogniser hangs."""
+    """Whether it can get no result: its recogniser is broken."""
     lost: bool = False
     """Whether another Command has taken over its recogniser (only without a mediator)."""
 
@@ -58,7 +58,7 @@ class Ear:
         """A question has been asked: its time for an answer begins, unless the user speaks.
 
         Returns:
-            Whether it listens: its recogniser does not hang.
+            Whether it listens: its recogniser is not broken.
         """
         question = self.questions[behavior]
         question.listens = not question.deaf
@@ -73,7 +73,7 @@ class Ear:
         self.questions.pop(behavior, None)
 
     def deafen(self, behavior: str) -> None:
-        """The recogniser hangs: a question gets no result any more."""
+        """The recogniser is broken: a question gets no result any more."""
         if question := self.questions.get(behavior):
             question.deaf, question.listens, question.until = True, False, None
 

@@ -165,16 +165,22 @@ class People:
         made: list[Inbound] = []
         while script.time <= now:
             if script.speaking:
-                report = {**self.robot.conductor.marks_passed(script.began), **script.report}
-                report |= self._by(script.who)
-                made.append(Heard(script.speaking, report, now - script.began))
-                script.speaking = ""
-                self.robot.ear.speech_ends()
+                made += self._said(script, now)
             if not script.left:
                 break
             doing = script.left.pop(0)
             made += self._do(doing, script, now)
         return made
+
+    def _said(self, script: TriggeredScript, now: int) -> list[Inbound]:
+        """What a user has said, as the recogniser reports it; a broken one hears nothing."""
+        text, script.speaking = script.speaking, ""
+        report = {**self.robot.conductor.marks_passed(script.began), **script.report}
+        self.robot.ear.speech_ends()
+        if self.robot.deaf:
+            self.robot.ear.listen_on(now)
+            return self._does(script.who, f'says "{text}", which the robot does not hear')
+        return [Heard(text, report | self._by(script.who), now - script.began)]
 
     def _by(self, who: str) -> dict[str, Json]:
         """Who has spoken or touched, if that is not clear."""

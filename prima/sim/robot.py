@@ -33,6 +33,8 @@ class Robot:
     def order(self, now: int, order: Order) -> None:
         """Carry out an order of the mediator."""
         self.conductor.order(now, order)
+        if order.devices & self.body.broken.keys():
+            self.ear.deafen(order.behavior)
         self._carry_out(now)
 
     def _carry_out(self, now: int) -> None:
@@ -83,11 +85,20 @@ class Robot:
         self._report(now, self.body.broke(device, hangs))
         if hangs:
             for task in self.conductor.tasks.values():
-                if device in task.order.devices:
+                question = self.ear.questions.get(task.id)
+                spoken = device == "speaker" and question is not None and question.listens
+                if device in task.order.devices and not spoken:
                     self.ear.deafen(task.id)
         reports = self.conductor.failures()
         self._carry_out(now)
         return reports
+
+    @property
+    def deaf(self) -> bool:
+        """Whether the recogniser is broken, or was as the current question needed it."""
+        question = self.ear.question
+        deafened = question is not None and question.deaf
+        return deafened or "speech-recognition" in self.body.broken
 
     def speech_begins(self, now: int) -> None:
         """The user begins to speak."""

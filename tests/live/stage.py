@@ -145,6 +145,15 @@ class Hearing:
     def speech_ends(self) -> None:
         """What was heard tells of it."""
 
+    @property
+    def deaf(self) -> bool:
+        question = self._conductor.ear.question
+        deafened = question is not None and question.deaf
+        return deafened or "speech-recognition" in self.body.broken
+
+    def listen_on(self, now: int) -> None:
+        self._driver.tell(Speaks(False))
+
     def recording(self) -> RecordingBounds | None:
         return self._conductor.ear.recording()
 

@@ -143,6 +143,32 @@ def test_a_device_that_hangs_is_given_up_120_seconds_after_what_it_may_take(tmp_
     assert "the speech-recognition hangs" in told(transcript)
 
 
+UNHEARD = 'says "yes", which the robot does not hear'
+
+
+@pytest.mark.parametrize("how", ["", 'hangs="true"'], ids=["fails", "hangs"])
+def test_a_recogniser_that_is_broken_hears_nothing(tmp_path: Path, how: str) -> None:
+    """Neither for a question nor for a link, whenever it was asked; a new question is answered."""
+    body = """<form id="a"><link event="linked"><grammar>yes</grammar></link>
+      <field name="q" type="boolean"><prompt/><noinput/><filled><log>yes</log><exit/></filled></field>
+      <on event="error.device"><goto next="#b"/></on></form>
+      <form id="b"><block><pause time="5s"/><goto next="#a"/></block></form>"""
+    script = f"""<when at="0s"><fail device="speech-recognition" {how}/></when>
+      <when at="0.1s"><say>yes</say><repair device="speech-recognition"/></when>
+      <when at="200s"><say>yes</say></when>"""
+    transcript = rehearse(tmp_path, body, script, until="600s")
+    heard = [r["time"] for r in transcript.records if r.get("event") == "speech"]
+    noted = [r["time"] for r in transcript.records if r["phase"] == "note" and r["text"] == UNHEARD]
+    assert (noted, heard) == ([0.631], [200.531])
+
+
+def test_a_question_that_listens_is_answered_though_the_speaker_hangs(tmp_path: Path) -> None:
+    body = """<form id="a"><field name="q" type="boolean"><prompt>Well?</prompt>
+      <filled><log expr="q"/><exit/></filled></field></form>"""
+    script = """<when at="2s"><fail device="speaker" hangs="true"/><say>yes</say></when>"""
+    assert "log: true" in told(rehearse(tmp_path, body, script))
+
+
 @pytest.mark.parametrize("fails, hangs", [("neck", "arm"), ("arm", "neck")])
 def test_a_device_that_fails_is_reported_beside_one_that_hangs(
     tmp_path: Path, fails: str, hangs: str
