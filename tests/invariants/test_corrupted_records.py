@@ -327,7 +327,9 @@ FALSEHOODS = (
     Falsehood("heard-of", LEFT, heard_of, "15 (O3)"),
     Falsehood("elsewhere", LEFT, change(-1, FIRST, tree="fa:9", parent=None), "15 (O3)"),
     Falsehood("loops-on", LEFT_LOOPING, change(-1, {"phase": "end"}, outcome="again"), "3 (O3)"),
-    Falsehood("no-loops", RIVALS, change(0, {"phase": "end"}, outcome="again"), "3 (U2)", "no next loop"),
+    Falsehood(
+        "no-loops", RIVALS, change(0, {"phase": "end"}, outcome="again"), "3 (U2)", "no next loop"
+    ),
     Falsehood("stops-looping", LEFT_LOOPING, drop(0, phase="leave"), "3 (U2)"),
     Falsehood("listens-on", LEFT_ASKING, listens_on, "3 (O3)"),
     # Who starts.
