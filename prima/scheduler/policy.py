@@ -180,6 +180,8 @@ def policy_named(text: str) -> Policy:
         return Fixed(name, first=first)
     if name not in POLICIES or colon:
         wrong, meant = f'There is no policy "{text}".', nearest_word(name, POLICIES)
+        if {base, *extensions} <= {"all", *EXTENSIONS}:
+            meant = f"prima+{text}"
         remedy = f'Did you mean "{meant}"?' if meant else f"Write {one_of(POLICIES)}."
         raise UnknownPolicy(wrong, meant, f"{remedy} fixed:APP prefers the application APP.")
     return POLICIES[name](name)

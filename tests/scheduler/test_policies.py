@@ -196,6 +196,8 @@ def test_fifo_holds_devices_back_for_whoever_came_first() -> None:
         ("zzz", 'There is no policy "zzz". Write fair, fifo, fixed, none or prima.', ""),
         ("fixed:", 'There is no policy "fixed:". Did you mean "fixed"?', "fixed"),
         ("fifo:ea", 'There is no policy "fifo:ea". Did you mean "fifo"?', "fifo"),
+        ("x3", 'There is no policy "x3". Did you mean "prima+x3"?', "prima+x3"),
+        ("x1+all", 'There is no policy "x1+all". Did you mean "prima+x1+all"?', "prima+x1+all"),
         ("fifo+x1", 'There is no policy "fifo+x1".', "fifo"),
         ("prima+x11", 'There is no extension "x11". Did you mean "x1"?', "x1"),
         ("prima+speed", 'There is no extension "speed". Write all, or one of x1 to x10.', ""),
