@@ -202,7 +202,7 @@ class ExplorationFolder:
         """The runs of an earlier exploration; an incomplete line is omitted."""
         with file.open(encoding="utf-8", errors="replace") as stream:
             if _read(stream.readline()) != self.exploration.key():
-                message = f"{self.path}: it is of another exploration, version or scenario"
+                message = f"{self.path}: it is of another exploration, version or document"
                 raise UsageError(f"{message}. Begin anew without --resume, or name another folder.")
             lines = (_read(line) for line in stream)
             return [made for line in lines if (made := _run(line, len(self.exploration.base)))]

@@ -191,7 +191,7 @@ def test_runs_of_something_else(content: str) -> None:
     Path("out/runs.jsonl").write_text(content)
     done = prima("explore", "visit.xml", "-o", "out", "--resume")
     assert done.returncode == 2
-    assert "it is of another exploration, version or scenario" in done.stderr
+    assert "it is of another exploration, version or document" in done.stderr
     assert Path("out/runs.jsonl").read_text() == content
 
 
