@@ -189,6 +189,9 @@ def test_fifo_holds_devices_back_for_whoever_came_first() -> None:
     assert (stage.holds("fa#1"), stage.holds("third#1")) == (["S1"], ["S3"])
 
 
+EVERY = "+".join(["all", *(f"x{number}" for number in range(1, 11))])
+
+
 @pytest.mark.parametrize(
     ("text", "message", "meant"),
     [
@@ -198,6 +201,7 @@ def test_fifo_holds_devices_back_for_whoever_came_first() -> None:
         ("fifo:ea", 'There is no policy "fifo:ea". Did you mean "fifo"?', "fifo"),
         ("x3", 'There is no policy "x3". Did you mean "prima+x3"?', "prima+x3"),
         ("x1+all", 'There is no policy "x1+all". Did you mean "prima+x1+all"?', "prima+x1+all"),
+        (EVERY, f'There is no policy "{EVERY}". Did you mean "prima+{EVERY}"?', f"prima+{EVERY}"),
         ("fifo+x1", 'There is no policy "fifo+x1".', "fifo"),
         ("prima+x11", 'There is no extension "x11". Did you mean "x1"?', "x1"),
         ("prima+speed", 'There is no extension "speed". Write all, or one of x1 to x10.', ""),
