@@ -82,6 +82,12 @@ class Ear:
         """The question that an answer would go to."""
         return next((one for one in self.questions.values() if not one.lost), None)
 
+    @property
+    def deaf(self) -> bool:
+        """Whether the question that an answer would go to can get none."""
+        question = self.question
+        return question is not None and question.deaf
+
     @staticmethod
     def _wait(now: int, question: Question) -> None:
         question.until = question.left = now + max(int(question.command.args["timeout"]), 1)

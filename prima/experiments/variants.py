@@ -121,7 +121,7 @@ class Stage:
         return self.scripts[scenario].targets
 
     def _read_named(self, loaded: Loaded) -> None:
-        """Read what documents of VoiceXML name, grammars, scripts and sounds as well, before a run."""
+        """Read the files that VoiceXML documents name before a run, so that all digests are known."""
         from prima.loading.voicedocuments import read_named
 
         for document in loaded.cast.documents:

@@ -138,9 +138,11 @@ def lone_bracket(code: str) -> tuple[str, int] | None:
     With its offset; None if there is none.
     """
     tree = parse_script(code)
+    if tree is None:
+        return None
     opened: list[tuple[str, int]] = []
-    for node in [] if tree is None else tree.walk():
-        if tree is None or node.is_missing or node.child_count:
+    for node in tree.walk():
+        if node.is_missing or node.child_count:
             continue
         if node.type in CLOSING:
             opened.append((node.type, tree.start(node)))

@@ -92,7 +92,7 @@ def _unseen(node: Node, attribute: str, name: str, commands: set[str]) -> Proble
 
 
 class _There:
-    """What an event's name may be of."""
+    """The names that events of a scenario may have."""
 
     def __init__(
         self,
@@ -110,7 +110,7 @@ class _There:
         self.endings = {*ENDINGS, *made, *(one for one in STANDARD if one.startswith("error"))}
 
     def check_ending(self, node: Node, name: str) -> Iterator[Problem]:
-        """The reason of an application's end, if none has it."""
+        """A reason with which no application ends."""
         other = self._other_name(name) if name.startswith(OPEN) else near(name, self.endings)
         begins = {start for one in self.endings for start in beginnings(one)}
         if name not in begins and (other or not name.startswith(ERRORS)):

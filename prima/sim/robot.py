@@ -96,9 +96,7 @@ class Robot:
     @property
     def deaf(self) -> bool:
         """Whether the recogniser is broken, or was as the current question needed it."""
-        question = self.ear.question
-        deafened = question is not None and question.deaf
-        return deafened or "speech-recognition" in self.body.broken
+        return self.ear.deaf or "speech-recognition" in self.body.broken
 
     def speech_begins(self, now: int) -> None:
         """The user begins to speak."""

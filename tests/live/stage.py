@@ -147,9 +147,7 @@ class Hearing:
 
     @property
     def deaf(self) -> bool:
-        question = self._conductor.ear.question
-        deafened = question is not None and question.deaf
-        return deafened or "speech-recognition" in self.body.broken
+        return self._conductor.ear.deaf or "speech-recognition" in self.body.broken
 
     def listen_on(self, now: int) -> None:
         self._driver.tell(Speaks(False))

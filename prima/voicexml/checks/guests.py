@@ -90,7 +90,7 @@ def _known(node: Node) -> set[str]:
 
 
 def _unknown(node: Node, known: set[str]) -> list[str]:
-    """The attributes of a Command's element that are none of its arguments."""
+    """The attributes of a Command's element that the Command does not have."""
     own = (one for one in node.attributes if not one.startswith(("xml:", "{")))
     return [one for one in own if one.removesuffix("-expr") not in known]
 
