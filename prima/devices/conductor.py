@@ -74,8 +74,6 @@ class Conductor:
         self._goals = OpenGoals(self._inbound)
         self._looped: dict[str, Task] = {}
         """Feedback Commands whose loop has ended at this instant: another may follow (U2)."""
-        self._searched = False
-        """Whether a search has ended since: the user may have been left to it."""
         self._now = self._collected = start
         """The latest report or order, and the latest call of :meth:`collect`."""
 
@@ -98,7 +96,7 @@ class Conductor:
             self._goals.calls.append(Stand())
         elif (task := self.tasks.get(order.behavior)) is not None:
             task.halting = order.verb == "interrupt"
-            self._searched |= searches([task])
+            self.sight.again |= searches([task])
             question = self.ear.questions.get(task.id)
             task.note_share(now, question.until if question else None)
             self._drop(task)
@@ -161,7 +159,7 @@ class Conductor:
     def end_loops(self) -> None:
         """F5: end the feedback Commands that were not ordered to go on."""
         looped, self._looped = self._looped, {}
-        self._searched |= searches(looped.values())
+        self.sight.again |= searches(looped.values())
         for task in looped.values():
             self._goals.cancel(self._now, task)
 
@@ -227,7 +225,7 @@ class Conductor:
         now, tasks = self._now, self.tasks.values()
         ends = [task.ends for task in tasks if task.ends and task.ends > self._collected]
         late = [goal.late(self._limits(goal.begin)) for goal in self._goals.open.values()]
-        due = earliest(self.sight.due(now, visible, self._searched), self.ear.due(), *ends, *late)
+        due = earliest(self.sight.due(now, visible), self.ear.due(), *ends, *late)
         if self._inbound or any(task.failed for task in tasks):
             due = earliest(due, now + 1)
         return due
@@ -242,7 +240,7 @@ class Conductor:
         """
         self._now = self._collected = now
         self.end_loops()
-        self._searched = False
+        self.sight.again = False
         self._give_up_late()
         reports = list(self._inbound)
         self._inbound.clear()

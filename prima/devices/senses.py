@@ -16,15 +16,15 @@ class Sight:
     def __init__(self) -> None:
         self._found = False
         self._unseen_since: int | None = None
+        self.again = False
+        """Whether to look once more though nothing moves: a Command that itself reports the user
+        has ended without them, or the camera works again."""
 
-    def due(self, now: int, visible: bool, searched: bool = False) -> int | None:
-        """When to look again even if nothing moves (ms), if ever.
-
-        ``searched``: whether a Command that itself reports the user has ended without them.
-        """
+    def due(self, now: int, visible: bool) -> int | None:
+        """When to look again even if nothing moves (ms), if ever."""
         if self._unseen_since is not None:
             return self._unseen_since + LOST_AFTER_MS
-        looks = searched and not self._found if visible else self._found
+        looks = self.again and not self._found if visible else self._found
         return now + 1 if looks else None
 
     def heeds(self, visible: bool) -> bool:

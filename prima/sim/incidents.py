@@ -46,7 +46,7 @@ def _break(robot: Robot, now: int, doing: Doing) -> list[Inbound]:
     """A device fails or hangs (E1), or works again."""
     device = doing.values["device"]
     if doing.name == "repair":
-        robot.body.broken.pop(device, None)
+        robot.repair(device)
         return [Narrated("environment", f"the {device} works again")]
     hangs = bool(doing.values["hangs"])
     note = Narrated("environment", f"the {device} {'hangs' if hangs else 'fails'}")

@@ -19,7 +19,7 @@ class OwnSensors:
         """Sensors that are in use, by the first part of their names; None for all of them."""
         self._world = world
         self._around: tuple[object, ...] = ()
-        """The positions of robot and person at the last measurement, and the robot's motion."""
+        """Robot, camera and person at the last measurement, and the robot's motion."""
 
     def measure(self) -> dict[str, Json]:
         """The sensor values, if anything around the robot has changed.
@@ -30,7 +30,8 @@ class OwnSensors:
         world = self._world
         if "human" in looked_at:
             world.sees_person()  # it may attend to another now
-        around = (world.position, world.heading, world.pan, world.person, world.drive)
+        camera = (world.heading, world.pan, world.blind)
+        around = (world.position, *camera, world.person, world.drive)
         if around == self._around or looked_at.isdisjoint(ITS_OWN):
             return {}
         self._around = around

@@ -83,6 +83,7 @@ class Robot:
     def broke(self, now: int, device: str, hangs: bool) -> list[Inbound]:
         """A device fails, with what runs on it (E1); or it hangs and no longer reports."""
         self._report(now, self.body.broke(device, hangs))
+        self._open_eyes()
         if hangs:
             for task in self.conductor.tasks.values():
                 question = self.ear.questions.get(task.id)
@@ -92,6 +93,16 @@ class Robot:
         reports = self.conductor.failures()
         self._carry_out(now)
         return reports
+
+    def repair(self, device: str) -> None:
+        """A device works again."""
+        self.body.broken.pop(device, None)
+        self._open_eyes()
+
+    def _open_eyes(self) -> None:
+        """See people only if that device works."""
+        self.world.blind = "human-detection" in self.body.broken
+        self.conductor.sight.again = True
 
     @property
     def deaf(self) -> bool:

@@ -72,6 +72,8 @@ class World:
         """How far it will have travelled when it may be out of there."""
         self._visible: bool | None = None
         """The camera's view from here, as computed; None if anybody has moved since."""
+        self.blind = False
+        """Whether its camera recognises nobody: the device ``human-detection`` is broken."""
         self.position = at
         """Where the robot is (m)."""
         self.turn_body(radians(heading))
@@ -194,8 +196,10 @@ class World:
         """Whether the person attended to is in the camera's view, close enough and not hidden.
 
         If it attends to nobody, it begins to attend to the nearest person it sees. Visibility is
-        recomputed only if somebody has moved or turned.
+        recomputed only if somebody has moved or turned. A blind robot sees nobody.
         """
+        if self.blind:
+            return False
         if self._visible is None:
             if self._user is None and len(self.people) > 1:
                 self.find_somebody()

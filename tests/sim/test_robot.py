@@ -162,6 +162,27 @@ def test_a_recogniser_that_is_broken_hears_nothing(tmp_path: Path, how: str) -> 
     assert (noted, heard) == ([0.631], [200.531])
 
 
+@pytest.mark.parametrize("how", ["", 'hangs="true"'], ids=["fails", "hangs"])
+def test_a_camera_that_is_broken_sees_nobody(tmp_path: Path, how: str) -> None:
+    """The user is lost after the usual second, and found once it works again, though nothing moves."""
+    body = """<form id="a"><watch name="seen" when="sensor.human.visible"/>
+      <watch name="unseen" when="!sensor.human.visible"/>
+      <on event="human"><log expr="event.name"/></on>
+      <on event="seen"><log>in view</log></on><on event="unseen"><log>out of view</log></on></form>"""
+    script = f"""<person x="1" y="0"/><when at="2s"><fail device="human-detection" {how}/></when>
+      <when at="5s"><repair device="human-detection"/></when>"""
+    transcript = rehearse(tmp_path, body, script, until="9s")
+    logs = [(r["time"], r["message"]) for r in transcript.records if r["phase"] == "log"]
+    assert logs == [
+        (0.0, "human.found"),
+        (0.0, "in view"),
+        (2.0, "out of view"),
+        (3.001, "human.lost"),
+        (5.0, "in view"),
+        (5.001, "human.found"),
+    ]
+
+
 def test_a_question_that_listens_is_answered_though_the_speaker_hangs(tmp_path: Path) -> None:
     body = """<form id="a"><field name="q" type="boolean"><prompt>Well?</prompt>
       <filled><log expr="q"/><exit/></filled></field></form>"""
