@@ -174,6 +174,8 @@ def _words(words: list[str], part: str) -> str | None:
         words = words[1:]
         part = part or ("h" if words[-1] == "hundred" else "")
     hour, rest = _hour(words)
+    if len(digits(" ".join(rest)) or "") == 1:  # "twenty four" is an hour that no day has
+        return None
     minutes = _minutes(rest) if rest else 0
     return None if hour is None or minutes is None else _clock(hour, minutes, part)
 
