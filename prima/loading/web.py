@@ -26,7 +26,7 @@ from http.client import (
 )
 from typing import IO, NoReturn
 from urllib.error import HTTPError, URLError
-from urllib.parse import quote, urldefrag, urlencode, urljoin, urlsplit
+from urllib.parse import quote, urlencode, urljoin, urlsplit
 from urllib.request import (
     HTTPDefaultErrorHandler,
     HTTPErrorProcessor,
@@ -326,7 +326,9 @@ def _refuse(message: str) -> NoReturn:
 
 def form_request(uri: str, method: str, values: Data) -> Request:
     """A request that sends values as a form does."""
-    uri = urldefrag(uri).url  # it would take the values along, and is never sent
+    parts = urlsplit(uri)  # a fragment would take the values along, and is never sent
+    path, query = (quote(one, string.punctuation) for one in (parts.path, parts.query))
+    uri = parts._replace(path=path, query=query, fragment="").geturl()
     encoded = urlencode({name: _text(value) for name, value in values.items()})
     if method == "post":
         return Request(uri, encoded.encode(), HEADERS, method="POST")

@@ -395,3 +395,26 @@ def test_a_form_is_sent_on_only_where_its_method_stays(
     assert made.rows()[-1].what == "ends app0: exit"
     assert Host.told == ["n=7"] * (2 if sent else 1)
     assert Host.asked == ([] if sent else ["/form"])
+
+
+@pytest.mark.parametrize(
+    ("written", "asked"),
+    [
+        ("/say?text=hello world", "/say?text=hello%20world"),
+        ("/caf\u00e9?q=\u00fc&amp;r=%20", "/caf%C3%A9?q=%C3%BC&r=%20"),
+        ("/a b/c;d=1?e[]=|1|#f g", "/a%20b/c;d=1?e[]=|1|"),
+    ],
+)
+def test_spaces_and_foreign_letters_of_a_uri_are_escaped(
+    written: str, asked: str, tmp_path: Path, host: str
+) -> None:
+    Host.pages = {asked: vxml('<form id="f g"><block><exit/></block></form>')}
+    made = played(tmp_path, host, block(f'<goto next="http://{host}{written}"/>'))
+    assert Host.asked == [asked]
+    assert made.rows()[-1].what == "ends app0: exit"
+
+
+def test_a_request_with_values_escapes_its_uri_as_well(tmp_path: Path, host: str) -> None:
+    where = f'<submit next="http://{host}/a?b=c d" namelist="n"/>'
+    played(tmp_path, host, f'<var name="n" expr="\'e f\'"/>{block(where)}')
+    assert Host.asked == ["/a?b=c%20d&n=e+f"]
