@@ -101,6 +101,8 @@ class Hosts:
         host = host_of(uri)
         if urlsplit(uri).scheme not in ("http", "https"):
             _refuse(f"{uri} is not an http or https URI")
+        if "@" in urlsplit(uri).netloc:
+            _refuse("the URI names a user: leave out what is before the @")
         if not {host, host.partition(":")[0]} & self._allowed:
             _refuse(not_allowed(uri))
 

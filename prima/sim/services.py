@@ -191,7 +191,10 @@ def _xml(data: Data) -> bytes:
 
 def not_allowed(uri: str) -> str:
     """Why a host is not asked, and the remedy."""
-    return f'the run does not allow the host: add "--allow-host {host_of(uri)}"'
+    host = host_of(uri)
+    if not host:
+        return "the URI names no host: write http://HOST or http://HOST:PORT before its path"
+    return f'the run does not allow the host: add "--allow-host {host}"'
 
 
 def host_of(uri: str) -> str:

@@ -418,3 +418,20 @@ def test_a_request_with_values_escapes_its_uri_as_well(tmp_path: Path, host: str
     where = f'<submit next="http://{host}/a?b=c d" namelist="n"/>'
     played(tmp_path, host, f'<var name="n" expr="\'e f\'"/>{block(where)}')
     assert Host.asked == ["/a?b=c%20d&n=e+f"]
+
+
+@pytest.mark.parametrize(
+    ("uri", "why"),
+    [
+        ("http://{}99999/a", "the URI names no host"),
+        ("http://[::1/a", "the URI names no host"),
+        ("http:///a", "the URI names no host"),
+        ("http://me:secret@{}/a", "the URI names a user: leave out what is before the @"),
+    ],
+)
+def test_a_uri_that_cannot_be_asked_says_why(uri: str, why: str, tmp_path: Path, host: str) -> None:
+    made = played(
+        tmp_path, host, f'{BAD}<form><block><goto next="{uri.format(host)}"/></block></form>'
+    )
+    assert why in made.dumps() and "--allow-host" not in made.dumps()
+    assert logs(made) == ["error.badfetch"]
