@@ -9,6 +9,11 @@ from prima.errors.diagnoses.values import BAD_VALUE
 NO_FILE_HERE = NO_SUCH_FILE.says(
     'There is no file "{file}" here: this will be error.badfetch.', severity="warning"
 )
+NOT_FETCHED = NO_SUCH_FILE.says(
+    '"{scheme}:" is not fetched: this will be error.badfetch.',
+    "Write http:, https: or service:, or the name of a file in the folder.",
+    "warning",
+)
 TOO_LARGE_HERE = NO_SUCH_FILE.says(
     '"{file}" has {size} bytes; at most {most} are read: this will be error.badfetch.',
     "Divide it, or raise the limit: --limit bytes={size}.",

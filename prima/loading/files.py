@@ -288,6 +288,8 @@ class Folder:
         from prima.voicexml.document import FetchError
 
         parts = urlsplit(uri)
+        if parts.scheme not in ("", "http", "https"):
+            raise FetchError(f"{parts.scheme}: is not fetched: only http:, https: and service: are")
         if parts.scheme or parts.netloc:
             raise FetchError(f"{parts.scheme or parts.netloc}: is not fetched: no network is used")
         root = absolute(self.path)

@@ -19,6 +19,7 @@ from prima.errors import (
 from prima.loading.applications import fetcher, in_folder
 from prima.loading.diagnoses import (
     NO_FILE_HERE,
+    NOT_FETCHED,
     OUTSIDE,
     TOO_LARGE_HERE,
 )
@@ -100,6 +101,7 @@ def voicexml_problems(
         missing: set[Node] = set()
         yield from (*page.problems, *page.warnings())
         yield from _not_there(page, pages.nodes(page), folder, answered, missing)
+        yield from _not_fetched(page)
         yield from _grammars_of(page, folder, missing, answered)
         yield from check_caught(page.root, pages.thrown)
         yield from check_listening(page, root := pages.root(page))
@@ -201,6 +203,24 @@ def _files_named(
             file = unquote(whole.partition("#")[0].partition("?")[0]).lstrip("/")
             if file and not _is_elsewhere(whole, page, answered):
                 yield node, name, file
+
+
+ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9.-]*:[0-9]{1,5}(?:/.*)?")
+"""A host with a port, as it is written where its scheme is missing."""
+
+
+def _not_fetched(page: Page) -> Iterator[Problem]:
+    """Warn of URIs whose scheme neither hosts nor services answer."""
+    from prima.voicexml.document import REMOTE
+
+    for node in page.root.walk():
+        for name, tags in NAMING_FILES.items():
+            uri = node.get(name).strip()
+            scheme = uri.partition(":")[0]
+            known = scheme.lower() in REMOTE or (node.tag, scheme) == ("grammar", "builtin")
+            if node.tag in tags and not known and SCHEME.match(uri) and uri[0] != "/":
+                hint = Hint(f'Write "http://{uri}".') if ADDRESS.fullmatch(uri) else Hint()
+                yield NOT_FETCHED.at(node.attribute_place(name), hint, scheme=scheme[:40])
 
 
 def _grammars_of(

@@ -385,3 +385,46 @@ def test_what_a_grammar_lacks_beyond_its_element_is_told(
     )
     found = told(tmp_path, f'<form><field name="a"><prompt>Hm?</prompt>{grammar}</field></form>')
     assert [one.startswith(f"main.vxml {says}") for one in found] == [True] * bool(says), found
+
+
+@pytest.mark.parametrize(
+    ("uri", "says"),
+    [
+        (
+            "localhost:8080/a/b?c=1",
+            '"localhost:" is not fetched: this will be error.badfetch. '
+            'Write "http://localhost:8080/a/b?c=1".',
+        ),
+        (
+            "ftp://x.example/a",
+            '"ftp:" is not fetched: this will be error.badfetch. '
+            "Write http:, https: or service:, or the name of a file in the folder.",
+        ),
+        ("file:///a.vxml", '"file:" is not fetched'),
+        ("HTTP://x.example/a", ""),
+        ("service:a", ""),
+        ("//x.example/a", ""),
+    ],
+)
+@pytest.mark.parametrize(
+    "body",
+    [
+        '<form><block><goto next="{}"/></block></form>',
+        '<form><block><submit next="{}"/></block></form>',
+        '<form><block><data src="{}"/></block></form>',
+        '<form><subdialog src="{}"/></form>',
+    ],
+)
+def test_a_uri_that_nothing_fetches_is_told(
+    tmp_path: Path, body: str, uri: str, says: str
+) -> None:  # 6.1
+    found = told(tmp_path, body.format(uri))
+    assert len(found) == bool(says) and says in "".join(found)
+    done = prima("run", "--ea", tmp_path / "main.vxml")
+    assert done.returncode == 3
+    assert ("only http:, https: and service: are" in done.stderr) == bool(says)
+
+
+def test_a_built_in_grammar_is_fetched_from_nowhere(tmp_path: Path) -> None:
+    grammar = '<grammar src="builtin:grammar/boolean"/>'
+    assert told(tmp_path, f'<form><field name="f">{grammar}</field></form>') == []
