@@ -21,6 +21,8 @@ SISR = frozenset(["out", "rules", "meta"])
 """Variables of every tag of a rule (SISR 1.0)."""
 LABELLED = re.compile(r"""\s*\{?\s*(?:[\w$]+|"[^"\n]*"|'[^'\n]*')\s*:""")
 """The beginning of an object's properties."""
+OLDER = "In SISR 1.0, as in the other tags, $$ is rules.latest() and $ is out."
+"""The remedy for a name of SISR's drafts, in a grammar whose other tags are of SISR 1.0."""
 LOST = "answers that need it do not match"
 
 
@@ -82,7 +84,7 @@ def _names(tag: Tag, code: str, known: set[str]) -> Iterator[Problem]:
     names = script_names(code)
     for name in sorted({*names.free, *(VARIABLES & names.read.keys())} - known):
         message = f'The tag uses "{name}", which nothing in the grammar declares: {LOST}.'
-        remedy = did_you_mean(name, known | GLOBALS - VARIABLES)
+        remedy = OLDER if name in ("$", "$$") else did_you_mean(name, known | GLOBALS - VARIABLES)
         remedy = remedy or f"For the text itself write '{name}' in quotes."
         yield Problem(tag.where(), "warning", "undeclared-variable", message, remedy)
 

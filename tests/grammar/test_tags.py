@@ -99,3 +99,11 @@ def test_an_object_that_is_not_assigned_is_told(tag: str, remedy: str | None) ->
 
 def test_tags_older_than_sisr_are_read_as_they_were_meant() -> None:
     assert not load(f"{ABNF}$r = a {{title:'x'}};").warnings()
+
+
+def test_an_older_name_among_tags_of_sisr_is_told_with_what_it_is_there() -> None:
+    (warning,) = load(f"{ABNF}$r = $s {{out.x = $$}}; $s = a;").warnings()
+    assert (warning.code, warning.remedy) == (
+        "undeclared-variable",
+        "In SISR 1.0, as in the other tags, $$ is rules.latest() and $ is out.",
+    )
