@@ -66,6 +66,8 @@ COURTESY = re.compile(
 )
 """Words of courtesy before or after a value."""
 LENGTHS = ("length", "minlength", "maxlength")
+PARAMETERS = {"digits": LENGTHS, "boolean": ("y", "n")}
+"""The parameters of the types that have any."""
 _URI = re.compile(r"(?:builtin:(?:(?:grammar|voice|dtmf)/)?)?([\w-]+)(?:\?(.*))?", re.DOTALL)
 _EXTENSION = re.compile(r" ?(?:\bextension\b|\bext\b|(?:\b|(?<=\d))x(?=\d|\b)|内線) ?")
 _JOINED = re.compile(r"(?<=\d)[.,:](?=\d)")
@@ -123,11 +125,11 @@ def _parameters(name: str, text: str) -> dict[str, str]:
     for piece in filter(None, re.split("[;&]", text)):
         key, _, value = unquote(piece).partition("=")
         given[key.strip()] = value.strip()
-    known = {"digits": LENGTHS, "boolean": ("y", "n")}.get(name, ())
+    known = PARAMETERS.get(name, ())
     for key, value in given.items():
         if key not in known:
             message = f'The built-in type {name} has no parameter "{key[:40]}".'
-            raise WrongParameter(message, suggestion(key, known).text)
+            raise WrongParameter(message, suggestion(key, known).text or _without(name, key, value))
         if name == "digits" and re.fullmatch("[0-9]{1,4}", value) is None:
             message = f'{key} is a number of digits, not "{value[:40]}".'
             raise WrongParameter(message, f"Write a whole number up to 9999, such as {key}=4.")
@@ -139,6 +141,15 @@ def _parameters(name: str, text: str) -> dict[str, str]:
     elif name == "boolean" and given.get("y", "1") == given.get("n", "2"):
         raise Conflict("y and n are one key.")
     return given
+
+
+def _without(name: str, key: str, value: str) -> str:
+    """The remedy for a parameter of a type that has none; nothing for other types."""
+    if name in PARAMETERS:
+        return ""
+    if key in LENGTHS:
+        return f'Only digits has it: write "digits?{key}={value[:40]}".'
+    return "Remove it: only boolean and digits have parameters."
 
 
 def _check_lengths(given: dict[str, str]) -> None:
