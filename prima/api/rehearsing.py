@@ -162,7 +162,7 @@ def fetcher(given: str | Iterable[str], applications: int) -> Web | None:
     from prima.loading.web import Hosts
 
     for host in hosts:
-        if not re.fullmatch(r"[A-Za-z0-9._-]+(:[0-9]{1,5})?", host):
+        if not re.fullmatch(r"([\w.-]+|\[[0-9A-Fa-f:.]+\])(:[0-9]{1,5})?", host):
             raise UsageError(
                 f'"{host}" is not a host name: write a name and a port, such as example.org:8080.'
             )

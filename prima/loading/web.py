@@ -7,6 +7,7 @@ the other. Simulated time never waits.
 
 from __future__ import annotations
 
+import re
 import socket
 import string
 import threading
@@ -103,7 +104,7 @@ class Hosts:
             _refuse(f"{uri} is not an http or https URI")
         if "@" in urlsplit(uri).netloc:
             _refuse("the URI names a user: leave out what is before the @")
-        if not {host, host.partition(":")[0]} & self._allowed:
+        if not {host, re.sub(r":[0-9]+$", "", host)} & self._allowed:
             _refuse(not_allowed(uri))
 
     def left(self, app: str) -> int:

@@ -200,7 +200,9 @@ def not_allowed(uri: str) -> str:
 def host_of(uri: str) -> str:
     """The host that a URI names, with its port if it names one, in lower case."""
     parts = urlsplit(uri)
+    name = parts.hostname or ""
+    name = f"[{name}]" if ":" in name else name
     try:
-        return f"{parts.hostname or ''}:{parts.port}" if parts.port else parts.hostname or ""
+        return f"{name}:{parts.port}" if parts.port else name
     except ValueError:
         return ""

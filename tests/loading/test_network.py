@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import re
 import threading
 import time
 from collections.abc import Iterator
@@ -435,3 +436,18 @@ def test_a_uri_that_cannot_be_asked_says_why(uri: str, why: str, tmp_path: Path,
     )
     assert why in made.dumps() and "--allow-host" not in made.dumps()
     assert logs(made) == ["error.badfetch"]
+
+
+@pytest.mark.parametrize("name", ["[::1]", "127.0.0.1", "LOCALHOST"])
+def test_a_run_takes_the_host_that_its_remedy_names(name: str, tmp_path: Path) -> None:
+    body = block(f'<goto next="http://{name}:1/a"/>')
+    refused = played(tmp_path, "other.example", body).dumps()
+    (named,) = set(re.findall(r'--allow-host ([^\\"]+)', refused))
+    assert named == f"{name.lower()}:1"
+    for allowed in (named, name):
+        made = played(tmp_path, allowed, body)
+        assert "--allow-host" not in made.dumps() and logs(made) == ["error.badfetch"]
+
+
+def test_a_host_may_have_foreign_letters(tmp_path: Path) -> None:
+    assert logs(played(tmp_path, "m\u00fcller.example", block("<log>on</log>"))) == ["on"]
