@@ -18,6 +18,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from http.client import (
+    BadStatusLine,
     HTTPConnection,
     HTTPException,
     HTTPMessage,
@@ -58,6 +59,7 @@ MOST_SECONDS = 120.0
 HEADERS = {"User-Agent": "PRIMA"}
 MOVED = frozenset([301, 302, 303, 307, 308])
 """Statuses of redirections."""
+BROKEN = {IncompleteRead: "the answer breaks off", BadStatusLine: "the answer is not HTTP"}
 
 
 class Hosts:
@@ -179,7 +181,7 @@ class _Fetching:
         except TimeoutError:
             pass
         except (OSError, HTTPException, ValueError) as error:
-            why = "the answer breaks off" if isinstance(error, IncompleteRead) else error
+            why = BROKEN.get(type(error), error)
             self.found = Fetched("", 0, self.uri, problem=f"it cannot be fetched: {why}")
         finally:
             end_connections(self.held)

@@ -74,6 +74,10 @@ class Host(BaseHTTPRequestHandler):
         self.send_header("Location", where)
         self.end_headers()
 
+    def be_noise(self) -> None:
+        self.wfile.write(b"220 ready\r\n\r\n")
+        self.close_connection = True
+
     def be_file(self) -> None:
         self._move("file:///secret.xml")
 
@@ -376,6 +380,7 @@ def test_so_is_the_time_that_a_run_waits(
         ("/file", "file:///secret.xml is not an http or https URI"),
         ("/large", "it is larger than 2 MB"),
         ("/bomb", "the host sends it compressed, as gzip"),
+        ("/noise", "it cannot be fetched: the answer is not HTTP"),
     ],
 )
 def test_an_answer_without_end_is_badfetch(path: str, why: str, tmp_path: Path, host: str) -> None:
