@@ -41,6 +41,7 @@ from urllib.request import (
     UnknownHandler,
 )
 
+from prima.markup.encodings import recoded
 from prima.markup.limits import LIMITS
 from prima.messages import Data, Fetched, Json
 from prima.script.ecmascript import inward, stringify
@@ -200,7 +201,7 @@ class _Fetching:
             _refuse(f"it is larger than {LIMITS.bytes / 1_000_000:g} MB")
         if len(data) > most:
             _refuse(_used_up(f"{MOST_BYTES // self.hosts.sharing:,} bytes"))
-        return data
+        return recoded(data, response.headers)
 
 
 def follow(

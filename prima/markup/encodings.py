@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import codecs
 import re
+from typing import TYPE_CHECKING
 
 from prima.errors import DocumentError, Place, Problem, Span, replaced
 from prima.errors.diagnoses.reading import ENCODING as DECLARED_WRONGLY
 from prima.markup.limits import LIMITS, too_large
+
+if TYPE_CHECKING:
+    from email.message import Message
 
 ENCODINGS = frozenset(
     ["utf-8", "ascii", "utf-16", "utf-16-le", "utf-16-be", "koi8-r", "koi8-u"]
@@ -57,6 +61,25 @@ def decode(file: str, data: bytes) -> str:
             byte_place(file, encoding, error), "encoding", message, remedy
         ) from None
     return with_line_feeds(text)
+
+
+def recoded(data: bytes, headers: Message) -> bytes:
+    """The bytes of an answer, which an XML document begins with a mark if its headers decide.
+
+    They do if they name an encoding, unless the document has a mark (RFC 7303, 3.2). A document
+    that is not in that encoding stays as it is.
+    """
+    codec = _codec(headers.get_content_charset(""))
+    marked = any(data.startswith(mark) for mark, _ in MARKS)
+    declaration = ENCODING.match(data)
+    declared = _codec(declaration[1].decode()) if declaration else "utf-8"
+    is_xml = headers.get_content_type().endswith("xml")
+    if marked or not is_xml or codec not in ENCODINGS or codec == declared:
+        return data
+    try:
+        return codecs.BOM_UTF8 + data.decode(codec).encode()
+    except UnicodeDecodeError:
+        return data
 
 
 def _encoding(file: str, data: bytes) -> str:

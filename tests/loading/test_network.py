@@ -106,6 +106,10 @@ class Host(BaseHTTPRequestHandler):
         except OSError:
             pass
 
+    def be_spoken(self) -> None:
+        page = self.pages["/spoken"]
+        self._send(page, Content_Type="application/voicexml+xml; charset=ISO-8859-1")
+
     def be_large(self) -> None:
         try:
             self._send(b" " * 40_000_000)
@@ -418,6 +422,18 @@ def test_spaces_and_foreign_letters_of_a_uri_are_escaped(
     made = played(tmp_path, host, block(f'<goto next="http://{host}{written}"/>'))
     assert Host.asked == [asked]
     assert made.rows()[-1].what == "ends app0: exit"
+
+
+@pytest.mark.parametrize("declared", ["", '<?xml version="1.0" encoding="UTF-8"?>'])
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-8-sig"])
+def test_a_header_says_how_a_document_is_encoded(
+    declared: str, encoding: str, tmp_path: Path, host: str
+) -> None:
+    """Before its XML declaration, and after its byte order mark (RFC 7303, 3.2)."""
+    body = vxml("<form><block><log>caf\u00e9</log></block></form>")
+    Host.pages = {"/spoken": (declared + body).encode(encoding)}
+    made = played(tmp_path, host, block(f'<goto next="http://{host}/spoken"/>'))
+    assert [one["message"] for one in made.records if one["phase"] == "log"] == ["caf\u00e9"]
 
 
 def test_a_request_with_values_escapes_its_uri_as_well(tmp_path: Path, host: str) -> None:
