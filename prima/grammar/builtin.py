@@ -11,7 +11,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Literal
 from urllib.parse import unquote
 
-from prima.errors import suggestion
+from prima.errors import one_of, suggestion
 from prima.grammar import dates
 from prima.grammar.assent import assent
 from prima.grammar.model import BuiltIn
@@ -144,9 +144,9 @@ def _parameters(name: str, text: str) -> dict[str, str]:
 
 
 def _without(name: str, key: str, value: str) -> str:
-    """The remedy for a parameter of a type that has none; nothing for other types."""
+    """The remedy for a parameter that a type does not have."""
     if name in PARAMETERS:
-        return ""
+        return f"Write {one_of(PARAMETERS[name])}."
     if key in LENGTHS:
         return f'Only digits has it: write "digits?{key}={value[:40]}".'
     return "Remove it: only boolean and digits have parameters."

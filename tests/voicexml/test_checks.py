@@ -86,7 +86,10 @@ def test_a_variable_that_is_tested_may_be_missing(tmp_path: Path, code: str) -> 
     [
         ("grammar/bolean", 'built-in type "builtin:grammar/bolean". Did you mean "boolean"?'),
         ("dtmf/digits?minlength=3;maxlength=2", "minlength is more than maxlength."),
-        ("grammar/digits?size=3", 'digits has no parameter "size". Write boolean, '),
+        (
+            "grammar/digits?size=3",
+            'digits has no parameter "size". Write length, maxlength or minlength',
+        ),
         (
             "dtmf/number?length=5",
             'no parameter "length". Only digits has it: write "digits?length=5".',
