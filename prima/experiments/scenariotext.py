@@ -122,7 +122,7 @@ class ScenarioText:
         }
         if robot:
             files[self.root.index, "robot"] = str(robot.absolute())
-        edits = [one.edit(value) for one, value in changed if one.kind != "path"]
+        edits = [one.edit(value) for one, value in changed if one.kind != "path" or not value]
         edits += self._seeded(variant)
         if variant.policy:
             edits.append(set_attribute(self.root, "policy", variant.policy))

@@ -22,6 +22,7 @@ from tests.helpers.here import prima
 from tests.helpers.sweeps import VISIT, write_visit
 
 TOUCH = {"touch": "0s..6s/2s"}
+MUTE = """<user xmlns="urn:prima:user:1" version="1.0" id="mute"><answers chance="0"/></user>"""
 
 
 @pytest.fixture(autouse=True)
@@ -156,6 +157,17 @@ def test_a_transcript_and_a_scenario_for_each_order() -> None:
         again = prima("run", transcript.with_suffix(".xml"), "-o", "-").stdout
         assert again == transcript.read_text()
         assert signature(rehearse(transcript.with_suffix(".xml")).rows()) == row["order"]
+
+
+def test_a_scenario_is_saved_without_the_user_that_its_run_lacks(visit: Path) -> None:
+    Path("mute.xml").write_text(MUTE)
+    user = VISIT.replace('speed="1"/>', 'speed="1" user="mute.xml"/>')
+    visit.joinpath("visit.xml").write_text(user)
+    rows = list(written("t.csv", vary={"person.user": "mute.xml|"}).read())
+    kept = [Path(str(one["transcript"])).with_suffix(".xml") for one in rows]
+    assert ['user="' in one.read_text() for one in kept] == [True, False]
+    for row, path in zip(rows, kept, strict=True):
+        assert signature(rehearse(path).rows()) == row["order"]
 
 
 def test_a_sweep_made_anew_keeps_no_transcript_of_the_one_before() -> None:
