@@ -213,14 +213,18 @@ class Reading:
         from prima.sim.user import read_user
 
         wrong: set[str] = set()
+        told: set[str] = set()
         for person in scenario.persons:
             if person.user and person.user not in wrong and person.node is not None:
                 made_of = partial(read_user, person=person.name)
                 user = self.read(person.user, person.node, "user", made_of)
                 if user is None:
                     wrong.add(person.user)  # reported once
-                else:
-                    scenario.take(person.name, user)
+                    continue
+                scenario.take(person.name, user)
+                if person.user not in told:
+                    told.add(person.user)
+                    self.problems += user.warnings
 
     def replies(self, scenario: Scenario) -> None:
         """The answers of services to fetches."""

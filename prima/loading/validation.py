@@ -135,7 +135,7 @@ def _problems_by_namespace(path: str, data: bytes) -> list[Problem]:
         case SERVICES.namespace:
             services_of(path, data)
         case USER.namespace:
-            read_user(path, data)
+            return read_user(path, data).warnings
         case _:
             return load_whole(Path(path), data, whole=True).problems
     return []

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from prima.devices.reading import Reader
+from prima.errors import Problem
 from prima.markup.tree import Node
 from prima.sim.chance import Amount, Chance, Draws
 from prima.sim.happenings import When, read_answer, read_when
@@ -25,6 +26,8 @@ class User:
     """Their actions and answers, whatever the scenario says."""
     draws: Draws
     node: Node
+    warnings: list[Problem] = field(default_factory=list)
+    """The warnings about the document."""
 
     def answer(self, when: When, name: str) -> None:
         """Adapt an answer of the scenario, with its name, to how this user answers."""
@@ -45,6 +48,9 @@ def read_user(file: str, data: bytes, person: str = "") -> User:
     reader = Reader(USER, file, data)
     root = reader.root
     draws = Draws(reader, f"{person}:user")  # no id has a colon
+    seen: set[str] = set()
+    for node in root.all("when", "answer"):
+        reader.once(node, seen, "The id ")
     manner = reader.only("answers")
     user = User(
         speed=draws.amount(root, "speed", 1.0),
@@ -58,4 +64,5 @@ def read_user(file: str, data: bytes, person: str = "") -> User:
     for when in user.whens:
         when.person = person
     reader.finish()
+    user.warnings = reader.problems
     return user

@@ -104,6 +104,9 @@ WRONG = {
     '>\n<when at="1s" person="ann"><leave/></when>': (2, '<when> has no attribute "person".'),
     ">\n<when><leave/></when>": (2, "<when> needs exactly one of"),
     ">Hello": (1, '<user> holds text: "Hello".'),
+    """>
+    <answer id="a" to="x">Yes.</answer>
+    <when id="a" at="1s"><leave/></when>""": (3, 'The id "a" is there twice.'),
 }
 
 
@@ -115,6 +118,22 @@ def test_mistakes_in_users_have_a_place(tmp_path: Path, user: str) -> None:
     line, message = WRONG[user]
     assert [(one.place.line, Path(one.place.file).name) for one in errors] == [(line, "kind.xml")]
     assert errors[0].message.startswith(message)
+
+
+def test_warnings_about_users_are_told(tmp_path: Path) -> None:
+    user = '><when at="1s"><say/></when><answer to="Shall I"/>'
+    visit(tmp_path, user, '<answer to="Shall I">Yes.</answer>')
+    for name in ("kind.xml", "scenario.xml"):
+        made = prima("validate", "--format", "short", str(tmp_path / name))
+        assert made.stdout.count("holds no words: the user stays silent.") == 2
+
+
+def test_warnings_about_a_user_of_two_persons_are_told_once(tmp_path: Path) -> None:
+    (tmp_path / "kind.xml").write_text(f'{HEAD}><when at="1s"><say/></when></user>')
+    ann, ben = (f'<person id="{one}" x="1" y="0" user="kind.xml"/>' for one in ("ann", "ben"))
+    rehearse(tmp_path, ASKS, ann + ben, until="5s")
+    problems = load_scenario(tmp_path / "scenario.xml").problems
+    assert [Path(one.place.file).name for one in problems if one.code == "empty"] == ["kind.xml"]
 
 
 @pytest.mark.parametrize(
