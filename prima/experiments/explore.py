@@ -125,7 +125,7 @@ class Exploration:
         """The run of a point."""
         pairs = zip(self.targets, point, self.base, strict=True)
         values = tuple(
-            one.written if time == base else written("duration", time) for one, time, base in pairs
+            one.as_it_is if time == base else written("duration", time) for one, time, base in pairs
         )
         return Variant(0, 0, self.plan.policy, 0, values)
 

@@ -90,7 +90,7 @@ class ScenarioText:
     def _changed(self, variant: Variant) -> Iterator[tuple[ScenarioValue, str]]:
         """The values that a run changes."""
         pairs = zip(self.targets, variant.values, strict=True)
-        return ((one, value) for one, value in pairs if value != one.written)
+        return ((one, value) for one, value in pairs if value != one.as_it_is)
 
     def text(self, variant: Variant) -> bytes:
         """The scenario of a run."""

@@ -144,7 +144,7 @@ class Sweep:
 
         policies = list(dict.fromkeys(self.question.policies))
         for scenario in range(len(self.question.scenarios)):
-            written = tuple(one.written for one in self.stage.targets(scenario))
+            written = tuple(one.as_it_is for one in self.stage.targets(scenario))
             loaded = self.stage.loaded(Variant(0, scenario, "", 0, written))
             for policy in policies:
                 chosen_policy(policy, loaded)
@@ -159,7 +159,7 @@ class Sweep:
         scenarios = range(len(self.question.scenarios))
         most = max(MOST_CHECKED // max(len(self.factors) * len(scenarios), 1), 1)
         for scenario, (index, factor) in product(scenarios, enumerate(self.factors)):
-            written = tuple(one.written for one in self.stage.targets(scenario))
+            written = tuple(one.as_it_is for one in self.stage.targets(scenario))
             for level in factor.levels[:most]:
                 values = (*written[:index], level, *written[index + 1 :])
                 found = self.stage.problems(Variant(0, scenario, "", 0, values))

@@ -81,7 +81,9 @@ class Stage:
         """
         made = cls([(name, read_file(name)) for name in names], paths, settings)
         for index in range(len(names)):
-            made.loaded(Variant(0, index, "", 0, tuple(one.written for one in made.targets(index))))
+            made.loaded(
+                Variant(0, index, "", 0, tuple(one.as_it_is for one in made.targets(index)))
+            )
         return made
 
     def __getstate__(self) -> dict[str, Any]:

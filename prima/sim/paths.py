@@ -58,6 +58,8 @@ LIGHT = frozenset(
     }
 )
 """Attributes of these elements that name neither."""
+OF_USERS = frozenset({("answer", "after"), ("answer", "chance"), ("person", "speed")})
+"""Elements with attributes that the person's user determines where nothing is written."""
 MOST_TOLD = 12
 """The number of names that a message lists."""
 
@@ -84,6 +86,13 @@ class ScenarioValue(NamedTuple):
         if self.attribute is None:
             return self.node.text
         return self.node.attributes.get(self.attribute.name, self.attribute.default)
+
+    @property
+    def as_it_is(self) -> str:
+        """The level that changes nothing; empty where a user may determine the value."""
+        if self.attribute is None or self.attribute.name in self.node.attributes:
+            return self.written
+        return "" if (self.node.tag, self.attribute.name) in OF_USERS else self.written
 
     @property
     def loads(self) -> bool:

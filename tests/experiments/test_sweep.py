@@ -159,6 +159,16 @@ def test_a_transcript_and_a_scenario_for_each_order() -> None:
         assert signature(rehearse(transcript.with_suffix(".xml")).rows()) == row["order"]
 
 
+def test_a_level_is_meant_even_if_it_is_the_default(visit: Path) -> None:
+    """What is written in the scenario comes before what the user does."""
+    slow = '<answers after="3s"/>'
+    Path("slow.xml").write_text(MUTE.replace('<answers chance="0"/>', slow))
+    person = VISIT.replace('speed="1"/>', 'user="slow.xml"/>')
+    visit.joinpath("visit.xml").write_text(person.replace(' after="1s"', ""))
+    one, two, own = [row["seconds"] for row in rows(vary={"reply.after": "1s|2s|"})]
+    assert two - one == own - two == pytest.approx(1.0)
+
+
 def test_a_scenario_is_saved_without_the_user_that_its_run_lacks(visit: Path) -> None:
     Path("mute.xml").write_text(MUTE)
     user = VISIT.replace('speed="1"/>', 'speed="1" user="mute.xml"/>')
