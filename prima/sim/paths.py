@@ -195,9 +195,11 @@ class _Search:
         if which.isascii() and which.isdigit():
             return self.numbered(there, name, which)
         for one in there:
-            if which in (one.get(name) for name in NAMES):
+            if which in (one.get(key) for key in NAMES):
                 return one
-        raise self.wrong(f'No <{name}> has the name "{which}".')
+        names = {one.get(key) for one in there for key in NAMES} - {""}
+        hint = did_you_mean(which, names) or (f"Write {one_of(names, MOST_TOLD)}." if names else "")
+        raise self.wrong(f'No <{name}> has the name "{which}". {hint}')
 
     def single(self, there: list[Node], name: str) -> Node:
         if len(there) > 1:

@@ -105,7 +105,7 @@ def test_a_path_that_leads_on_in_the_robots_document(path: str, written: str, ki
     [
         ("robot.sped", r'"robot.sped" is not a value of papero.xml. Did you mean "speed"\?'),
         ("robot.gesture", r"There are 2 <gesture>: write gesture\[1\] to gesture\[2\]"),
-        ("robot.gesture[bow]", 'No <gesture> has the name "bow".'),
+        ("robot.gesture[bow]", r'No <gesture> has the name "bow"\. Write \w+ or \w+\.$'),
         ("robot.device", "<device> has no value of its own: write robot.device.name."),
         ("robot.device.name", "neither a number nor a time. Vary the robot's document: --vary"),
         ("robot.id", "neither a number nor a time"),
@@ -131,7 +131,8 @@ def test_an_element_called_robot_comes_before_the_robots_document() -> None:
         ("when[3].after", "There are 2 <when>."),
         ("when[0]", "There are 2 <when>."),
         ("when[99999999999999999999]", "There are 2 <when>."),
-        ("service[nail].reply", 'No <service> has the name "nail".'),
+        ("service[nail].reply", 'No <service> has the name "nail". Did you mean "mail"?'),
+        ("service[bank].reply", 'No <service> has the name "bank". Write mail or post.'),
         ("service[post]", "<service> has no value of its own: write .*name or"),
         ("a..b", r"Write it as when\[2\].after or person.speed."),
         ("", "Write it as"),
