@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from prima.cli.printing import tell, tell_line, write_nowhere
-from prima.errors import DocumentError, MissingFile, RunError, UsageError, brief, listed
+from prima.errors import DocumentError, RunError, UsageError, brief, listed
 
 FINE, PROBLEMS, USAGE, RUN, INTERRUPTED = 0, 1, 2, 3, 130
 LONGEST = 4_000
@@ -53,20 +53,9 @@ def _message(code: int, text: str = "") -> Callable[[Any], int]:
     return handle
 
 
-def in_words(error: UsageError) -> str:
-    """The message of a wrong use, with the name of a file like one that is not there."""
-    if not isinstance(error, MissingFile):
-        return str(error)
-    from pathlib import Path
-
-    from prima.loading.similar import alike
-
-    path = Path(error.args[0])
-    similar = alike(path, {})
-    return f'{error} Did you mean "{path.with_name(similar)}"?' if similar else str(error)
-
-
 def _usage_error(error: UsageError) -> int:
+    from prima.loading.similar import in_words
+
     tell_line(f"prima: {brief(in_words(error), LONGEST)}")
     return USAGE
 

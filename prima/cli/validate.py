@@ -12,7 +12,6 @@ import click
 from click.exceptions import Exit
 
 from prima.checks.ignores import KINDS, SETTINGS
-from prima.cli.failures import in_words
 from prima.cli.options import (
     PathName,
     formats_option,
@@ -115,6 +114,7 @@ def _check(
 ) -> tuple[int, int, int]:
     """Check and print; return the numbers of unreadable files, errors and warnings."""
     from prima import loading  # not the whole interface, for a quick start
+    from prima.loading.similar import in_words
 
     problems: list[Problem] = []
     unread: list[str] = []

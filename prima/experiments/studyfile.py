@@ -123,7 +123,8 @@ def read_study(path: str) -> SweepQuestion:
     folder = os.path.dirname(path)
     scenarios = tuple(os.path.normpath(os.path.join(folder, one)) for one in study.scenarios)
     places = {one: f"{path}:{line}" for one, line in _lines(text).items() if one in study.vary}
-    places |= dict.fromkeys(study.policies, _place(path, text, "policies"))
+    names = [name for one in study.policies for name in (one, *one.split("+"))]
+    places |= dict.fromkeys(names, _place(path, text, "policies"))
     places |= dict.fromkeys(scenarios, _place(path, text, "scenarios"))
     return SweepQuestion(
         scenarios,

@@ -23,6 +23,7 @@ from prima.experiments.settings import ExperimentSettings
 from prima.experiments.table import columns, count_runs, dictionary, line, read_rows, write_parquet
 from prima.experiments.variants import Made, Stage, discard
 from prima.loading.files import is_name
+from prima.loading.similar import in_words
 from prima.loading.writing import make_folder, write_whole
 from prima.messages import Json
 from prima.pool import Died
@@ -57,7 +58,7 @@ class SweepQuestion:
 
     def placed(self, error: UsageError) -> UsageError:
         """A mistake with its place in the study file, if it concerns something in it."""
-        message = str(error)
+        message = in_words(error)
         for name, place in self.places.items():
             if message.startswith(f"{name}: ") or f'"{name}"' in message:
                 return UsageError(f"{place}: {message}")
@@ -120,7 +121,8 @@ class Sweep:
         made = []
         for index, (path, levels) in enumerate(self.question.vary.items()):
             if path == "policy":
-                raise UsageError("policy: write --policy prima --policy fifo.")
+                how = 'in a study file policies = ["prima", "fifo"]'
+                raise UsageError(f"policy: write --policy prima --policy fifo, {how}.")
             kinds = set()
             for number in range(len(self.question.scenarios)):
                 target = self.stage.targets(number)[index]

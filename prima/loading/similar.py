@@ -6,7 +6,7 @@ from itertools import islice
 from os.path import isfile
 from pathlib import Path
 
-from prima.errors import Hint, Span, meant
+from prima.errors import Hint, MissingFile, Span, UsageError, meant
 from prima.interpreter.events import near
 
 MOST_BESIDE = 300
@@ -57,3 +57,12 @@ def alike(path: Path, listed: dict[Path, list[Path]]) -> str:
     files = sorted(listed[folder], key=lambda one: one.suffix == path.suffix)  # the last one counts
     stems = {one.stem: one.name for one in files if one.name != path.name}
     return stems.get(near(path.stem, stems), "")
+
+
+def in_words(error: UsageError) -> str:
+    """The message of a wrong use, with the name of a file like one that is not there."""
+    if not isinstance(error, MissingFile):
+        return str(error)
+    path = Path(error.args[0])
+    similar = alike(path, {})
+    return f'{error} Did you mean "{path.with_name(similar)}"?' if similar else str(error)
