@@ -186,6 +186,9 @@ def _syntax_error(
         )
     line, column = error.position or (1, 1)
     place = Place(source.file, max(line or 1, 1), max(column or 1, 1))
+    if source.file.endswith(".toml"):
+        remedy = "If it is a study, prima sweep runs it; with --plan it only checks it."
+        return DocumentError.of(place, "not-xml", "This is TOML, not XML.", remedy)
     for beginnings, what, remedy in OTHER_FORMS:
         if text.startswith(beginnings):
             return DocumentError.of(place, "not-xml", what, remedy)

@@ -93,6 +93,12 @@ XML = [
 ]  # fmt: skip
 
 
+def test_a_study_file_is_no_document(prima: Prima, tmp_path: Path) -> None:
+    path = write(tmp_path, "study.toml", 'scenarios = ["visit.xml"]\n')
+    for command in ("validate", "study", "test", "explore"):
+        prima(command, path).check(1, f"{path}:1:1", "This is TOML, not XML. If it is a study")
+
+
 @pytest.mark.parametrize(("name", "data", "place", "message"), XML)
 def test_bytes_and_xml(
     prima: Prima, tmp_path: Path, name: str, data: str | bytes, place: str, message: str
