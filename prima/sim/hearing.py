@@ -48,6 +48,14 @@ WORDS = (
 )
 """An attribute that names words: the tag, the attribute, and whether they are asked, not said."""
 
+TIMES = {
+    "when": ("at", "after"),
+    **dict.fromkeys(("expect", "never"), ("at",)),
+    "application": ("start",),
+    **dict.fromkeys(("answer", "reply", "failure"), ("after",)),
+}
+"""The times of an element, whose sum passes at least before it comes."""
+
 CANNOT = UNSUPPORTED_COMMAND.says(
     "This robot cannot do {command}: it lacks {lacks}. This never happens.",
     "Name another Command, or a robot that can do it.",
@@ -203,15 +211,12 @@ def _unheard(nodes: list[Node], events: list[KnownEvents]) -> Iterator[Problem]:
 def _late(nodes: list[Node], until: int) -> Iterator[Problem]:
     """Elements with a time after the end (ms) of the run."""
     for node in nodes:
-        at = node.get("at") if node.tag in ("when", "expect", "never") else ""
-        if not at or at == "end":
-            continue
-        after = node.get("after") if node.tag == "when" else ""
-        times = [read_value("delay", one) for one in (at, after) if one]
+        given = [name for name in TIMES.get(node.tag, ()) if node.get(name) not in ("", "end")]
+        times = [read_value("delay", node.get(name)) for name in given]
         if sum(one for one in times if isinstance(one, int)) > until:  # others are random
             message = f"The run is over after {until / 1000:g} s (until): this never comes."
             remedy = "Write an earlier time, or a later until."
-            place = node.attribute_place("at")
+            place = node.attribute_place(given[0])
             yield Problem(place, "warning", "out-of-range", message, remedy)
 
 
