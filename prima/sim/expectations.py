@@ -11,7 +11,7 @@ from prima.grammar.text import fold
 from prima.language.values import BadValue, read_value
 from prima.markup.spans import value_span
 from prima.markup.tree import Node
-from prima.sim.happenings import TRIGGERS
+from prima.sim.happenings import TRIGGERS, read_data
 
 SUBJECTS = ("says", "does", "finishes", "event", "logs", "sends", "state", "ends")
 """The possible subjects of an expectation."""
@@ -94,7 +94,7 @@ def _expectation(
         never=node.tag == "never",
         by=node.get("by"),
         reason=node.get("reason"),
-        data={child.get("name"): child.get("value") for child in node.all("data")},
+        data=read_data(reader, node),
         id=node.get("id"),
         after=node.get("after"),
         before=node.get("before"),

@@ -165,7 +165,7 @@ def _doing(draws: Draws, node: Node) -> Doing:
     if node.tag == "walk":
         check_where(reader, node, "to", "a place to go to")
     if node.tag == "event":
-        values["data"] = _data(node)
+        values["data"] = read_data(reader, node)
     if node.tag == "say":
         return _said(reader, node)
     return Doing(node.tag, node.text, values)
@@ -243,7 +243,7 @@ def read_reply(draws: Draws, node: Node) -> Reply:
         status = reader.get(node, "status") or 0
         error = reader.get(node, "reason") or "no answer"
         return Reply(after=after, error=error, status=status)
-    return Reply(_data(node), after, src=node.get("src"), node=node)
+    return Reply({**read_data(reader, node)}, after, src=node.get("src"), node=node)
 
 
 def read_connection(node: Node) -> dict[str, Json]:
@@ -278,5 +278,8 @@ def read_transfer(draws: Draws, node: Node) -> CallTransfer:
     return CallTransfer(node.get("to"), outcome, after, lasts)
 
 
-def _data(node: Node) -> dict[str, Json]:
-    return {child.get("name"): child.get("value") for child in node.all("data")}
+def read_data(reader: Reader, node: Node) -> dict[str, str]:
+    """The values in an element; each has a name of its own."""
+    nodes = node.all("data")
+    reader.check_twice([one for one in nodes if one.get("name")], "name")
+    return {child.get("name"): child.get("value") for child in nodes}

@@ -29,6 +29,8 @@ ASKS = """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="a" xml
 </prima>"""
 POST = '<service name="post"><reply/></service>'
 LATE = "The run is over after 60 s (until): this never comes."
+TWICE = '"a" is there twice. Keep one.'
+DATA = '<data name="a" value="1"/><data name="a" value="2"/>'
 
 
 def told(folder: Path, line: str) -> list[tuple[int, str]]:
@@ -59,3 +61,16 @@ def test_what_comes_after_the_end_is_told(tmp_path: Path, line: str, column: int
         (column, f"{LATE} Write an earlier time, or a later until.")
     ]
     assert told(tmp_path, line.replace("61s", "60s").replace("20s", "10s") + rest) == []
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        f'{POST}<when at="1s"><event name="rain">{DATA}</event></when>',
+        f'<service name="post"><reply>{DATA}</reply></service>',
+        f'{POST}<expect sends="post">{DATA}</expect>',
+    ],
+)
+def test_a_value_whose_name_is_there_twice_is_told(tmp_path: Path, line: str) -> None:
+    column = line.rindex('"a"') + 2 + 2
+    assert told(tmp_path, line) == [(column, TWICE)]
