@@ -74,3 +74,15 @@ def test_what_comes_after_the_end_is_told(tmp_path: Path, line: str, column: int
 def test_a_value_whose_name_is_there_twice_is_told(tmp_path: Path, line: str) -> None:
     column = line.rindex('"a"') + 2 + 2
     assert told(tmp_path, line) == [(column, TWICE)]
+
+
+@pytest.mark.parametrize(
+    ("tag", "remedy"),
+    [
+        ("place", "Write it into the world's document."),
+        ("device", "Write it into the robot's document."),
+        ("answers", 'Write it into the document of a user: <person user="...">.'),
+    ],
+)
+def test_what_another_document_holds_is_told(tmp_path: Path, tag: str, remedy: str) -> None:
+    assert told(tmp_path, f"<{tag}/>{POST}") == [(3, f"There is no <{tag}>. {remedy}")]

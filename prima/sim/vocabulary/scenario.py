@@ -86,6 +86,15 @@ SCENARIO = Vocabulary(
         **dict.fromkeys(("assert", "expected", "must"), Instead("expect")),
         "param": Instead("data", 'name="..." value="..."/'),
         **dict.fromkeys(("forbid", "must-not", "not"), Instead("never")),
+        **dict.fromkeys(
+            ("place", "way", "wall", "thing", "corner", "area"),
+            "Write it into the world's document.",
+        ),
+        **dict.fromkeys(
+            ("device", "camera", "voice", "adds", "allows", "substitute", "driver"),
+            "Write it into the robot's document.",
+        ),
+        "answers": 'Write it into the document of a user: <person user="...">.',
         "world": 'Name it in the root element: <scenario world="..." robot="...">.',
         "question": 'Write what the user answers: <answer to="words of the question">Yes.</answer>.',
         "comment": "Write <note>, or a comment of XML: <!-- ... -->.",
