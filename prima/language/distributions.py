@@ -127,7 +127,8 @@ class Distributions:
             "empirical": self._empirical,
         }
         if call["name"] not in kinds:
-            hint = did_you_mean(call["name"], kinds) or f"There are {', '.join(kinds)}."
+            there = [one for one in kinds if self.folder is not None or one != "empirical"]
+            hint = did_you_mean(call["name"], there) or f"There are {', '.join(there)}."
             raise ValueError(f'There is no distribution "{call["name"]}". {hint}')
         return kinds[call["name"]]([one.strip() for one in call["arguments"].split(",")])
 
@@ -157,7 +158,8 @@ class Distributions:
         except ValueError:
             sound = False
         if not sound:
-            raise ValueError(f'"{deviation}" is not the standard deviation of a logarithm.')
+            why = f'"{deviation}" is not the standard deviation of a logarithm.'
+            raise ValueError(f'{why} Write a number above 0, as "0.4".')
         return lambda share: middle * math.exp(min(made.inv_cdf(share), 100.0))
 
     def _uniform(self, given: list[str]) -> Quantile:

@@ -67,6 +67,7 @@ def test_levels(path: str, levels: str, made: tuple[str, ...]) -> None:
         ("touch", "normal(1s,-1s)", "out of range|is not|has to"),
         ("touch", "nromal(1s,1s)", 'Did you mean "normal"'),
         ("touch", "lognormal(1s,x)", '"x" is not the standard deviation of a logarithm'),
+        ("touch", "lognormal(1s,0.3s)", 'logarithm. Write a number above 0, as "0.4".'),
         ("touch", "lognormal(1s,-1)", "is not the standard deviation"),
         ("touch", "uniform(2s,1s)", "ends before it begins"),
         ("touch", "empirical(none.csv)", "none.csv cannot be read: No such file"),

@@ -120,6 +120,13 @@ def test_mistakes_in_users_have_a_place(tmp_path: Path, user: str) -> None:
     assert errors[0].message.startswith(message)
 
 
+def test_a_document_is_offered_no_values_from_a_file(tmp_path: Path) -> None:
+    with pytest.raises(DocumentError) as caught:
+        visit(tmp_path, '><answers after="gauss(1s,1s)"/>', "")
+    (remedy,) = [one.remedy for one in caught.value.problems if one.severity == "error"]
+    assert remedy.endswith("There are normal, lognormal, uniform, exponential.")
+
+
 def test_warnings_about_users_are_told(tmp_path: Path) -> None:
     user = '><when at="1s"><say/></when><answer to="Shall I"/>'
     visit(tmp_path, user, '<answer to="Shall I">Yes.</answer>')
