@@ -50,7 +50,8 @@ class App(Bounds[Evaluator], ABC):
         self.runs = count(1)
         self.units = count(1)
         self.states = count(1)
-        self._sends = count(1)
+        self.sends = count(1)
+        """The serials of what it sends; loaded again, it goes on counting."""
 
     # Notifications of every application -----------------------------------------------
 
@@ -134,7 +135,7 @@ class App(Bounds[Evaluator], ABC):
 
     def send(self, service: str, data: Data, place: str) -> int:
         """Send something to a service, or to a URI; gives its serial."""
-        serial = next(self._sends)
+        serial = next(self.sends)
         self.actions.append(Send(service, sendable(data), serial, place))
         return serial
 

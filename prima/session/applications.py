@@ -96,6 +96,7 @@ class Applications:
                 return None
             before, app = app, self._made(self.documents[name])
             app.visits[:0] = before.visits
+            app.sends = before.sends
             self.named[name] = app
         self.loaded.add(name)
         self.alive = None
