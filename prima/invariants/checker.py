@@ -78,6 +78,10 @@ def _former(memory: Memory, name: str) -> None:
             one.app = former
             memory.apps[former] = memory.apps[name]
             memory.gone_apps.add(former)
+    memory.continuing.pop(name, None)
+    if name in memory.unloaded:  # in this instant
+        memory.unloaded.add(former)
+    memory.left_now = {(former if app == name else app, state) for app, state in memory.left_now}
 
 
 def _unload(memory: Memory, record: Record) -> None:

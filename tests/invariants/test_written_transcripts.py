@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from prima import api
 from prima.invariants import check
 from prima.invariants.table import contradictions
@@ -16,6 +18,11 @@ ASKS = (
 )
 GOES = '<form id="f"><block><topological-move to="kidode-room"/></block></form>'
 SPEAKS = '<form id="f"><block><speak>Welcome to our museum.</speak></block></form>'
+LINKED = (
+    '<form id="f"><block><speak>Welcome to our museum of modern art, my friends.</speak>'
+    "<speak>Follow me.</speak></block></form>"
+)
+HELD = SPEAKS.replace('id="f"', 'id="f" stream="hold"')
 AWAY = '<person x="-3" y="0"/>'
 
 
@@ -33,6 +40,14 @@ def test_an_application_that_is_loaded_again_is_another_one(tmp_path: Path) -> N
     ends = [one["time"] for one in made.records if one["phase"] == "end"]
     assert len(said) == 2 and said[1] == ends[0] > 0.6, made.table()
     assert check(made.records) == []
+
+
+@pytest.mark.parametrize("body", [SPEAKS, LINKED, HELD])
+def test_an_application_may_be_loaded_again_at_once(tmp_path: Path, body: str) -> None:
+    again = '<unload application="app"/><load application="app"/>'
+    made = rehearse(tmp_path, body, f'<when at="2s">{again}</when>', "prima+x3", until="9s")
+    assert {2.0} == {one["time"] for one in made.records if one["phase"] == "unload"}
+    assert check(made.records, "prima+x3") == []
 
 
 def test_the_number_of_a_call_is_not_that_of_an_event(tmp_path: Path) -> None:
