@@ -26,8 +26,9 @@ class Hearing:
         """The latest answer that each application's question did not take, until one is taken: the
         question's place in the document, and the words."""
         self._late_answers = late_answers
-        self._lapsed: tuple[str, int] | None = None
-        """The application whose question was the latest to time out, and when it did (X10)."""
+        self._lapsed: tuple[AnyApp, int] | None = None
+        """The application whose question was the latest to time out, and when it did (X10); loaded
+        again, it is another one."""
 
     def take_unheard(self) -> str:
         """The user's latest words that nobody took; returned once."""
@@ -134,18 +135,19 @@ class Hearing:
             return
         question = self.wiring.mediator.running(value.behavior)
         if question is not None and not question.silent:
-            self._lapsed = question.app.name, self.wiring.recorder.now
+            app = self.wiring.apps.named[question.app.name]
+            self._lapsed = app, self.wiring.recorder.now
 
     def _late_for(self, value: Heard, question: Behavior | None) -> AnyApp | None:
         """X10: the application whose question is answered too late, unless it listens again."""
         if self._lapsed is None:
             return None
-        name, when = self._lapsed
-        app = self.wiring.apps.named[name]
+        app, when = self._lapsed
         if self.wiring.recorder.now - value.lasted - when > LATE_MS:
             self._lapsed = None
             return None
-        return None if question is not None and question.app.name == name else app
+        asks = self.wiring.apps.named[question.app.name] if question is not None else None
+        return None if asks is app else app
 
     def _answer_late(self, app: AnyApp, value: Heard) -> None:
         """X10: to its next question, else to its links, else as its event ``late``.

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from prima.messages import ApplicationLoaded, ApplicationUnloaded, Fetched
+from prima.invariants import check
+from prima.messages import ApplicationLoaded, ApplicationUnloaded, Fetched, Heard
+from tests.helpers.robot import Bench
 from tests.helpers.voice import Online
 
 MENU = "http://menu.example/today"
@@ -19,3 +21,20 @@ def test_an_answer_to_what_an_application_asked_before_it_was_loaded_again_is_no
     assert call.said() == []
     call.step(Fetched("app", now, MENU, "<menu>Tea.</menu>"))
     assert call.said() == ["Tea."]
+
+
+def test_a_late_answer_to_its_former_run_is_not_its_own() -> None:  # X10
+    asks = """<form id="ask"><field name="q" type="boolean"><prompt>Shall we go?</prompt>
+        <noinput><exit/></noinput><filled><log expr="q"/></filled></field></form>"""
+    bench = Bench(asks, policy="prima+x10")
+    bench.listens()
+    bench.silence()
+    bench.step(ApplicationLoaded("app"))
+    assert bench.saying() == ["Shall we go?"]
+    bench.step(Heard("yes", {}, 1000), at=bench.now + 1100)
+    assert bench.logs() == []
+    assert bench.session.hearing.take_unheard() == "yes"
+    assert check(bench.records, "prima+x10") == []
+    bench.listens()
+    bench.step(Heard("no"), at=bench.now + 2000)
+    assert bench.logs() == ["false"]
