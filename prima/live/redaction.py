@@ -21,6 +21,8 @@ SPOKEN = ("utterance", "alternatives", "recorded", "text")
 """The fields of records' data that hold what a user has said."""
 FREE = ("text", "words", "extra", "message")
 """Fields of records in which an application may repeat it."""
+NAMED = ("error.", "reply.")
+"""How events begin whose names an application may make from it."""
 ANSWERED = ("X8", "X10")
 """The rules by which words answer a question that does not listen."""
 
@@ -70,9 +72,12 @@ class Redactor:
             made["args"] = self._values(record["args"])
         if record.get("cues"):
             made["cues"] = [self._values(one) for one in record["cues"]]
-        if record["phase"] == "unload" and record.get("outcome"):
-            name, colon, why = record["outcome"].partition(": ")
-            made["outcome"] = f"{name}{colon}{self.without(why)}"
+        if record["phase"] == "event" and record["event"].startswith(NAMED):
+            made["event"] = self.without(record["event"])
+        if record["phase"] == "unload" and ": " in (
+            record.get("outcome") or ""
+        ):  # an error's place
+            made["outcome"] = self.without(record["outcome"])
         return {**record, **made}
 
     def _values(self, fields: dict[str, Json]) -> dict[str, Json]:

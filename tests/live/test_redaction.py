@@ -81,6 +81,21 @@ def test_words_are_left_out_of_errors_and_names_and_so_are_alternatives_and_late
     assert "{'value': '[redacted]'}" in left("Ben", answered)
 
 
+def test_words_are_left_out_of_the_names_of_errors_and_answers() -> None:
+    redactor = Redactor(lambda: [Answers(type="text")])
+    redactor([])
+    said = {"phase": "event", "event": "speech", "text": "Zorblatt"}
+    failed = {"phase": "event", "event": "error.service.Zorblatt"}
+    answered = {"phase": "event", "event": "reply.Zorblatt"}
+    ends = {"phase": "unload", "outcome": "my.Zorblatt: visit.xml:3:1"}
+    made = redactor([said, failed, answered, ends])
+    assert [one["event"] for one in made[1:3]] == ["error.service.[redacted]", "reply.[redacted]"]
+    assert made[3]["outcome"] == "my.[redacted]: visit.xml:3:1"
+    kept = [{"phase": "event", "event": "touch.head"}, {"phase": "unload", "outcome": "exit"}]
+    for word in ("head", "exit"):
+        assert redactor([{**said, "text": word}, *kept])[1:] == kept, "no words of users"
+
+
 def test_what_an_application_says_of_its_end_has_no_words_in_a_redacted_run(tmp_path: Path) -> None:
     (tmp_path / "ea.xml").write_text(
         """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="ea" xml:lang="en">
