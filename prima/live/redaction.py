@@ -6,6 +6,8 @@ import re
 from collections import deque
 from collections.abc import Callable, Sequence
 from re import Pattern
+from unicodedata import category
+from urllib.parse import unquote
 
 from prima.grammar.answers import Answers
 from prima.grammar.text import fold
@@ -96,15 +98,27 @@ class Redactor:
         if len(fold(said)) < (1 if taken else LONG_ENOUGH):
             return
         if not any(one.in_grammar(said) for one in self._takes):
-            words = r"\W+".join(re.findall(r"\w+", said))
+            words = r"\W+".join(map(re.escape, _words(said)))
             self._free.append(re.compile(rf"(?<![a-z0-9]){words}(?![a-z0-9])", re.I))
 
     def without(self, value: Json) -> Json:
         """A value without users' own words, in names, too."""
         if isinstance(value, str):
-            for said in self._free:
-                value = said.sub(REDACTED, value)
-            return value
+            value = self._cleared(value)
+            plain = unquote(value)
+            cleared = self._cleared(plain) if plain != value else plain
+            return value if cleared == plain else cleared  # it is in a URI
         if isinstance(value, dict):
             return {str(self.without(name)): self.without(one) for name, one in value.items()}
         return [self.without(one) for one in value] if isinstance(value, list) else value
+
+    def _cleared(self, text: str) -> str:
+        for said in self._free:
+            text = said.sub(REDACTED, text)
+        return text
+
+
+def _words(text: str) -> list[str]:
+    """The words of a text, each with its accents and vowel signs."""
+    kept = (one.isalnum() or one == "_" or category(one)[0] == "M" for one in text)
+    return "".join(one if keep else " " for one, keep in zip(text, kept, strict=True)).split()

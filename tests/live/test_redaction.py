@@ -96,6 +96,30 @@ def test_words_are_left_out_of_the_names_of_errors_and_answers() -> None:
         assert redactor([{**said, "text": word}, *kept])[1:] == kept, "no words of users"
 
 
+@pytest.mark.parametrize(
+    ("said", "sent", "left"),
+    [
+        (
+            "I am Zoë Quux",
+            "https://a.org/?q=I%20am%20Zo%C3%AB%20Quux&n=1",
+            "https://a.org/?q={}&n=1",
+        ),
+        ("Zoë", "q=Zo%c3%ab", "q={}"),
+        ("Zoe", "Mrs%20Zoe%2C%20please", "Mrs {}, please"),
+        ("Zoe", "100%25%20wool", "100%25%20wool"),
+        ("Zoe", "50 % of %zz", "50 % of %zz"),
+        ("हिन्दी", "नमस्ते हिन्दी!", "नमस्ते {}!"),
+        ("Jose\u0301", "Hi Jose\u0301, hi", "Hi {}, hi"),
+    ],
+)
+def test_words_in_a_uri_and_their_marks_are_left_out(said: str, sent: str, left: str) -> None:
+    redactor = Redactor(lambda: [Answers(type="text")])
+    redactor([])
+    event = {"phase": "event", "event": "speech", "text": said}
+    send = {"phase": "send", "data": {"to": "diary", "params": {"q": sent}}}
+    assert redactor([event, send])[1]["data"]["params"]["q"] == left.format("[redacted]")
+
+
 def test_what_an_application_says_of_its_end_has_no_words_in_a_redacted_run(tmp_path: Path) -> None:
     (tmp_path / "ea.xml").write_text(
         """<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="ea" xml:lang="en">
