@@ -58,11 +58,16 @@ def read_application(
 
     file = Path(path)
     page = read_page(site.name(site.uri) if site else file.name, path, data, site)
-    own = name or re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "voice"
+    own = name or named_after(file)
     folder = Folder(str(absolute(site.folder if site else file.parent)))
     return VoiceDocument(
         own, kind or "ea", path, page, folder.fetch, page.root, folder.glance
     ), page.problems
+
+
+def named_after(file: Path) -> str:
+    """The name of a VoiceXML document in a file, if the run gives it no other."""
+    return re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "voice"
 
 
 def read_native(

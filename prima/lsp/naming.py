@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from os.path import exists
 from pathlib import Path
 
 from prima.errors import with_article
 from prima.language.values import read_value
+from prima.loading.applications import named_after
 from prima.lsp.meanings import EVENTS_OF
-from prima.lsp.names import FoundName, Mark, NameSpot, mark_at
+from prima.lsp.names import FoundName, Mark, NameSpot, dialect, mark_at
 from prima.lsp.paths import name_for
 from prima.lsp.workspace import Workspace
 from prima.script.globals import RESERVED
@@ -199,7 +200,7 @@ def _move(
 
 def moved(workspace: Workspace, old: Path, new: Path) -> list[NameEdit]:
     """The edits of documents that name a file, once it is renamed or moved."""
-    edits = []
+    edits = [*_called(workspace, old, new)]
     for path, start, end in workspace.naming(old):
         if path != old:
             edits.append(NameEdit(path, start, end, _written(workspace, path, new, path.parent)))
@@ -208,6 +209,22 @@ def moved(workspace: Workspace, old: Path, new: Path) -> list[NameEdit]:
             there = old if target == old else target
             edits.append(NameEdit(old, start, end, _written(workspace, old, there, new.parent)))
     return edits
+
+
+def _called(workspace: Workspace, old: Path, new: Path) -> Iterator[NameEdit]:
+    """The edits of scenarios that call a VoiceXML application by its file's name."""
+    text = workspace.text(old)
+    before, after = named_after(old), named_after(new)
+    if text is None or dialect(text.top) != "voicexml" or before == after:
+        return
+    for path in workspace.related(old):
+        called = [
+            one
+            for one in workspace.marks(path)
+            if one.kind == ("application",) and one.name == before
+        ]
+        if not any(one.defines for one in called):
+            yield from (NameEdit(path, one.start, one.end, after) for one in called)
 
 
 def _written(workspace: Workspace, document: Path, path: Path, folder: Path) -> str:

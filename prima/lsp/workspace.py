@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from prima.errors import DocumentError
+from prima.loading.applications import named_after
 from prima.lsp.meanings import FILES, SHARED
 from prima.lsp.names import FoundName, Mark, NameSpot, dialect, marks
 from prima.lsp.paths import MOST_FILES, file_named, path_of, uri_of, walk
@@ -297,7 +298,7 @@ class Workspace:
     def _id_of(self, path: Path) -> str:
         """A document's id, or else the name of its file."""
         root = text.top.root if (text := self.text(path)) else None
-        return (root.get("id") if root else "") or path.stem
+        return (root.get("id") if root else "") or named_after(path)
 
     def given(self, path: Path, mark: Mark) -> list[FoundName]:
         """The definitions of a name: in its scenarios, or else anywhere in the workspace."""

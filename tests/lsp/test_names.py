@@ -398,3 +398,26 @@ def test_files_that_the_editor_moves_are_followed(editor: Editor) -> None:
     text = (editor.folder / "scenarios/follow-alone.xml").read_text(encoding="utf-8")
     made = edited(text, list(change.changes[editor.uri("scenarios/follow-alone.xml")]))
     assert 'src="fa/follow.xml"' in made and "../" not in made
+
+
+def test_a_voicexml_application_is_called_by_its_new_file_in_scenarios(tmp_path: Path) -> None:
+    workspace, folder = Workspace(), tmp_path.resolve()
+    text = (
+        SCENE + '<application src="{}"{}/><expect ends="{}"/><never says="Hi." by="{}"/></scenario>'
+    )
+    for file, given, ends, new in (
+        ("pie 1.vxml", "", "pie-1", "cake-2"),
+        ("tea.vxml", ' id="tea"', "tea", "tea"),
+    ):
+        page = workspace.put((folder / file).as_uri(), VOICE + "<form/></vxml>")
+        scene = text.format(file, given, ends, ends)
+        path = workspace.put((folder / f"{ends}.xml").as_uri(), scene)
+        assert page is not None and path is not None
+        for edit in sorted(naming.moved(workspace, page, folder / "cake 2.vxml"), key=_start)[::-1]:
+            assert edit.path == path
+            scene = scene[: edit.start] + edit.text + scene[edit.end :]
+        assert scene == text.format("cake 2.vxml", given, new, new)
+
+
+def _start(edit: naming.NameEdit) -> int:
+    return edit.start
