@@ -226,6 +226,8 @@ class _Completion:
             name = found.mark.name
             insert = sign + escape(name)  # the sign is written there already
             yield Proposal(sign + name, "name", *start, insert, "", self._where(found))
+        for name in self.workspace.called(path) if use.kinds == ("application",) else ():
+            yield Proposal(sign + name, "name", *start, sign + name)
 
     def _known(self, path: Path, kinds: tuple[str, ...], tag: ScannedTag) -> list[FoundName]:
         if kinds == ("form",) and tag.key in ("expect", "never"):

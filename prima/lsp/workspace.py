@@ -300,6 +300,14 @@ class Workspace:
         root = text.top.root if (text := self.text(path)) else None
         return (root.get("id") if root else "") or named_after(path)
 
+    def called(self, path: Path) -> list[str]:
+        """The names of a scenario's VoiceXML applications that are those of their files."""
+        scene = self.text(path)
+        tags = [one for one in (scene.page.tags if scene else ()) if one.key == "application"]
+        files = [self.target(path, one.get("src")) for one in tags if not one.get("id")]
+        texts = [(one, self.text(one)) for one in files if one is not None]
+        return [named_after(one) for one, text in texts if text and dialect(text.top) == "voicexml"]
+
     def given(self, path: Path, mark: Mark) -> list[FoundName]:
         """The definitions of a name: in its scenarios, or else anywhere in the workspace."""
         found = [one for one in self.uses(path, mark, all_scenes=False) if one.mark.defines]

@@ -212,3 +212,11 @@ def test_the_file_before_a_dialog_stays_as_it_is_written(editor: Editor) -> None
     found = editor.proposals("ea/x.vxml", text)["R&amp;D.vxml#order"].text_edit
     (editor.folder / "ea" / "R&D.vxml").unlink()
     assert found is not None and found.new_text == "R&amp;D.vxml#order"
+
+
+def test_a_voicexml_application_is_offered_by_the_name_of_its_file(editor: Editor) -> None:
+    text = SCENE + '<application src="../ea/pizza.vxml"{}/><expect ends="|"/></scenario>'
+    assert "pizza" in editor.proposals("scenarios/x.xml", text.format(""))
+    given = editor.proposals("scenarios/x.xml", text.format(' id="cook"'))
+    assert "cook" in given and "pizza" not in given
+    editor.close("scenarios/x.xml")
