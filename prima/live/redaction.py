@@ -76,10 +76,9 @@ class Redactor:
             made["cues"] = [self._values(one) for one in record["cues"]]
         if record["phase"] == "event" and record["event"].startswith(NAMED):
             made["event"] = self.without(record["event"])
-        if record["phase"] == "unload" and ": " in (
-            record.get("outcome") or ""
-        ):  # an error's place
-            made["outcome"] = self.without(record["outcome"])
+        outcome = record.get("outcome") or ""
+        if record["phase"] == "unload" and ": " in outcome:  # with an error's place
+            made["outcome"] = self.without(outcome)
         return {**record, **made}
 
     def _values(self, fields: dict[str, Json]) -> dict[str, Json]:

@@ -194,6 +194,10 @@ class _Search:
             return self.single(there, name)
         if which.isascii() and which.isdigit():
             return self.numbered(there, name, which)
+        return self.named(there, name, which)
+
+    def named(self, there: list[Node], name: str, which: str) -> Node:
+        """The one of several elements that has a name."""
         for one in there:
             if which in (one.get(key) for key in NAMES):
                 return one
