@@ -48,13 +48,8 @@ WORDS = (
 )
 """An attribute that names words: the tag, the attribute, and whether they are asked, not said."""
 
-TIMES = {
-    "when": ("at", "after"),
-    **dict.fromkeys(("expect", "never"), ("at",)),
-    "application": ("start",),
-    **dict.fromkeys(("answer", "reply", "failure"), ("after",)),
-}
-"""The times of an element, whose sum passes at least before it comes."""
+TIMES = {"when": "at", "expect": "at", "never": "at", "application": "start"}
+"""The attributes with the time at which an element comes."""
 
 CANNOT = UNSUPPORTED_COMMAND.says(
     "This robot cannot do {command}: it lacks {lacks}. This never happens.",
@@ -211,12 +206,15 @@ def _unheard(nodes: list[Node], events: list[KnownEvents]) -> Iterator[Problem]:
 def _late(nodes: list[Node], until: int) -> Iterator[Problem]:
     """Elements with a time after the end (ms) of the run."""
     for node in nodes:
-        given = [name for name in TIMES.get(node.tag, ()) if node.get(name) not in ("", "end")]
-        times = [read_value("delay", node.get(name)) for name in given]
+        name = TIMES.get(node.tag, "")
+        at, after = node.get(name), node.get("after") if node.tag == "when" else ""
+        if at in ("", "end"):
+            continue
+        times = [read_value("delay", one) for one in (at, after) if one]
         if sum(one for one in times if isinstance(one, int)) > until:  # others are random
             message = f"The run is over after {until / 1000:g} s (until): this never comes."
             remedy = "Write an earlier time, or a later until."
-            place = node.attribute_place(given[0])
+            place = node.attribute_place(name)
             yield Problem(place, "warning", "out-of-range", message, remedy)
 
 
