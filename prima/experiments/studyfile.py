@@ -12,7 +12,7 @@ answer = ["Yes.", "No.", ""]
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any, Literal
 
@@ -99,9 +99,11 @@ def question_of(scenarios: Sequence[str], vary: Mapping[str, str], **options: An
         if len(scenarios) > 1:
             raise UsageError("A study file names its scenarios itself: name it alone.")
         study = read_study(scenarios[0])
-        places = {name: one for name, one in study.places.items() if name not in vary}
-        asked = replace(study, vary={**study.vary, **vary}, places=places)
-    return replace(asked, **{name: one for name, one in options.items() if one is not None})
+        asked = replace(study, vary={**study.vary, **vary})
+    given = {name: one for name, one in options.items() if one is not None}
+    overridden = {*vary, *(f"--{name}" for name in given)}
+    places = {name: one for name, one in asked.places.items() if name not in overridden}
+    return replace(asked, **given, places=places)
 
 
 def read_study(path: str) -> SweepQuestion:
@@ -122,10 +124,6 @@ def read_study(path: str) -> SweepQuestion:
         ) from None
     folder = os.path.dirname(path)
     scenarios = tuple(os.path.normpath(os.path.join(folder, one)) for one in study.scenarios)
-    places = {one: f"{path}:{line}" for one, line in _lines(text).items() if one in study.vary}
-    names = [name for one in study.policies for name in (one, *one.split("+"))]
-    places |= dict.fromkeys(names, _place(path, text, "policies"))
-    places |= dict.fromkeys(scenarios, _place(path, text, "scenarios"))
     return SweepQuestion(
         scenarios,
         {name: levels_text(levels) for name, levels in study.vary.items()},
@@ -137,8 +135,18 @@ def read_study(path: str) -> SweepQuestion:
         patience,
         study.isolate,
         folder,
-        places,
+        _places(path, text, study, scenarios),
     )
+
+
+def _places(path: str, text: str, study: Study, scenarios: Iterable[str]) -> dict[str, str]:
+    """Where options, paths, policies and scenarios are written."""
+    lines = {one: f"{path}:{line}" for one, line in _lines(text).items()}
+    places = {one: line for one, line in lines.items() if one in study.vary}
+    places |= {f"--{one}": lines[one] for one in ("design", "runs", "seeds") if one in lines}
+    names = [name for one in study.policies for name in (one, *one.split("+"))]
+    places |= dict.fromkeys(names, _place(path, text, "policies"))
+    return places | dict.fromkeys(scenarios, _place(path, text, "scenarios"))
 
 
 def _read(path: str) -> tuple[str, dict[str, Any]]:

@@ -60,7 +60,7 @@ class SweepQuestion:
         """A mistake with its place in the study file, if it concerns something in it."""
         message = in_words(error)
         for name, place in self.places.items():
-            if message.startswith(f"{name}: ") or f'"{name}"' in message:
+            if message.startswith((f"{name}: ", f"{name} ")) or f'"{name}"' in message:
                 return UsageError(f"{place}: {message}")
         return error
 

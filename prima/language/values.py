@@ -203,6 +203,12 @@ DRAWABLE = {"delay": "duration", "quantity": "number"}
 """Kinds of values that may be drawn from a distribution, and the kind of what is drawn."""
 
 
+BETWEEN = re.compile(
+    r"([0-9]+(?:\.[0-9]+)?)(ms|s)? *(?:-|\.\.\.?|to|\u2013|\u2026) *([0-9]+(?:\.[0-9]+)?)(ms|s)?(?:/.*)?"
+)
+"""Two amounts, most likely meant as a range."""
+
+
 def _drawable(plain: Callable[[str], Value], pattern: str, doc: str) -> Kind:
     """The kind of a plain value or a distribution, which stays text, as its bounds count too.
 
@@ -210,9 +216,17 @@ def _drawable(plain: Callable[[str], Value], pattern: str, doc: str) -> Kind:
     """
     drawn = rf"{pattern} *\.\. *{pattern}|[a-z]+\([^()]*\)"
     is_drawn = re.compile(drawn)
-    return Kind(
-        lambda text: text if is_drawn.fullmatch(text) else plain(text), f"{pattern}|{drawn}", doc
-    )
+
+    def read(text: str) -> Value:
+        if is_drawn.fullmatch(text):
+            return text
+        if (between := BETWEEN.fullmatch(text)) is None:
+            return plain(text)
+        low, unit, high, other = between.groups("")
+        right = f"{low}{unit or other}..{high}{other or unit}"
+        raise BadValue("is not a range.", f'Write "{right}".', right=right)
+
+    return Kind(read, f"{pattern}|{drawn}", doc)
 
 
 KINDS: dict[str, Kind] = {

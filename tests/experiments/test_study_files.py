@@ -69,6 +69,8 @@ def test_options_come_before_the_file(folder: Path) -> None:
     done = prima("sweep", "study.toml", "--seeds", "1", "--vary", "touch=1s", "--policy", "fair")
     assert done.returncode == 0, done.stderr
     assert len(done.stdout.splitlines()) == 1 + 6
+    done = prima("sweep", "study.toml", "--runs", "9")
+    assert done.stderr.startswith("prima: --runs is for --design"), "the study has none"
 
 
 @pytest.mark.parametrize(
@@ -97,6 +99,8 @@ def test_options_come_before_the_file(folder: Path) -> None:
         ("touch =", "policy =", ":8", 'in a study file policies = ["prima", "fifo"]'),
         ("site/visit.xml", "site\\u0000.xml", ":2", "this is not a file's name"),
         ('"prima", "fifo"', '"pirma"', ":3", 'Did you mean "prima"'),
+        ("seeds = 2", "runs = 9", ":4", "--runs is for --design random or lhs"),
+        ("seeds = 2", 'design = "lhs"', ":4", "--design lhs needs the number of runs"),
     ],
 )
 def test_mistakes_have_their_line(old: str, new: str, where: str, why: str) -> None:

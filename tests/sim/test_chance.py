@@ -151,6 +151,15 @@ WRONG = {
         'at "nomal(5s,1s)" cannot be drawn.',
         'There is no distribution "nomal". Did you mean "normal"?',
     ),
+    '<when at="2s-4s"><leave/></when>': ('at "2s-4s" is not a range.', 'Write "2s..4s".'),
+    '<when at="500 to 900ms"><leave/></when>': (
+        'at "500 to 900ms" is not a range.',
+        'Write "500ms..900ms".',
+    ),
+    '<when at="1.5..2s/1s"><leave/></when>': (
+        'at "1.5..2s/1s" is not a range.',
+        'Write "1.5s..2s".',
+    ),
     '<when at="normal(5s)"><leave/></when>': (
         'at "normal(5s)" cannot be drawn.',
         "Write normal(MEAN,DEVIATION).",
