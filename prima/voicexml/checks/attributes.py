@@ -38,13 +38,12 @@ def check_attributes(node: Node) -> Iterator[Problem]:
     """Attributes that are unknown, wrong or missing."""
     for name in node.attributes:
         yield from _check_attribute(node, name)
-    told = _meant(node)
     for item in VOICEXML.elements[node.key].attributes:
-        given = item.name in node.attributes or item.name in told
-        if item.required and not given and node.key != "vxml":
+        lacking = item.required and item.name not in node.attributes
+        if lacking and node.key != "vxml" and item.name not in _meant(node):
             yield missing(node, item.name)  # a document's version is checked elsewhere
     for line in ALTERNATIVES.get(node.key, ()):
-        yield from _check_alternatives(node, line.split(), told)
+        yield from _check_alternatives(node, line.split())
 
 
 def _meant(node: Node) -> set[str]:
@@ -192,7 +191,7 @@ def instead_of(node: Node, name: str, text: str, kind: str) -> Hint:
     return Hint(REMEDIES.get(kind, f"Write {one_of(kind.split())}."))
 
 
-def _check_alternatives(node: Node, names: list[str], told: set[str]) -> Iterator[Problem]:
+def _check_alternatives(node: Node, names: list[str]) -> Iterator[Problem]:
     """Check attributes that exclude each other, and those of which one is required."""
     needed = names[-1] == "!"
     names = names[:-1] if needed else names
@@ -202,7 +201,7 @@ def _check_alternatives(node: Node, names: list[str], told: set[str]) -> Iterato
     if len(given) > 1:
         place = node.place if given[1] == "content" else node.attribute_place(given[1])
         yield HAS_BOTH.at(place, tag=node.tag, name=given[0], other=_called(given[1]))
-    elif needed and not given and told.isdisjoint(names):
+    elif needed and not given and _meant(node).isdisjoint(names):
         yield NEEDS_ONE.at(node.place, tag=node.tag, names=one_of(map(_called, names)))
 
 
