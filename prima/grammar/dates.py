@@ -174,7 +174,7 @@ def _words(words: list[str], part: str) -> str | None:
         words = words[1:]
         part = part or ("h" if words[-1] == "hundred" else "")
     hour, rest = _hour(words)
-    if len(digits(" ".join(rest)) or "") == 1:  # "twenty four" is an hour that no day has
+    if len(digits(" ".join(rest)) or "") == 1:  # minutes below ten have a nought: "twenty oh four"
         return None
     minutes = _minutes(rest) if rest else 0
     return None if hour is None or minutes is None else _clock(hour, minutes, part)

@@ -64,10 +64,10 @@ def decode(file: str, data: bytes) -> str:
 
 
 def recoded(data: bytes, headers: Message) -> bytes:
-    """The bytes of an answer, which an XML document begins with a mark if its headers decide.
+    """The bytes of an answer; XML whose headers name another encoding is recoded to UTF-8.
 
-    They do if they name an encoding, unless the document has a mark (RFC 7303, 3.2). A document
-    that is not in that encoding stays as it is.
+    It then begins with a byte order mark, which comes before its declaration. A document that
+    has a mark of its own, or is not in that encoding, stays as it is (RFC 7303, 3.2).
     """
     codec = _codec(headers.get_content_charset(""))
     marked = any(data.startswith(mark) for mark, _ in MARKS)

@@ -11,6 +11,9 @@ from prima.sim.body import Body
 from prima.sim.routes import Routes
 from prima.sim.world import World
 
+SEES = "human-detection"
+"""The device that recognises people in the camera's view."""
+
 
 class Robot:
     """Takes the mediator's orders, and returns inbound values."""
@@ -83,7 +86,7 @@ class Robot:
     def broke(self, now: int, device: str, hangs: bool) -> list[Inbound]:
         """A device fails, with what runs on it (E1); or it hangs and no longer reports."""
         self._report(now, self.body.broke(device, hangs))
-        self._open_eyes()
+        self.world.blind = self.world.blind or device == SEES
         if hangs:
             for task in self.conductor.tasks.values():
                 question = self.ear.questions.get(task.id)
@@ -97,12 +100,8 @@ class Robot:
     def repair(self, device: str) -> None:
         """A device works again."""
         self.body.broken.pop(device, None)
-        self._open_eyes()
-
-    def _open_eyes(self) -> None:
-        """See people only if that device works."""
-        self.world.blind = "human-detection" in self.body.broken
-        self.conductor.sight.again = True
+        if device == SEES:
+            self.world.blind, self.conductor.sight.again = False, True
 
     @property
     def deaf(self) -> bool:
