@@ -78,6 +78,8 @@ class Algorithm:
         while True:
             fiber.local = None  # conditions, prompts and parameters see no content's variables
             item = self._selected(frame, fiber, items)
+            if not isinstance(item, Field) or item.name != frame.silent:
+                frame.silent = ""
             if isinstance(item, Thrown):
                 yield from self.owner.handling.handle_thrown(frame, fiber, unit, item, 0)
                 return
@@ -174,8 +176,8 @@ class Algorithm:
 
     def _prompts(self, frame: Frame, fiber: Fiber, field: Field) -> list[Prompt]:
         """The prompts of a field, unless it must stay silent after its own event (4.1.6)."""
-        silent, frame.silent = frame.silent, ""
-        if silent == field.name:
+        if frame.silent:
+            frame.silent = ""
             return []
         frame.counters = frame.counters.asked(field.name)
         return select_prompts(

@@ -30,7 +30,7 @@ class Frame:
     """The item being visited."""
     next_item = ""
     silent = ""
-    """The field that listens without a prompt at its next visit: an event of its own was handled."""
+    """The field that listens without a prompt if it is visited next: its own event was handled."""
     stalled = False
     """The form's content has been cancelled (O2): it waits for an event to move it."""
     connected = False

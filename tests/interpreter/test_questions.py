@@ -140,6 +140,36 @@ def test_an_event_before_a_question_does_not_keep_it_silent(before: str) -> None
     assert bench.said()[-1] == "Which colour?"
 
 
+@pytest.mark.parametrize(
+    "field",
+    [
+        """<filled><throw event="oops"/></filled><on event="oops"><log>Oh.</log></on></field>
+          <on event="touch"><clear namelist="q"/></on>""",
+        """<noinput><assign name="off" expr="true"/></noinput></field>
+          <on event="touch"><assign name="off" expr="false"/></on>""",
+        """<noinput><clear namelist="hint"/></noinput></field>""",
+    ],
+)
+def test_a_question_is_silent_only_if_it_listens_again_at_once(field: str) -> None:
+    """As in VoiceXML: a handler without reprompt concerns the next selection of an item alone."""
+    bench = Bench(
+        f"""<form id="a"><var name="off" expr="false"/>
+          <block name="hint"><speak>I can wait.</speak></block>
+          <field name="q" type="boolean" cond="!off"><prompt>Well?</prompt>{field}</form>"""
+    )
+    bench.finish("I can wait.")
+    if "filled" in field:
+        bench.hears("yes")
+    else:
+        bench.silence()
+    if "touch" in field:
+        bench.event("touch.head")
+    else:
+        bench.finish("I can wait.")
+    assert bench.said()[-1] == "Well?"
+    assert bench.said().count("Well?") == 2
+
+
 def test_handlers_are_chosen_by_count_over_the_whole_list() -> None:
     handlers = """<noinput><log>first</log><reprompt/></noinput>
       <noinput count="3"><log>third</log></noinput>"""
