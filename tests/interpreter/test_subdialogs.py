@@ -82,6 +82,19 @@ def test_a_param_is_a_variable_of_the_form_that_is_called_alone() -> None:
     assert bench.logs() == ["5", "2"]
 
 
+def test_a_param_counts_also_when_the_form_that_is_called_is_entered_anew() -> None:
+    bench = Bench(
+        """<form id="a"><block><assign name="turns" expr="7"/></block>
+          <subdialog name="r" src="#sub"><param name="p" expr="5"/></subdialog></form>
+        <var name="turns" expr="0"/>
+        <form id="sub"><var name="p" expr="1"/><block>
+          <log><value expr="turns"/> <value expr="p"/></log><assign name="p" expr="9"/>
+          <assign name="turns" expr="turns + 1"/>
+          <if cond="turns == 1"><goto next="#sub"/></if><return/></block></form>"""
+    )
+    assert bench.logs() == ["0 5", "1 5"], "the document's variables are fresh at the call alone"
+
+
 def test_a_param_that_fails_is_an_error_of_the_caller() -> None:
     bench = Bench(
         """<var name="no"/>
