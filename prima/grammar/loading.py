@@ -87,7 +87,7 @@ def load(
         message = f'There is no rule "{rule}".'
         hint = other_rule(rule, document.rules)
         raise GrammarError.of(document.where(), "no-such-rule", message, hint)
-    if lenient and rule and not document.rules[rule].public and rule != document.root:
+    if lenient and rule and not document.rules[rule].public:
         message = f'The rule "{rule}" is private: it is for this grammar alone.'
         raise GrammarError.of(document.where(), "private-rule", message)
     return Grammar(document, rule, document.where, lenient, library.problems.warnings)

@@ -247,8 +247,9 @@ def test_a_meaning_without_the_fields_slot_is_the_fields_whole_value() -> None: 
     assert call.logs() == ["3"]
 
 
-def test_a_private_rule_does_not_listen_for_a_document() -> None:  # SRGS 3.2
-    abnf = "#ABNF 1.0;\nlanguage en; root $one; public $one = no; private $two = big;"
+@pytest.mark.parametrize("root", ["one", "two"])
+def test_a_private_rule_does_not_listen_for_a_document(root: str) -> None:  # SRGS 3.2
+    abnf = f"#ABNF 1.0;\nlanguage en; root ${root}; public $one = no; private $two = big;"
     call = Call(
         '<catch event="error.badfetch"><log>refused</log><exit/></catch><form><field name="q">'
         '<prompt>Well?</prompt><grammar src="a.gram#two" type="application/srgs"/></field></form>',
