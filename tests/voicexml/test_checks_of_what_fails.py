@@ -84,3 +84,29 @@ def test_a_format_of_answers_may_be_unused_or_its_event_expected(tmp_path: Path)
     assert failing(tmp_path, RECORDED.format("false") + TYPE + ASKS.format("")) == []
     expects = ASKS.format('<catch event="error.unsupported.format"/>')
     assert failing(tmp_path, RECORDED.format("true") + TYPE + expects) == []
+
+
+OWN_ROOTS = {
+    "two rules": ('version="1.0">{}<rule id="a">tea</rule>', 1),
+    "a root": ('version="1.0" root="a">{}<rule id="a">tea</rule>', 0),
+    "one public rule": ('version="1.0">{}<rule id="a" scope="public">tea</rule>', 0),
+    "ABNF": ('type="application/srgs">#ABNF 1.0;\n$a = tea; $b = $&lt;rest.gram>;', 1),
+    "ABNF with a root": ('type="application/srgs">#ABNF 1.0;\nroot $a;\n$a = tea; $b = no;', 0),
+}
+
+
+@pytest.mark.parametrize("what", OWN_ROOTS)
+def test_a_grammar_that_does_not_say_where_it_begins_is_told(tmp_path: Path, what: str) -> None:
+    """SRGS 1.0, 4.7: what has no root takes nothing by itself."""
+    (tmp_path / "rest.gram").write_text("#ABNF 1.0;\nlanguage en;\nroot $r;\n$r = milk;\n")
+    rest = '<rule id="b"><ruleref uri="rest.gram"/></rule>'
+    content, times = OWN_ROOTS[what]
+    grammar = f"<grammar {content.format(rest)}</grammar>"
+    path = tmp_path / "a.vxml"
+    path.write_text(
+        '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en"><form>'
+        f'<field name="f"><prompt>Well?</prompt>{grammar}</field></form></vxml>'
+    )
+    told = api.validate([str(path)])
+    assert [(one.code, one.severity) for one in told] == [("no-root", "warning")] * times
+    assert all("error.badfetch" in one.message for one in told)

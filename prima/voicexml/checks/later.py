@@ -7,6 +7,7 @@ from contextlib import suppress
 from typing import Literal
 
 from prima.errors import Hint, Problem, meant, nearest_word, one_of, suggestion
+from prima.errors.diagnoses.grammars import NO_ROOT
 from prima.errors.diagnoses.names import BAD_EXPRESSION, NO_SUCH_FORM, NO_SUCH_ITEM, NO_SUCH_NAME
 from prima.errors.diagnoses.structure import MISSING_ATTRIBUTE
 from prima.errors.diagnoses.values import ASKED_LATER, BAD_VALUE, EXCLUSIVE
@@ -72,6 +73,11 @@ NO_DIALOG = NO_SUCH_FORM.says(
 NO_ITEM = NO_SUCH_ITEM.says(
     'This {tag} has no item "{name}" to go to: this will be error.badfetch.',
     "Name another item.",
+    "warning",
+)
+ROOTLESS = NO_ROOT.says(
+    "This grammar names no root rule: when it is to listen, this will be error.badfetch.",
+    'Write root="NAME"; in the ABNF form, "root $NAME;".',
     "warning",
 )
 NO_PROPERTY = BAD_VALUE.says(
@@ -261,7 +267,7 @@ def grammar_problems(
         made = load(
             node, base=base, lang=lang, mode=mode, fetch=fetch, languages=listens_in, lenient=True
         )
-        return made.warnings()
+        return made.warnings() + ([] if made.root else [ROOTLESS.at(node.place)])
     except GrammarError as error:
         return [
             problem._replace(severity="warning", remedy=f"{problem.remedy} {LATER}".strip())
