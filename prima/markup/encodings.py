@@ -87,7 +87,7 @@ def _encoding(file: str, data: bytes) -> str:
     marked = next((name for mark, name in MARKS if data.startswith(mark)), "")
     declaration = ENCODING.match(data)
     declared = declaration[1].decode().lower() if declaration else ""
-    place = Place(file, 1, declaration.start(1) + 1) if declaration else Place(file)
+    place = _declared_at(file, declaration) if declaration else Place(file)
     if not marked and _codec(declared).startswith("utf-16"):
         message = f'The file says encoding="{declared}", but it is not in UTF-16.'
         raise DocumentError.of(place, "encoding", message, "Declare the encoding it has.")
@@ -97,6 +97,12 @@ def _encoding(file: str, data: bytes) -> str:
         where = place if encoding == declared else Place(file)
         raise DocumentError.of(where, "encoding", message, "Save it as UTF-8.")
     return encoding
+
+
+def _declared_at(file: str, declaration: re.Match[bytes]) -> Place:
+    """The place of the encoding's name in an XML declaration, which may have several lines."""
+    before = declaration.string[: declaration.start(1)].decode("latin-1")
+    return end_place(file, with_line_feeds(before))
 
 
 def _codec(encoding: str) -> str:
@@ -120,7 +126,7 @@ def misread(file: str, data: bytes) -> list[Problem]:
         data.decode("utf-8")
     except UnicodeDecodeError:
         return []
-    place = Place(file, 1, declaration.start(1) + 1)
+    place = _declared_at(file, declaration)
     hint = replaced('Write encoding="UTF-8".', "UTF-8", Span.of(place, declared))
     return [IN_UTF_8.at(place, hint, encoding=declared)]
 

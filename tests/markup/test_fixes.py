@@ -107,3 +107,13 @@ def test_words_are_written_as_a_value_may_have_them(tmp_path: Path, quote: str) 
     words = "Tom&apos;s &quot;fish &amp; chips&quot; at two"
     right = SCENE.format(world.name, lines.format(quote, words))
     assert mended_all(written(tmp_path, wrong, "visit.xml")) == [right]
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_a_declared_encoding_on_a_line_of_its_own_is_mended_there(tmp_path: Path, end: str) -> None:
+    text = "<?xml version='1.0'\n encoding='{}'?>\n" + VOICE.format(
+        "<form><block>Olé.</block></form>"
+    )
+    path = tmp_path / "tour.vxml"
+    path.write_bytes(text.format("ISO-8859-1").replace("\n", end).encode())
+    assert mended_all(path) == [text.format("UTF-8")]

@@ -367,6 +367,13 @@ def test_lines_of_an_xml_declaration_count() -> None:
     assert str(wrong.value).startswith(f"w.xml:5:{world.index(b'<palce') + 1}: ")
 
 
+def test_an_encoding_is_told_in_its_line() -> None:
+    declared = b"<?xml version='1.0'\r\n encoding='UTF-0'?>"
+    with pytest.raises(DocumentError) as wrong:
+        read_world("w.xml", declared + b'<world xmlns="urn:prima:world:1" version="1.0" id="w"/>')
+    assert str(wrong.value).startswith("w.xml:2:12: ")
+
+
 def test_other_documents_are_checked_alike(tmp_path: Path) -> None:
     world = b'<world xmlns="urn:prima:world:1" version="1.0" id="w">\n<place id="a" x="0" y="0"/>\n<way from="a" to="b"/></world>'
     with pytest.raises(DocumentError) as wrong:
