@@ -19,6 +19,7 @@ from prima.grammar.text import join
 from prima.script.budget import Budget
 from prima.script.evaluation import EngineLost, ScriptError
 from prima.script.hoisting import in_turn
+from prima.script.sandbox import NEXT
 
 if TYPE_CHECKING:
     from prima.messages import Json
@@ -242,9 +243,9 @@ def _program(frame: RuleFrame, codes: list[str]) -> str:
     for event in frame.events:
         if isinstance(event, Tag):
             number, code = next(numbered)
-            pieces.append(f"$next.at = {number};\n{code}\n;")
+            pieces.append(f"{NEXT}.at = {number};\n{code}\n;")
         elif isinstance(event, RuleFrame | Value):
-            pieces.append("yield $next; $next(out);")
+            pieces.append(f"yield {NEXT}; {NEXT}(out);")
     return "\n".join(pieces)
 
 

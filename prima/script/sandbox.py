@@ -27,7 +27,7 @@ def source(name: str) -> str:
 
 PRELUDE = source("repeatable.js")
 
-SAFE, GUARD, EVALUATE = "\u01c0safe", "\u01c0guard", "\u01c0evaluate"
+SAFE, GUARD, EVALUATE, NEXT = "\u01c0safe", "\u01c0guard", "\u01c0evaluate", "\u01c0next"
 GIVE, DECLARE = "\u01c0give", "\u01c0declare"
 NAME, REFUSE = "\u01c0name", "\u01c0refuse"
 """Names of the functions of :data:`GUARDS`, which documents hardly use."""

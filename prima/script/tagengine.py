@@ -21,6 +21,7 @@ from prima.script.sandbox import (
     GUARD,
     GUARDS,
     MEMORY_LIMIT,
+    NEXT,
     PRELUDE,
     reason,
     source,
@@ -114,14 +115,15 @@ class TagEngine:
         return self._call(self._help["environment"], well_formed(text), merges)
 
     def rule(self, code: str, environment: Any) -> Any:
-        """Run the tags of a rule to where ``yield $next`` waits for one that it refers to, or to its end.
+        """Run the tags of a rule to where ``yield`` waits for one that it refers to, or to its end.
 
         Returns:
             The boxed value, or None if it waits.
         """
         function = self._functions.get(code)
         if function is None:
-            body = f"(function* (rules, meta, $next, out) {{\n{code}\n$next.at = {DONE}; return {{ v: out }};\n}})"
+            end = f"{NEXT}.at = {DONE}; return {{ v: out }};"
+            body = f"(function* (rules, meta, {NEXT}, out) {{\n{code}\n{end}\n}})"
             function = self._functions[code] = self._call(self._context.eval, body)
         return self._reach(environment, self._call(self._help["begin"], environment, function))
 
