@@ -121,12 +121,9 @@ def rename(server: Server, params: lsp.RenameParams, at: Cursor) -> lsp.Workspac
 
 def will_move(server: Server, params: lsp.RenameFilesParams) -> lsp.WorkspaceEdit | None:
     """The edits that follow from moving files."""
-    found: list[naming.NameEdit] = []
-    for file in params.files:
-        old, new = path_of(file.old_uri), path_of(file.new_uri)
-        if old is not None and new is not None:
-            found += naming.moved(server.documents, old, new)
-    return server.edits(found)
+    named = [(path_of(file.old_uri), path_of(file.new_uri)) for file in params.files]
+    moves = {old: new for old, new in named if old is not None and new is not None}
+    return server.edits(naming.moved(server.documents, moves))
 
 
 def symbols(server: Server, params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol] | None:

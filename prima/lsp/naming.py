@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from os.path import exists
 from pathlib import Path
@@ -195,19 +195,18 @@ def _move(
         return [], None
     if exists(target) or target in workspace.open:
         raise RenameError(f'A file "{new}" already exists.')
-    return moved(workspace, link[0], target), (link[0], target)
+    return moved(workspace, {link[0]: target}), (link[0], target)
 
 
-def moved(workspace: Workspace, old: Path, new: Path) -> list[NameEdit]:
-    """The edits of documents that name a file, once it is renamed or moved."""
-    edits = [*_called(workspace, old, new)]
-    for path, start, end in workspace.naming(old):
-        if path != old:
-            edits.append(NameEdit(path, start, end, _written(workspace, path, new, path.parent)))
-    if new.parent != old.parent:
-        for target, start, end in workspace.named(old):
-            there = old if target == old else target
-            edits.append(NameEdit(old, start, end, _written(workspace, old, there, new.parent)))
+def moved(workspace: Workspace, moves: Mapping[Path, Path]) -> list[NameEdit]:
+    """The edits of documents that name files, or move, once files are renamed or moved together."""
+    edits = [edit for old, new in moves.items() for edit in _called(workspace, old, new)]
+    for path in sorted({*workspace.files(), *moves}):
+        folder = moves.get(path, path).parent
+        for target, start, end in workspace.named(path):
+            written = _written(workspace, path, moves.get(target, target), folder)
+            if written != _written(workspace, path, target, path.parent):
+                edits.append(NameEdit(path, start, end, written))
     return edits
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -383,7 +384,7 @@ def test_names_of_files_with_signs_are_found_and_written(
         assert target is not None and target.parent == tmp_path
         target.write_text(voice, encoding="utf-8")
         assert naming.definitions(workspace, tmp_path / there, offset)[0].path == target
-        edits = naming.moved(workspace, target, tmp_path / "sub" / target.name)
+        edits = naming.moved(workspace, {target: tmp_path / "sub" / target.name})
         made = [(text[one.start : one.end], one.text) for one in edits
                 if one.path == tmp_path / there]  # fmt: skip
         assert made == [(name, f"sub/{says}")]
@@ -400,6 +401,54 @@ def test_files_that_the_editor_moves_are_followed(editor: Editor) -> None:
     assert 'src="fa/follow.xml"' in made and "../" not in made
 
 
+def test_files_that_the_editor_moves_at_once_find_each_other(editor: Editor) -> None:
+    moves = {
+        "scenarios/follow-alone.xml": "more/alone/follow-alone.xml",
+        "fa/follow.xml": "more/pet.xml",
+        "ea/pizza.vxml": "more/pizza.vxml",
+    }
+    files = [lsp.FileRename(editor.uri(old), editor.uri(new)) for old, new in moves.items()]
+    asked = lsp.RenameFilesParams(files)
+    change = editor.do(editor.client.workspace_will_rename_files_async(asked))
+    assert change is not None and change.changes is not None
+    for name, words in (
+        ("scenarios/follow-alone.xml", 'src="../pet.xml"'),
+        ("scenarios/pizza-and-follow.xml", 'src="../more/pizza.vxml"'),
+        ("scenarios/pizza-and-follow.xml", 'src="../more/pet.xml"'),
+    ):
+        edits = list(change.changes[editor.uri(name)])
+        assert len({str(one.range) for one in edits}) == len(edits), "one edit a place"
+        assert words in edited((editor.folder / name).read_text(encoding="utf-8"), edits)
+
+
+@pytest.mark.parametrize(
+    ("moves", "written"),
+    [
+        ({"a": "b"}, {"a": ["b", "./leaf"], "leaf": ["b"]}),
+        ({"a": "sub/b"}, {"a": ["b", "../leaf"], "leaf": ["sub/b"]}),
+        ({"a": "sub/a", "leaf": "sub/leaf"}, {}),
+        ({"a": "leaf", "leaf": "a"}, {"a": ["leaf", "a"], "leaf": ["leaf"]}),
+    ],
+)
+def test_names_of_files_follow_only_where_they_change(
+    tmp_path: Path, moves: dict[str, str], written: dict[str, list[str]]
+) -> None:
+    workspace, folder = Workspace(), tmp_path.resolve()
+    texts = {
+        name: VOICE + "<form><block>" + "".join(f'<goto next="{one}.vxml#f"/>' for one in to)
+        for name, to in (("a", ["a", "./leaf"]), ("leaf", ["a"]))
+    }
+    for name, text in texts.items():
+        workspace.put((folder / f"{name}.vxml").as_uri(), text)
+    files = {folder / f"{old}.vxml": folder / f"{new}.vxml" for old, new in moves.items()}
+    edits = sorted(naming.moved(workspace, files), key=_start)[::-1]
+    for edit in edits:
+        text = texts[edit.path.stem]
+        texts[edit.path.stem] = text[: edit.start] + edit.text + text[edit.end :]
+    found = {edit.path.stem: texts[edit.path.stem] for edit in edits}
+    assert {name: re.findall(r'"(\S+)\.vxml#f"', text) for name, text in found.items()} == written
+
+
 def test_a_voicexml_application_is_called_by_its_new_file_in_scenarios(tmp_path: Path) -> None:
     workspace, folder = Workspace(), tmp_path.resolve()
     text = (
@@ -413,7 +462,8 @@ def test_a_voicexml_application_is_called_by_its_new_file_in_scenarios(tmp_path:
         scene = text.format(file, given, ends, ends)
         path = workspace.put((folder / f"{ends}.xml").as_uri(), scene)
         assert page is not None and path is not None
-        for edit in sorted(naming.moved(workspace, page, folder / "cake 2.vxml"), key=_start)[::-1]:
+        moves = {page: folder / "cake 2.vxml"}
+        for edit in sorted(naming.moved(workspace, moves), key=_start)[::-1]:
             assert edit.path == path
             scene = scene[: edit.start] + edit.text + scene[edit.end :]
         assert scene == text.format("cake 2.vxml", given, new, new)
