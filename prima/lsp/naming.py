@@ -216,6 +216,8 @@ def _called(workspace: Workspace, old: Path, new: Path) -> Iterator[NameEdit]:
     before, after = named_after(old), named_after(new)
     if text is None or dialect(text.top) != "voicexml" or before == after:
         return
+    if all(workspace.has_uris(one.path) for one in workspace.naming(old)):
+        return  # a page of an application alone
     for path in workspace.related(old):
         called = [
             one

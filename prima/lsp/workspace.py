@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
+from prima.digraphs import led_to
 from prima.errors import DocumentError
 from prima.loading.applications import named_after
 from prima.lsp.meanings import FILES, SHARED
 from prima.lsp.names import FoundName, Mark, NameSpot, dialect, marks
-from prima.lsp.paths import MOST_FILES, file_named, path_of, uri_of, walk
+from prima.lsp.paths import MOST_FILES, SUFFIXES, file_named, path_of, uri_of, walk
 from prima.lsp.scan import ScannedText
 from prima.lsp.tables import resolve
 from prima.lsp.text import Lines
@@ -175,24 +176,24 @@ class Workspace:
                     found.append((target, first, first + length))
         return found
 
-    def reading(self, path: Path) -> set[Path]:
-        """The files that a scenario or world names, and those that its world names."""
-        found: set[Path] = set()
-        for target, *_ in self.named(path):
-            found.add(target)
-            text = self.text(target)
-            if text is not None and dialect(text.top) == "world":
-                found |= {one for one, *_ in self.named(target)}
-        return found
+    def reading(self, path: Path, ways: Callable[[Path], set[Path]] | None = None) -> set[Path]:
+        """The files that a scenario or world names, those that its world and pages name, and so on."""
+        return led_to((one for one, *_ in self.named(path)), ways or self._ways)
+
+    def _ways(self, path: Path) -> set[Path]:
+        """The files that a world or a page of VoiceXML names; recordings are not looked into."""
+        text = self.text(path) if path.suffix.lower() in SUFFIXES else None
+        known = text is not None and dialect(text.top) in ("world", "voicexml")
+        return {one for one, *_ in self.named(path)} if known else set()
 
     def _scenes(self) -> Iterator[tuple[Path, set[Path]]]:
         """Every scenario with the files that belong to it."""
+        ways = cache(self._ways)
         for path in self.files():
             text = self.text(path)
             if text is None or "scenario" not in text.text or dialect(text.top) != "scenario":
                 continue
-            belongs = self.reading(path) | {path}
-            yield path, belongs
+            yield path, self.reading(path, ways) | {path}
 
     def related(self, path: Path) -> list[Path]:
         """A document and those in a scenario with it."""
@@ -292,8 +293,9 @@ class Workspace:
         called = {self.target(path, one.get("src")): one.get("id") for one in tags}
         written = [one for one in called if one is not None]
         paths = [*written, *sorted(self.reading(path).difference(written))]
-        named = (one for one in paths if by in ("", called.get(one) or self._id_of(one)))
-        return self._defined(named, frozenset({"form"}))
+        named = [one for one in paths if by in ("", called.get(one) or self._id_of(one))]
+        pages = [*named, *sorted(led_to(named, self._ways).difference(named))]
+        return self._defined(pages, frozenset({"form"}))
 
     def _id_of(self, path: Path) -> str:
         """A document's id, or else the name of its file."""

@@ -87,6 +87,45 @@ def test_a_name_is_renamed_wherever_it_is_used(
     assert renamed(space, file, words) == made
 
 
+def test_the_pages_of_a_voicexml_application_belong_to_its_scenarios(space: Workspace) -> None:
+    folder = space.folders[0]
+    first = VOICE + '<form id="start"><block><goto next="more.vxml#more"/></block></form></vxml>'
+    more = VOICE + '<form id="more"><block><p:topological-move to="door"/><goto next="first.vxml"/>'
+    scene = SCENE.replace('src="two.xml" id="b"', 'src="first.vxml"').replace(
+        'state="start" by="b"', 'state="more" by="first"'
+    )
+    for name, text in (("first.vxml", first), ("more.vxml", more), ("s.xml", scene)):
+        (folder / name).write_text(text, encoding="utf-8")
+    form = {"first.vxml": 1, "more.vxml": 1, "s.xml": 1}
+    assert renamed(space, "more.vxml", 'form id="') == form
+    assert renamed(space, "s.xml", 'state="start" by="one"/><expect state="') == form
+    places = {"more.vxml": 1, "r.xml": 1, "s.xml": 1, "u.xml": 1, "w.xml": 1}
+    assert renamed(space, "w.xml", 'place id="') == places
+    assert renamed(space, "more.vxml", 'move to="') == places
+    text, offset = plain(scene.replace('"more" by', '"|" by'))
+    space.put((folder / "s.xml").as_uri(), text)
+    assert {one.label for one in complete(space, folder / "s.xml", offset)} == {"start", "more"}
+
+
+def test_a_page_whose_file_is_renamed_renames_no_application(space: Workspace) -> None:
+    folder = space.folders[0]
+    (folder / "in").mkdir()
+    first = VOICE + '<form id="start"><block><goto next="in/two.vxml"/></block></form></vxml>'
+    scene = SCENE.replace('src="one.xml"', 'src="first.vxml"').replace(
+        'src="two.xml" id="b"', 'src="two.vxml"'
+    )
+    texts = {
+        "first.vxml": first,
+        "two.vxml": VOICE + "<form/></vxml>",
+        "in/two.vxml": VOICE + "<form/></vxml>",
+        "s.xml": scene.replace('by="b"', 'by="two"'),
+    }
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    edits = naming.moved(space, {folder / "in" / "two.vxml": folder / "in" / "three.vxml"})
+    assert [(edit.path.name, edit.text) for edit in edits] == [("first.vxml", "in/three.vxml")]
+
+
 def test_states_are_proposed_of_the_application_that_is_named(space: Workspace) -> None:
     path = space.folders[0] / "s.xml"
     for by, names in (("one", {"start"}), ("b", {"start"}), ("two", set()), ("", {"start"})):
