@@ -128,6 +128,8 @@ def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:
     path = path_of(params.text_document.uri)
     if path is None or path not in server.documents.open:
         return
+    if _open_otherwise(server, path, params.text_document.uri):
+        return
     reported = server.reported.pop(path, {})
     concerned = server.concerned(path)
     uri = server.documents.uri(path)
@@ -138,6 +140,16 @@ def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:
         server.text_document_publish_diagnostics(lsp.PublishDiagnosticsParams(uri, []))
     for other in concerned:  # the files on disk are used again
         server.check_soon(other, LATER)
+
+
+def _open_otherwise(server: Server, path: Path, closed: str) -> bool:
+    """Go on with the text of a file that stays open by another URI, such as a link's, if it does."""
+    others = [one for one in server.workspace.text_documents.values() if path_of(one.uri) == path]
+    for other in others[-1:]:
+        server.text_document_publish_diagnostics(lsp.PublishDiagnosticsParams(closed, []))
+        server.documents.put(other.uri, other.source, other.version)
+        _check(server, path)
+    return bool(others)
 
 
 def _files_changed(server: Server, params: lsp.DidChangeWatchedFilesParams) -> None:

@@ -18,6 +18,9 @@ def shown(problem: Any) -> tuple[int, int, str, str, str]:
     return problem.place.line, problem.place.column, problem.severity, problem.code, words
 
 
+WORLD = (
+    '<world xmlns="urn:prima:world:1" version="1.0" id="w"><place id="door" x="0" y="0"/></world>'
+)
 SEVERITIES = {1: "error", 2: "warning", 3: "note"}
 
 
@@ -210,17 +213,16 @@ def test_problems_of_a_file_that_is_not_open_stand_with_it(editor: Editor) -> No
 
 
 def test_files_and_folders_that_change_are_seen_at_once(tmp_path: Path) -> None:
-    world = '<world xmlns="urn:prima:world:1" version="1.0" id="w"><place id="door" x="0" y="0"/></world>'
     watching = lsp.DidChangeWatchedFilesClientCapabilities(dynamic_registration=True)
     able = lsp.WorkspaceClientCapabilities(did_change_watched_files=watching)
     home, other = tmp_path / "home", tmp_path / "other"
     for folder in (home, other):
         folder.mkdir()
-        (folder / "w.xml").write_text(world, encoding="utf-8")
+        (folder / "w.xml").write_text(WORLD, encoding="utf-8")
     editor = Editor(home, lsp.ClientCapabilities(workspace=able))
     scene = '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="|w.xml"><robot at="door"/>'
     assert editor.proposals("s.xml", scene).keys() == {"w.xml"}
-    (home / "new.xml").write_text(world, encoding="utf-8")
+    (home / "new.xml").write_text(WORLD, encoding="utf-8")
     saved = lsp.TextDocumentIdentifier(editor.uri("new.xml"))
     editor.client.text_document_did_save(lsp.DidSaveTextDocumentParams(saved))
     assert editor.proposals("s.xml", scene).keys() == {"w.xml", "new.xml"}
@@ -230,11 +232,27 @@ def test_files_and_folders_that_change_are_seen_at_once(tmp_path: Path) -> None:
     assert editor.proposals("s.xml", scene).keys() == {"w.xml", "new.xml", "../other/w.xml"}
     whole = scene.replace("|", "") + "</scenario>"
     assert "no-such-name" not in [one.code for one in editor.open("s.xml", whole)]
-    (home / "w.xml").write_text(world.replace("door", "gate"), encoding="utf-8")
+    (home / "w.xml").write_text(WORLD.replace("door", "gate"), encoding="utf-8")
     change = lsp.FileEvent(editor.uri("w.xml"), lsp.FileChangeType.Changed)
     editor.client.workspace_did_change_watched_files(lsp.DidChangeWatchedFilesParams([change]))
     editor.until("s.xml", "no-such-name")
     assert editor.watched == ["**/*.xml", "**/*.vxml", "**/*.grxml"]
+    assert editor.end() == (0, "")
+
+
+def test_a_file_open_by_two_names_stays_open_until_both_are_closed(tmp_path: Path) -> None:
+    editor = Editor(tmp_path.resolve(), lsp.ClientCapabilities())
+    good = BEGIN + '<form id="a"><block><exit/></block></form></prima>'
+    (tmp_path / "x.xml").write_text(good, encoding="utf-8")
+    (tmp_path / "link.xml").symlink_to(tmp_path / "x.xml")
+    assert editor.open("x.xml", good) == editor.open("link.xml", good) == []
+    bad = good.replace("exit", "exi")
+    assert editor.change("link.xml", bad)
+    editor.close("link.xml")
+    editor.until("link.xml", "unknown-element", there=False)
+    assert editor.problems("x.xml") == [], "its text is the one that the editor shows"
+    assert editor.change("x.xml", bad)
+    editor.close("x.xml")
     assert editor.end() == (0, "")
 
 
