@@ -102,6 +102,7 @@ def _folders_changed(server: Server, params: lsp.DidChangeWorkspaceFoldersParams
 
 def _opened(server: Server, params: lsp.DidOpenTextDocumentParams) -> None:
     document = params.text_document
+    server.documents.forget()  # a file outside of all folders brings its own
     path = server.documents.put(document.uri, document.text, document.version)
     if path is not None:
         _check(server, path)

@@ -256,6 +256,18 @@ def test_a_file_open_by_two_names_stays_open_until_both_are_closed(tmp_path: Pat
     assert editor.end() == (0, "")
 
 
+def test_a_file_outside_of_the_workspace_finds_its_neighbours_at_once(tmp_path: Path) -> None:
+    home, other = tmp_path / "home", tmp_path / "far" / "other"
+    for folder in (home, other):
+        folder.mkdir(parents=True)
+        (folder / "w.xml").write_text(WORLD, encoding="utf-8")
+    editor = Editor(home, lsp.ClientCapabilities())
+    scene = '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="|"/>'
+    assert editor.proposals("s.xml", scene).keys() == {"w.xml"}
+    assert editor.proposals("../far/other/s.xml", scene).keys() == {"w.xml", "../../home/w.xml"}
+    assert editor.end() == (0, "")
+
+
 def test_xml_of_other_people_is_left_alone(editor: Editor) -> None:
     assert (
         editor.open("pom.xml", '<project xmlns="http://maven.apache.org/POM/4.0.0"><a></project>')
