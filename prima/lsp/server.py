@@ -7,7 +7,7 @@ import functools
 import logging
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, BinaryIO, TypeVar, cast
 
@@ -62,7 +62,8 @@ def _at_cursor(
 
 
 def _initialized(server: Server, params: lsp.InitializedParams) -> None:
-    server.documents.folders = _folders(server)
+    root = server.workspace.root_uri  # of an editor that knows only one folder
+    server.documents.folders = _folders(server) or _paths([root] if root else [])
     workspace = server.client_capabilities.workspace
     watching = workspace.did_change_watched_files if workspace else None
     if watching and watching.dynamic_registration:
@@ -89,9 +90,10 @@ def _warm() -> None:
 
 
 def _folders(server: Server) -> list[Path]:
-    uris = [folder.uri for folder in server.workspace.folders.values()]
-    if not uris and server.workspace.root_uri:
-        uris = [server.workspace.root_uri]
+    return _paths(folder.uri for folder in server.workspace.folders.values())
+
+
+def _paths(uris: Iterable[str]) -> list[Path]:
     return [path for uri in uris if (path := path_of(uri)) is not None]
 
 

@@ -265,6 +265,10 @@ def test_a_file_outside_of_the_workspace_finds_its_neighbours_at_once(tmp_path: 
     scene = '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="s" world="|"/>'
     assert editor.proposals("s.xml", scene).keys() == {"w.xml"}
     assert editor.proposals("../far/other/s.xml", scene).keys() == {"w.xml", "../../home/w.xml"}
+    removed = [lsp.WorkspaceFolder(home.as_uri(), "home")]
+    event = lsp.WorkspaceFoldersChangeEvent(added=[], removed=removed)
+    editor.client.workspace_did_change_workspace_folders(lsp.DidChangeWorkspaceFoldersParams(event))
+    assert editor.proposals("../far/other/s.xml", scene).keys() == {"w.xml"}
     assert editor.end() == (0, "")
 
 
