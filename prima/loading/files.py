@@ -173,6 +173,14 @@ def _open_text(path: str | Path) -> bytes | None:
         return None
 
 
+def size_of(path: str | Path) -> int | None:
+    """The size of a document in bytes; None if there is no such file, nor a replacement of it."""
+    text = _open_text(path)
+    if text is not None:
+        return len(text)
+    return getsize(path) if isfile(path) else None
+
+
 def read_file(path: str | Path) -> bytes:
     """Read a document's bytes, up to the limit.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
-from os.path import dirname, getsize, isfile
+from os.path import dirname
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
@@ -23,7 +23,7 @@ from prima.loading.diagnoses import (
     OUTSIDE,
     TOO_LARGE_HERE,
 )
-from prima.loading.files import Folder, texts_of
+from prima.loading.files import Folder, size_of, texts_of
 from prima.loading.similar import nearby
 from prima.markup.limits import LIMITS
 from prima.markup.spans import value_span
@@ -167,10 +167,10 @@ def _not_there(
     listed: dict[Path, list[Path]] = {}
     whole = folder.resolve()
     for node, name, file in _files_named(page, nodes, answered):
-        there = isfile(folder / file)
+        size = size_of(folder / file)
         inside = not file.startswith("../")
-        if there and inside and (folder / file).resolve().is_relative_to(whole):
-            if (size := getsize(folder / file)) > LIMITS.bytes:
+        if size is not None and inside and (folder / file).resolve().is_relative_to(whole):
+            if size > LIMITS.bytes:
                 missing.add(node)
                 place = node.attribute_place(name)
                 yield TOO_LARGE_HERE.at(place, file=file[:80], size=size, most=LIMITS.bytes)
@@ -178,7 +178,7 @@ def _not_there(
         uri = node.get(name).strip().partition("#")[0].partition("?")[0]
         spans = value_span(node, name, uri)
         missing.add(node)
-        if there:
+        if size is not None:
             yield OUTSIDE.at(node.attribute_place(name), file=file[:80])
             continue
         few = len(missing) <= LIMITS.problems  # problems that are not listed need no hint

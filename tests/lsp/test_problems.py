@@ -10,7 +10,7 @@ from lsprotocol import types as lsp
 
 from prima import api
 from prima.errors.visible import HARMFUL
-from tests.helpers.editor import BEGIN, SCENE, VOICE, WRONG, Editor, cut
+from tests.helpers.editor import BEGIN, SCENE, SRGS, VOICE, WRONG, Editor, cut
 
 
 def shown(problem: Any) -> tuple[int, int, str, str, str]:
@@ -199,6 +199,24 @@ def test_unsaved_text_counts_for_dialogs_and_grammars_that_an_application_names(
     editor.change("ea/more.grxml", rules.replace('"r"', '"q"'))
     editor.until("ea/rules.grxml", "no-such-rule")
     editor.close("ea/rules.grxml", "ea/more.grxml", "ea/first.vxml")
+
+
+def test_a_file_that_is_not_saved_yet_is_there(editor: Editor) -> None:
+    first = (
+        VOICE
+        + """<form id="m">
+      <field name="x"><grammar src="fresh.grxml" type="application/srgs+xml"/></field>
+      <block><goto next="fresh.vxml#a"/></block></form></vxml>"""
+    )
+    codes = [one.code for one in editor.open("ea/first.vxml", first)]
+    assert codes.count("no-such-file") == 2
+    editor.open("ea/fresh.vxml", VOICE + '<form id="b"><block><exit/></block></form></vxml>')
+    editor.open("ea/fresh.grxml", SRGS + '<rule id="r">yes</rule></grammar>')
+    editor.until("ea/first.vxml", "no-such-file", there=False)
+    editor.until("ea/first.vxml", "no-such-form")
+    editor.close("ea/fresh.vxml", "ea/fresh.grxml")
+    editor.until("ea/first.vxml", "no-such-file")
+    editor.close("ea/first.vxml")
 
 
 def test_problems_of_a_file_that_is_not_open_stand_with_it(editor: Editor) -> None:
