@@ -14,6 +14,7 @@ from typing import Any, BinaryIO, TypeVar, cast
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcException
 
+from prima.checks.ignores import KINDS, SETTINGS
 from prima.errors import UsageError
 from prima.lsp import answers
 from prima.lsp.paths import path_of
@@ -67,7 +68,8 @@ def _initialized(server: Server, params: lsp.InitializedParams) -> None:
     workspace = server.client_capabilities.workspace
     watching = workspace.did_change_watched_files if workspace else None
     if watching and watching.dynamic_registration:
-        watchers = [lsp.FileSystemWatcher(f"**/*.{kind}") for kind in ("xml", "vxml", "grxml")]
+        names = [f"*{kind}" for kind in KINDS] + [SETTINGS]
+        watchers = [lsp.FileSystemWatcher(f"**/{name}") for name in names]
         server.client_register_capability(
             lsp.RegistrationParams(
                 [

@@ -254,7 +254,8 @@ def test_files_and_folders_that_change_are_seen_at_once(tmp_path: Path) -> None:
     change = lsp.FileEvent(editor.uri("w.xml"), lsp.FileChangeType.Changed)
     editor.client.workspace_did_change_watched_files(lsp.DidChangeWatchedFilesParams([change]))
     editor.until("s.xml", "no-such-name")
-    assert editor.watched == ["**/*.xml", "**/*.vxml", "**/*.grxml"]
+    kinds = [f"**/*.{kind}" for kind in ("xml", "vxml", "grxml", "gram", "abnf")]
+    assert editor.watched == [*kinds, "**/prima.toml"], "as prima validate --watch does"
     assert editor.end() == (0, "")
 
 
