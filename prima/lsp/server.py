@@ -170,9 +170,9 @@ def _saved(server: Server, params: lsp.DidSaveTextDocumentParams) -> None:
 def make_server() -> Server:
     """A server, ready to start."""
     server = Server()
-    files = lsp.FileOperationRegistrationOptions(
-        [lsp.FileOperationFilter(lsp.FileOperationPattern("**/*.{xml,vxml,grxml}"), "file")]
-    )
+    kinds_of_files = ",".join(kind[1:] for kind in KINDS)
+    pattern = lsp.FileOperationPattern(f"**/*.{{{kinds_of_files}}}")
+    files = lsp.FileOperationRegistrationOptions([lsp.FileOperationFilter(pattern, "file")])
     kinds = lsp.CodeActionOptions([lsp.CodeActionKind.QuickFix])
     for method, handler, options in (
         (lsp.INITIALIZED, _initialized, None),

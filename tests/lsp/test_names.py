@@ -421,6 +421,26 @@ def test_files_that_the_editor_moves_at_once_find_each_other(editor: Editor) -> 
         assert words in edited((editor.folder / name).read_text(encoding="utf-8"), edits)
 
 
+def test_a_grammar_in_abnf_that_the_editor_moves_is_followed(tmp_path: Path) -> None:
+    able = lsp.FileOperationClientCapabilities(will_rename=True)
+    workspace = lsp.WorkspaceClientCapabilities(file_operations=able)
+    editor = Editor(tmp_path.resolve(), lsp.ClientCapabilities(workspace=workspace))
+    asked = editor.started.capabilities.workspace
+    assert asked and asked.file_operations and asked.file_operations.will_rename
+    (files,) = asked.file_operations.will_rename.filters
+    assert files.pattern.glob == "**/*.{xml,vxml,grxml,gram,abnf}"
+    text = VOICE + '<form><field name="f"><grammar src="yes.gram#r"/></field></form></vxml>'
+    editor.open("x.vxml", text)
+    move = lsp.FileRename(editor.uri("yes.gram"), editor.uri("more/yes.gram"))
+    change = editor.do(
+        editor.client.workspace_will_rename_files_async(lsp.RenameFilesParams([move]))
+    )
+    assert change is not None and change.changes is not None
+    edits = list(change.changes[editor.uri("x.vxml")])
+    assert edited(text, edits) == text.replace("yes.gram", "more/yes.gram")
+    assert editor.end() == (0, "")
+
+
 @pytest.mark.parametrize(
     ("moves", "written"),
     [
