@@ -116,17 +116,18 @@ def _check(
     from prima import loading  # not the whole interface, for a quick start
     from prima.loading.similar import in_words
 
-    problems: list[Problem] = []
+    found: dict[str, list[Problem]] = {}
     unread: list[str] = []
     names = _expanded(files)
     validation = loading.Validation(loading.mappings(maps, names))
-    for index, name in enumerate(names, 1):
+    for index, name in enumerate(loading.upper_first(names), 1):
         try:
-            problems += validation.problems(name)
+            found[name] = validation.problems(name)
         except UsageError as error:
             unread.append(in_words(error))
         if len(names) >= MANY:
             show_count(index, len(names), "files")
+    problems = [problem for name in names for problem in found.get(name, ())]
     problems = loading.once([*problems, *validation.ignored()])
     _show([one for one in problems if notes or one.severity != "note"], form)
     for message in unread:

@@ -19,12 +19,12 @@ from prima.loading.scenarios import (
     with_scenario,
 )
 from prima.loading.stages import stage
-from prima.loading.validation import Validation, once, validate
+from prima.loading.validation import Validation, once, upper_first, validate
 from prima.loading.voicedocuments import mappings
 
 __all__ = [
     "Loaded", "Validation", "documents_folder", "favourite_problem", "is_application",
     "is_foreign", "is_grammar", "is_voicexml", "load", "load_scenario", "load_services",
     "load_text", "mappings", "once", "read_application", "schemas_folder", "seeded", "stage",
-    "validate", "with_robot", "with_scenario",
+    "upper_first", "validate", "with_robot", "with_scenario",
 ]  # fmt: skip

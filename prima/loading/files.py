@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
-from os.path import abspath, exists, getsize, isdir, isfile, join, normpath
+from os.path import abspath, exists, getsize, isdir, isfile, join, normpath, relpath
 from pathlib import Path
 from typing import Protocol
 from urllib.parse import unquote, urlsplit
@@ -52,6 +52,19 @@ class GivenFiles:
 
 
 _files: ContextVar[Files | None] = ContextVar("files", default=None)
+
+
+_fetched: ContextVar[dict[Path, Path] | None] = ContextVar("fetched", default=None)
+
+
+@contextmanager
+def noting_fetched(folders: dict[Path, Path]) -> Iterator[None]:
+    """Note each file that an application fetches, with the folder of the first one that does."""
+    token = _fetched.set(folders)
+    try:
+        yield
+    finally:
+        _fetched.reset(token)
 
 
 @contextmanager
@@ -162,6 +175,11 @@ def absolute(path: str | Path) -> Path:
     return Path(abspath(join(files.folder if files else "", path)))
 
 
+def relative(path: str, folder: str) -> str:
+    """A file's path in a folder above it, with ``/``."""
+    return Path(relpath(path, folder or ".")).as_posix()
+
+
 def _open_text(path: str | Path) -> bytes | None:
     """The replacement of a file, if any."""
     files = _files.get()
@@ -269,6 +287,8 @@ class Folder:
         from prima.voicexml.document import FetchError
 
         target = self._inside(uri)
+        if (fetched := _fetched.get()) is not None:
+            fetched.setdefault(target, absolute(self.path))
         try:
             return read_file(target)
         except UsageError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from os.path import dirname, join, normpath
 from pathlib import Path
 
 from prima.checks.ignores import Ignores
@@ -16,7 +17,7 @@ from prima.errors import (
 from prima.interpreter.elements import Document
 from prima.interpreter.vocabulary.dialogue import DIALOGUE
 from prima.loading.applications import fetcher, in_folder, read_native, services_of
-from prima.loading.files import paths_of, read_file
+from prima.loading.files import absolute, noting_fetched, paths_of, read_file, relative
 from prima.loading.folders import documents_folder
 from prima.loading.kinds import GRAMMAR_FILES, is_grammar, is_surely_ours, is_voicexml
 from prima.loading.reading import Reading
@@ -44,8 +45,13 @@ def validate(paths: str | Path | Iterable[str | Path], maps: Iterable[str] = ())
     """
     named = paths_of(paths, "paths")
     validation = Validation(mappings(maps, named))
-    problems = [problem for path in named for problem in validation.problems(path)]
+    problems = [problem for path in upper_first(named) for problem in validation.problems(path)]
     return listed(sorted(once([*problems, *validation.ignored()])), LIMITS.problems)
+
+
+def upper_first(paths: Iterable[str]) -> list[str]:
+    """Files in the order in which they are to be checked: an application before its subfolders."""
+    return sorted(paths, key=lambda path: len(absolute(path).parts))
 
 
 def once(problems: Iterable[Problem]) -> list[Problem]:
@@ -63,6 +69,9 @@ def once(problems: Iterable[Problem]) -> list[Problem]:
 class Validation:
     """Checks documents one after the other, and finally their ignores.
 
+    A page or a grammar that an application has fetched from a folder below its own may name files
+    in the application's folder.
+
     Args:
         maps: folders of VoiceXML documents by the URIs at which they are served.
     """
@@ -70,6 +79,8 @@ class Validation:
     def __init__(self, maps: Mapping[str, str] | None = None) -> None:
         self._maps = maps or {}
         self._ignores = Ignores(read_file)
+        self._folders: dict[Path, Path] = {}
+        """The folders of the applications that have fetched files, by the files."""
 
     def problems(self, path: str | Path) -> list[Problem]:
         """The problems of a document that are not ignored.
@@ -77,25 +88,34 @@ class Validation:
         Raises:
             UsageError: the file cannot be read.
         """
-        with few_guesses(), seldom_collected():
-            found = self._ignores.left(_validate_one(str(path), self._maps))
+        with few_guesses(), seldom_collected(), noting_fetched(self._folders):
+            found = self._ignores.left(_validate_one(str(path), self._folder(path), self._maps))
         self._ignores.check(str(path))
         return in_order(found)
+
+    def _folder(self, path: str | Path) -> str:
+        """The folder whose files a document may name, written as the document's path is."""
+        file = absolute(path)
+        folder = self._folders.get(file, file.parent)
+        up = [".."] * len(file.parent.relative_to(folder).parts)
+        return normpath(join(dirname(path), *up)) if up else dirname(path)
 
     def ignored(self) -> list[Problem]:
         """The problems of ignores in the documents checked: no reason, or nothing to ignore."""
         return in_order(self._ignores.problems())
 
 
-def _validate_one(path: str, maps: Mapping[str, str]) -> list[Problem]:
+def _validate_one(path: str, folder: str, maps: Mapping[str, str]) -> list[Problem]:
     try:
         data = read_file(path)
-        return [*misread(path, data), *_problems_by_kind(path, data, maps)]
+        return [*misread(path, data), *_problems_by_kind(path, data, folder, maps)]
     except DocumentError as error:
         return error.problems
 
 
-def _problems_by_kind(path: str, data: bytes, maps: Mapping[str, str]) -> list[Problem]:
+def _problems_by_kind(
+    path: str, data: bytes, folder: str, maps: Mapping[str, str]
+) -> list[Problem]:
     """The problems of a document, by its beginning.
 
     Raises:
@@ -104,9 +124,9 @@ def _problems_by_kind(path: str, data: bytes, maps: Mapping[str, str]) -> list[P
     if is_surely_ours(data):
         return _application_problems(path, data)
     if is_voicexml(data):
-        return list(voicexml_problems(path, data, mapped_site(path, maps)))
+        return list(voicexml_problems(path, data, mapped_site(path, maps), folder=folder))
     if is_grammar(data) or path.lower().endswith(GRAMMAR_FILES):
-        return _grammar_problems(Path(path), data)
+        return _grammar_problems(path, data, folder)
     return _problems_by_namespace(path, data)
 
 
@@ -159,15 +179,16 @@ def _application_problems(path: str, data: bytes) -> list[Problem]:
     return problems + _prices(document) if b"<iu" in data else problems
 
 
-def _grammar_problems(path: Path, data: bytes) -> list[Problem]:
-    """The problems of a grammar, and of those in its folder that it refers to."""
+def _grammar_problems(path: str, data: bytes, folder: str) -> list[Problem]:
+    """The problems of a grammar, and of those in a folder that it refers to."""
     from prima.grammar import load
 
+    place = Path(folder)
     try:
-        problems = load(data, base=path.name, fetch=fetcher(path.parent)).warnings()
+        problems = load(data, base=relative(path, folder), fetch=fetcher(place)).warnings()
     except DocumentError as error:
         problems = error.problems
-    return [in_folder(path.parent, problem) for problem in problems]
+    return [in_folder(place, problem) for problem in problems]
 
 
 def _prices(document: Document) -> list[Problem]:

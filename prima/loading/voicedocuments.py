@@ -23,7 +23,7 @@ from prima.loading.diagnoses import (
     OUTSIDE,
     TOO_LARGE_HERE,
 )
-from prima.loading.files import Folder, size_of, texts_of
+from prima.loading.files import Folder, relative, size_of, texts_of
 from prima.loading.similar import nearby
 from prima.markup.limits import LIMITS
 from prima.markup.spans import value_span
@@ -66,11 +66,16 @@ def mapped_site(path: str, maps: Mapping[str, str]) -> Site | None:
 
 
 def voicexml_problems(
-    path: str, data: bytes, site: Site | None = None, answered: tuple[str, ...] = ()
+    path: str,
+    data: bytes,
+    site: Site | None = None,
+    answered: tuple[str, ...] = (),
+    folder: str | None = None,
 ) -> Iterator[Problem]:
     """The problems of a VoiceXML document, and of those of its folder that it leads to.
 
-    URIs with a prefix in ``answered`` are a service's.
+    URIs with a prefix in ``answered`` are a service's. ``folder`` is that of the application, by
+    default the document's own.
     """
     from prima.voicexml.caught import check_caught
     from prima.voicexml.checks import check_failing
@@ -82,15 +87,15 @@ def voicexml_problems(
     from prima.voicexml.upgrade import is_other_version
     from prima.voicexml.variables import check_variables
 
-    place = site.folder if site else dirname(path)
-    folder = Path(place)
-    first = read_page(site.name(site.uri) if site else Path(path).name, path, data, site)
-    pages = Pages(first, place, Folder(str(folder)).fetch)
+    place = site.folder if site else dirname(path) if folder is None else folder
+    whole = Path(place)
+    first = read_page(site.name(site.uri) if site else relative(path, place), path, data, site)
+    pages = Pages(first, place, Folder(str(whole)).fetch)
 
     def script(page: Page, node: Node) -> str | None:
         try:
             source = page.resolve(node.get("src"), node) if node.get("src") else ""
-            return Folder(str(folder)).fetch(source).decode("utf-8") if source else None
+            return Folder(str(whole)).fetch(source).decode("utf-8") if source else None
         except (FetchError, ValueError):
             return None
 
@@ -100,9 +105,9 @@ def voicexml_problems(
             continue
         missing: set[Node] = set()
         yield from (*page.problems, *page.warnings())
-        yield from _not_there(page, pages.nodes(page), folder, answered, missing)
+        yield from _not_there(page, pages.nodes(page), whole, answered, missing)
         yield from _not_fetched(page)
-        yield from _grammars_of(page, folder, missing, answered)
+        yield from _grammars_of(page, whole, missing, answered)
         yield from check_caught(page.root, pages.thrown)
         yield from check_listening(page, root := pages.root(page))
         if root is not None:

@@ -221,6 +221,27 @@ def test_a_file_above_the_folder_is_told_to_need_a_mapping(tmp_path: Path) -> No
     assert 'There is no file "../rood.vxml" here' in one
 
 
+def test_pages_below_an_application_may_name_files_of_its_folder(tmp_path: Path) -> None:
+    below = tmp_path / "sub" / "deep"
+    below.mkdir(parents=True)
+    grammar = '<form><field name="f"><grammar src="sub/deep/g.grxml"/></field>'
+    leads = '<block><goto next="sub/deep/leaf.vxml"/></block></form>'
+    (tmp_path / "main.vxml").write_text(VXML.format("", f'<var name="v"/>{grammar}{leads}'))
+    (tmp_path / "towns.grxml").write_text(xml('<rule id="r" scope="public">Rome</rule>'))
+    (below / "g.grxml").write_text(xml('<rule id="r"><ruleref uri="../../towns.grxml"/></rule>'))
+    leaf = '<form><block><value expr="v"/><goto next="../../main.vxml#x"/></block></form>'
+    (below / "leaf.vxml").write_text(VXML.format(' application="../../main.vxml"', leaf))
+    named = ["main.vxml", "sub/deep/leaf.vxml", "sub/deep/g.grxml"]
+    for files, folder in (["."], tmp_path), (["../.."], below), (named[::-1], tmp_path):
+        done = prima("validate", *files, "--format", "short", cwd=folder)
+        (line,) = done.stdout.splitlines()
+        assert "leaf.vxml:1" in line and 'There is no dialog "x" in main.vxml' in line
+        assert done.returncode == 0, "only the application's own files are named"
+    alone = prima("validate", "deep", "--format", "short", cwd=tmp_path / "sub").stdout
+    assert alone.count("is outside of the folder") == 2, "of the root and of the goto"
+    assert "deep/g.grxml:" in alone and "it is outside the application's folder" in alone
+
+
 def test_a_file_that_is_too_large_to_be_read_is_told_where_it_is_named(tmp_path: Path) -> None:
     (tmp_path / "large.vxml").write_text(VXML.format("", f"<form/><!--{'x' * 2000}-->"))
     (tmp_path / "large.grxml").write_text(f"<!--{'x' * 2000}-->{xml('<item>x</item>')}")
