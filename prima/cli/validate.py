@@ -7,6 +7,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
+from itertools import chain
 
 import click
 from click.exceptions import Exit
@@ -113,12 +114,24 @@ def _check(
     files: tuple[str, ...], form: str, notes: bool, maps: tuple[str, ...]
 ) -> tuple[int, int, int]:
     """Check and print; return the numbers of unreadable files, errors and warnings."""
+    names = _expanded(files)
+    problems, unread = _problems(names, maps)
+    _show([one for one in problems if notes or one.severity != "note"], form)
+    for message in unread:
+        tell_line(f"prima: {message}")
+    counts = Counter(problem.severity for problem in problems)
+    if form in ("text", "short") and not unread:
+        tell(f"files: {len(names)}; {_counts(counts['error'], counts['warning'])}")
+    return len(unread), counts["error"], counts["warning"]
+
+
+def _problems(names: list[str], maps: tuple[str, ...]) -> tuple[list[Problem], list[str]]:
+    """The problems of the files, in their order, and what is said of those that cannot be read."""
     from prima import loading  # not the whole interface, for a quick start
     from prima.loading.similar import in_words
 
-    found: dict[str, list[Problem]] = {}
+    found: dict[str, list[Problem]] = {name: [] for name in names}
     unread: list[str] = []
-    names = _expanded(files)
     validation = loading.Validation(loading.mappings(maps, names))
     for index, name in enumerate(loading.upper_first(names), 1):
         try:
@@ -127,15 +140,7 @@ def _check(
             unread.append(in_words(error))
         if len(names) >= MANY:
             show_count(index, len(names), "files")
-    problems = [problem for name in names for problem in found.get(name, ())]
-    problems = loading.once([*problems, *validation.ignored()])
-    _show([one for one in problems if notes or one.severity != "note"], form)
-    for message in unread:
-        tell_line(f"prima: {message}")
-    counts = Counter(problem.severity for problem in problems)
-    if form in ("text", "short") and not unread:
-        tell(f"files: {len(names)}; {_counts(counts['error'], counts['warning'])}")
-    return len(unread), counts["error"], counts["warning"]
+    return loading.once([*chain(*found.values()), *validation.ignored()]), unread
 
 
 def _counts(errors: int, warnings: int) -> str:

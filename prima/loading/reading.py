@@ -39,7 +39,7 @@ from prima.loading.diagnoses import (
 from prima.loading.files import read_file
 from prima.loading.kinds import is_voicexml
 from prima.loading.similar import beside, nearby
-from prima.loading.voicedocuments import voicexml_problems
+from prima.loading.voicedocuments import pages_from, voicexml_problems
 from prima.markup.reader import parse
 from prima.markup.roots import kind_of
 from prima.markup.spans import value_span
@@ -128,7 +128,7 @@ class Reading:
             document, problems = read_application(path, data, *own, site, take)
             further: Iterable[Problem] = ()
             if self.whole and is_voicexml(data):
-                further = voicexml_problems(path, data, site, self.answered)
+                further = voicexml_problems(pages_from(path, data, site), self.answered)
             return document, [*problems, *further]
 
         read = self.read(src, node, "application" if is_area else "src", made_of)

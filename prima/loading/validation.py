@@ -22,7 +22,7 @@ from prima.loading.folders import documents_folder
 from prima.loading.kinds import GRAMMAR_FILES, is_grammar, is_surely_ours, is_voicexml
 from prima.loading.reading import Reading
 from prima.loading.scenarios import load_whole
-from prima.loading.voicedocuments import mapped_site, mappings, voicexml_problems
+from prima.loading.voicedocuments import mapped_site, mappings, pages_from, voicexml_problems
 from prima.markup.collecting import seldom_collected
 from prima.markup.encodings import misread
 from prima.markup.limits import LIMITS
@@ -81,6 +81,8 @@ class Validation:
         self._ignores = Ignores(read_file)
         self._folders: dict[Path, Path] = {}
         """The folders of the applications that have fetched files, by the files."""
+        self._pages: set[Path] = set()
+        """The documents of the VoiceXML applications checked."""
 
     def problems(self, path: str | Path) -> list[Problem]:
         """The problems of a document that are not ignored.
@@ -89,45 +91,50 @@ class Validation:
             UsageError: the file cannot be read.
         """
         with few_guesses(), seldom_collected(), noting_fetched(self._folders):
-            found = self._ignores.left(_validate_one(str(path), self._folder(path), self._maps))
+            found = self._ignores.left(self._all(str(path)))
         self._ignores.check(str(path))
         return in_order(found)
-
-    def _folder(self, path: str | Path) -> str:
-        """The folder whose files a document may name, written as the document's path is."""
-        file = absolute(path)
-        folder = self._folders.get(file, file.parent)
-        up = [".."] * len(file.parent.relative_to(folder).parts)
-        return normpath(join(dirname(path), *up)) if up else dirname(path)
 
     def ignored(self) -> list[Problem]:
         """The problems of ignores in the documents checked: no reason, or nothing to ignore."""
         return in_order(self._ignores.problems())
 
+    def _all(self, path: str) -> list[Problem]:
+        try:
+            data = read_file(path)
+            return [*misread(path, data), *self._by_kind(path, data)]
+        except DocumentError as error:
+            return error.problems
 
-def _validate_one(path: str, folder: str, maps: Mapping[str, str]) -> list[Problem]:
-    try:
-        data = read_file(path)
-        return [*misread(path, data), *_problems_by_kind(path, data, folder, maps)]
-    except DocumentError as error:
-        return error.problems
+    def _by_kind(self, path: str, data: bytes) -> list[Problem]:
+        """The problems of a document, by its beginning.
 
+        Raises:
+            DocumentError: with its problems, if any is an error.
+        """
+        if is_surely_ours(data):
+            return _application_problems(path, data)
+        if is_voicexml(data):
+            return self._voicexml(path, data)
+        if is_grammar(data) or path.lower().endswith(GRAMMAR_FILES):
+            return _grammar_problems(path, data, self._folder(path))
+        return _problems_by_namespace(path, data)
 
-def _problems_by_kind(
-    path: str, data: bytes, folder: str, maps: Mapping[str, str]
-) -> list[Problem]:
-    """The problems of a document, by its beginning.
+    def _voicexml(self, path: str, data: bytes) -> list[Problem]:
+        """The problems of a VoiceXML document and of all that it leads to, unless one led to it."""
+        if absolute(path) in self._pages:
+            return []
+        pages = pages_from(path, data, mapped_site(path, self._maps), self._folder(path))
+        if not pages.cut:
+            self._pages.update(absolute(page.root.source.file) for page in pages)
+        return list(voicexml_problems(pages))
 
-    Raises:
-        DocumentError: with its problems, if any is an error.
-    """
-    if is_surely_ours(data):
-        return _application_problems(path, data)
-    if is_voicexml(data):
-        return list(voicexml_problems(path, data, mapped_site(path, maps), folder=folder))
-    if is_grammar(data) or path.lower().endswith(GRAMMAR_FILES):
-        return _grammar_problems(path, data, folder)
-    return _problems_by_namespace(path, data)
+    def _folder(self, path: str) -> str:
+        """The folder whose files a document may name, written as the document's path is."""
+        file = absolute(path)
+        folder = self._folders.get(file, file.parent)
+        up = [".."] * len(file.parent.relative_to(folder).parts)
+        return normpath(join(dirname(path), *up)) if up else dirname(path)
 
 
 def _problems_by_namespace(path: str, data: bytes) -> list[Problem]:

@@ -31,6 +31,7 @@ from prima.markup.spans import value_span
 if TYPE_CHECKING:
     from prima.markup.tree import Node
     from prima.voicexml.document import Page, VoiceDocument
+    from prima.voicexml.pages import Pages
     from prima.voicexml.site import Site
 
 
@@ -65,37 +66,40 @@ def mapped_site(path: str, maps: Mapping[str, str]) -> Site | None:
     return site_of(path, *found) if found else None
 
 
-def voicexml_problems(
-    path: str,
-    data: bytes,
-    site: Site | None = None,
-    answered: tuple[str, ...] = (),
-    folder: str | None = None,
-) -> Iterator[Problem]:
-    """The problems of a VoiceXML document, and of those of its folder that it leads to.
+def pages_from(
+    path: str, data: bytes, site: Site | None = None, folder: str | None = None
+) -> Pages:
+    """A VoiceXML document and those of its folder that it leads to.
 
-    URIs with a prefix in ``answered`` are a service's. ``folder`` is that of the application, by
-    default the document's own.
+    ``folder`` is that of the application, by default the document's own.
+    """
+    from prima.voicexml.pages import Pages
+    from prima.voicexml.reading import read_page
+
+    place = site.folder if site else dirname(path) if folder is None else folder
+    name = site.name(site.uri) if site else relative(path, place)
+    return Pages(read_page(name, path, data, site), place, Folder(str(Path(place))).fetch)
+
+
+def voicexml_problems(pages: Pages, answered: tuple[str, ...] = ()) -> Iterator[Problem]:
+    """The problems of the documents of a VoiceXML application.
+
+    URIs with a prefix in ``answered`` are a service's.
     """
     from prima.voicexml.caught import check_caught
     from prima.voicexml.checks import check_failing
     from prima.voicexml.document import FetchError
     from prima.voicexml.listening import check_listening
-    from prima.voicexml.pages import Pages
-    from prima.voicexml.reading import read_page
     from prima.voicexml.sketched import check_sketched
     from prima.voicexml.upgrade import is_other_version
     from prima.voicexml.variables import check_variables
 
-    place = site.folder if site else dirname(path) if folder is None else folder
-    whole = Path(place)
-    first = read_page(site.name(site.uri) if site else relative(path, place), path, data, site)
-    pages = Pages(first, place, Folder(str(whole)).fetch)
+    folder = Path(pages.folder)
 
     def script(page: Page, node: Node) -> str | None:
         try:
             source = page.resolve(node.get("src"), node) if node.get("src") else ""
-            return Folder(str(whole)).fetch(source).decode("utf-8") if source else None
+            return Folder(str(folder)).fetch(source).decode("utf-8") if source else None
         except (FetchError, ValueError):
             return None
 
@@ -105,9 +109,9 @@ def voicexml_problems(
             continue
         missing: set[Node] = set()
         yield from (*page.problems, *page.warnings())
-        yield from _not_there(page, pages.nodes(page), whole, answered, missing)
+        yield from _not_there(page, pages.nodes(page), folder, answered, missing)
         yield from _not_fetched(page)
-        yield from _grammars_of(page, whole, missing, answered)
+        yield from _grammars_of(page, folder, missing, answered)
         yield from check_caught(page.root, pages.thrown)
         yield from check_listening(page, root := pages.root(page))
         if root is not None:

@@ -212,12 +212,9 @@ def moved(workspace: Workspace, moves: Mapping[Path, Path]) -> list[NameEdit]:
 
 def _called(workspace: Workspace, old: Path, new: Path) -> Iterator[NameEdit]:
     """The edits of scenarios that call a VoiceXML application by its file's name."""
-    text = workspace.text(old)
     before, after = named_after(old), named_after(new)
-    if text is None or dialect(text.top) != "voicexml" or before == after:
+    if before == after or not _is_first(workspace, old):
         return
-    if all(workspace.has_uris(one.path) for one in workspace.naming(old)):
-        return  # a page of an application alone
     for path in workspace.related(old):
         called = [
             one
@@ -226,6 +223,14 @@ def _called(workspace: Workspace, old: Path, new: Path) -> Iterator[NameEdit]:
         ]
         if not any(one.defines for one in called):
             yield from (NameEdit(path, one.start, one.end, after) for one in called)
+
+
+def _is_first(workspace: Workspace, path: Path) -> bool:
+    """Whether it may be the first document of a VoiceXML application, not only a page of one."""
+    text = workspace.text(path)
+    if text is None or dialect(text.top) != "voicexml":
+        return False
+    return not all(workspace.has_uris(one.path) for one in workspace.naming(path))
 
 
 def _written(workspace: Workspace, document: Path, path: Path, folder: Path) -> str:

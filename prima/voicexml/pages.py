@@ -63,7 +63,7 @@ class Pages:
     """The documents of an application, the first one first, then as others name them."""
 
     def __init__(self, first: Page, folder: str, fetch: Fetch) -> None:
-        self._folder = folder
+        self.folder = folder
         self._site = first.site
         self._fetch = fetch
         self._pages: dict[str, Page | None] = {first.uri: first}
@@ -72,6 +72,8 @@ class Pages:
         """Problems of documents that cannot be read at all."""
         self.open = False
         """Whether something leads to a document that only a run determines."""
+        self.cut = False
+        """Whether there are more documents than are read."""
         for page in self._read:  # which grows meanwhile
             self.root(page)
             for node in self.nodes(page):
@@ -86,11 +88,6 @@ class Pages:
         plain, computed = TARGETS[node.key]
         named = self.target(page, node).page is not None or not node.get(plain).strip()
         return computed in node.attributes or not named
-
-    @property
-    def full(self) -> bool:
-        """Whether no further document is read."""
-        return len(self._pages) >= MOST_PAGES
 
     def root(self, page: Page) -> Page | None:
         """The application root document of a page, if it has one that can be read."""
@@ -130,10 +127,11 @@ class Pages:
 
         A file that may be a ``program`` of the server need not be VoiceXML.
         """
-        if uri not in self._pages and not self.full:
+        self.cut |= uri not in self._pages and len(self._pages) >= MOST_PAGES
+        if uri not in self._pages and len(self._pages) < MOST_PAGES:
             self._pages[uri] = None
             try:
-                file = posixpath.join(self._folder, unquote(uri).lstrip("/"))
+                file = posixpath.join(self.folder, unquote(uri).lstrip("/"))
                 page = read_page(uri, file, self._fetch(uri), self._site)
                 self._pages[uri] = page
                 self._read.append(page)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from prima import api, loading
 from prima.errors import DocumentError
+from prima.loading import validation, voicedocuments
+from prima.voicexml.pages import Pages
 from tests import ROOT
 from tests.helpers.grammars import xml
 from tests.helpers.here import prima
@@ -240,6 +243,27 @@ def test_pages_below_an_application_may_name_files_of_its_folder(tmp_path: Path)
     alone = prima("validate", "deep", "--format", "short", cwd=tmp_path / "sub").stdout
     assert alone.count("is outside of the folder") == 2, "of the root and of the goto"
     assert "deep/g.grxml:" in alone and "it is outside the application's folder" in alone
+
+
+def test_each_document_of_an_application_is_checked_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each was checked with all that it leads to: a hundred of them took 7 s."""
+    begun: list[str] = []
+
+    def pages_from(path: str, *given: Any) -> Pages:
+        begun.append(Path(path).name)
+        return voicedocuments.pages_from(path, *given)
+
+    monkeypatch.setattr(validation, "pages_from", pages_from)
+    for number in range(4):
+        target = f"p{(number + 1) % 4}.vxml" if number < 3 else "broken.vxml"
+        body = f'<form><block><goto next="{target}"/><prompt>Never.</prompt></block></form>'
+        (tmp_path / f"p{number}.vxml").write_text(VXML.format("", body))
+    (tmp_path / "broken.vxml").write_text("<vxml>")
+    found = loading.validate([*sorted(tmp_path.iterdir())])
+    assert begun == ["broken.vxml", "p0.vxml"], "what cannot be read is not part of it"
+    assert [one.code for one in found] == ["not-xml"] + ["dead-content"] * 4
 
 
 def test_a_file_that_is_too_large_to_be_read_is_told_where_it_is_named(tmp_path: Path) -> None:

@@ -37,7 +37,7 @@ class PricedPages(Pages):
         if target.asked:
             place = node.attribute_place(plain)
             return [], Gap(place, f"the document that {target.asked} answers is not known")
-        if self.full and node.get(plain):
+        if self.cut and node.get(plain):
             return [], Gap(node.place, f"only {MOST_PAGES} documents of an application are read")
         return [], None  # a run throws error.badfetch
 
