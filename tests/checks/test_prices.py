@@ -24,6 +24,8 @@ from tests.helpers.certifying import (
     waited,
 )
 
+SOON = '<when at="1ms"><touch sensor="head"/></when>'
+
 
 def outlined(folder: Path) -> Outline:
     """The outline of the application whose parts have been priced."""
@@ -56,6 +58,26 @@ def test_a_unit_costs_the_sum_of_its_parts_and_branches_their_longest(tmp_path: 
     assert price.what == "unit" and price.lasts == lasting("One and two.") + 1500
     (price,) = priced(tmp_path, block(f"<iu><par>{parts}</par></iu>"))
     assert price.lasts == max(lasting("One and two."), 1500)
+
+
+def test_branches_of_a_unit_may_take_a_device_in_either_order(tmp_path: Path) -> None:
+    """The second branch, ready first, speaks first: then the first one goes on later."""
+    words = "This is a rather long sentence that goes on and on and on."
+    one = '<gesture name="bow"/><speak>A.</speak><turn angle="170"/><turn angle="-170"/>'
+    two = f'<pause time="1400ms"/><speak>{words}</speak>'
+    body = block(f"<iu><par><seq>{one}</seq><seq>{two}</seq></par></iu>")
+    (unit,) = priced(tmp_path, body)
+    turns = sum(part.lasts for part in unit.inner if part.what == "turn")
+    assert unit.lasts == 1500 + lasting(words) + lasting("A.") + turns
+    found = certified(tmp_path, body)
+    records = run(tmp_path, str(tmp_path / "mine.xml"), str(tmp_path / "theirs.xml"), SOON)
+    assert faults(found, records, PROFILE.voices) == []
+
+
+def test_a_unit_of_very_many_commands_costs_their_sum(tmp_path: Path) -> None:
+    many = "<speak>One.</speak>" * 2000
+    (unit,) = priced(tmp_path, block(f'<iu longest="3600s">{many}<par>{many}</par></iu>'))
+    assert unit.lasts == 4000 * lasting("One.")
 
 
 def test_a_unit_costs_its_longest_duration_and_what_runs_then(tmp_path: Path) -> None:

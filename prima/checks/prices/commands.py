@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import reduce
+from operator import or_
 
 from prima.checks.prices.model import Price, devices_of
 from prima.devices.profile import Profile
@@ -12,6 +14,8 @@ from prima.markup.tree import Node
 
 SETTLING_MS = 1500
 """Time of a turn beyond its angle at full speed: for slowing down and detecting the end (ms)."""
+MOST_STEPS = 1000
+"""Limit of a unit's steps, above which they are only added up."""
 SEARCH = 360.0 + 180.0
 """How far (degrees) the robot turns at most to face a user who stands still."""
 
@@ -77,16 +81,33 @@ def unit_price(node: Node, devices: frozenset[str], lasts: int, inner: Sequence[
 
 
 def _together(prices: Sequence[Price], afters: Sequence[tuple[int, ...]]) -> int:
-    """The duration of a unit's steps; those that share a device run in sequence."""
+    """The longest duration of a unit's steps.
+
+    A step may have to wait for each one that is neither before nor after it and needs a device
+    of it: which goes first depends on how long the steps before them take.
+    """
+    total = sum(price.lasts for price in prices)
+    if len(prices) > MOST_STEPS:
+        return total
     ends: list[int] = []
-    free: dict[str, int] = {}
-    """When earlier steps that occupy a device have ended."""
-    for price, after in zip(prices, afters, strict=True):
-        before = [ends[one] for one in after]
-        before += [free.get(device, 0) for device in price.devices]
-        ends.append(max(before, default=0) + price.lasts)
-        free |= {device: max(free.get(device, 0), ends[-1]) for device in price.devices}
-    return max(ends, default=0)
+    for price, after, others in zip(prices, afters, _beside(prices, afters), strict=True):
+        begins = max((ends[one] for one in after), default=0)
+        ends.append(begins + sum(prices[one].lasts for one in others) + price.lasts)
+    return min(max(ends, default=0), total)
+
+
+def _beside(prices: Sequence[Price], afters: Sequence[tuple[int, ...]]) -> list[list[int]]:
+    """For each step, those in other branches that need a device of it."""
+    before: list[int] = []
+    """The steps that come before each, as bits."""
+    found: list[list[int]] = [[] for _ in prices]
+    for at, after in enumerate(afters):
+        before.append(reduce(or_, (before[one] | 1 << one for one in after), 0))
+        for one in range(at):
+            if not before[at] >> one & 1 and prices[at].devices & prices[one].devices:
+                found[at].append(one)
+                found[one].append(at)
+    return found
 
 
 def _motion(row: CommandType, args: Mapping[str, Value], profile: Profile) -> int:
