@@ -10,6 +10,8 @@ from prima.certificate import (
     certificate_data,
     format_certificate,
 )
+from prima.checks.prices import outline
+from prima.loading import read_application
 from tests.helpers.certified import faults
 from tests.helpers.certifying import (
     FA,
@@ -193,3 +195,36 @@ def test_two_texts_of_one_element_are_said_one_after_the_other(tmp_path: Path) -
     one, two = "<prompt>Eins zwei drei.</prompt>", "<prompt>Vier sechs.</prompt>"
     text = told("Eins zwei drei. <log/> Vier sechs.")
     assert text.startswith("wait up to ") and text == told(f"{one}<log/>{two}")
+
+
+AGAIN = "<noinput><speak>Again.</speak></noinput>"
+UP = "<noinput><exit/></noinput><nomatch><exit/></nomatch>"
+
+
+@pytest.mark.parametrize(
+    ("inner", "outer", "most"),
+    [
+        ("", UP, 1),
+        (AGAIN, UP, 0),
+        (AGAIN + '<noinput count="3"><exit/></noinput>', UP, 3),
+        ('<on event="noinput" cond="a"><speak>Again.</speak></on>', UP, 0),
+        ('<on event="noinput" cond="a"><exit/></on>', UP, 1),
+        ('<on event="noinput" cond="a"><exit/></on>', "<nomatch><exit/></nomatch>", 0),
+        (
+            AGAIN + '<noinput count="2"><exit/></noinput>' + AGAIN.replace(">", ' count="2">', 1),
+            UP,
+            2,
+        ),
+    ],
+)
+def test_the_handler_that_takes_it_decides_how_often_a_question_is_asked(
+    tmp_path: Path, inner: str, outer: str, most: int
+) -> None:
+    """Of equal counts the innermost handler is selected (5.2.4), whatever the others do."""
+    field = f'<field name="q" type="boolean"><prompt timeout="2s">Well?</prompt>{inner}</field>'
+    body = f'<var name="a" expr="true"/>{outer}<form id="f">{field}</form>'
+    own = FA.replace("<speak>Yes?</speak>", '<topological-move to="door"/>')
+    (delay,) = certified(tmp_path, body, own).delays
+    assert bool(delay.endless) == (most == 0)
+    document = read_application("a", (tmp_path / "theirs.xml").read_bytes())[0]
+    assert outline(document, PROFILE).states["f"].times == max(most, 1)

@@ -23,7 +23,7 @@ from prima.interpreter.acts import (
 from prima.interpreter.elements import Block, Document, Field, Form, Item, Subdialog, all_items
 from prima.interpreter.entering import goes_to_item, is_left
 from prima.interpreter.rounds import raised_in
-from prima.interpreter.selection import prefixes
+from prima.interpreter.selection import prefixes, takes
 from prima.markup.tree import Node
 
 
@@ -204,11 +204,33 @@ def _all_handlers(document: Document, form: Form | None) -> list[Handler]:
 def asks_at_most(field: Field, form: Form, document: Document) -> int:
     """How often a question is asked until the user answers; 0 for endlessly."""
     scope = [*field.handlers, *form.handlers, *document.handlers]
-    total = 0
-    for event in ("noinput", "nomatch"):
-        fitting = [one for one in scope if event in one.events and one.cond is None]
-        counts = [one.count for one in fitting if is_left(one.content, goes_to_item)]
-        if not counts:
-            return 0
-        total += min(counts)
-    return max(total - 1, 1)
+    counts = [_leaves_at(event, scope) for event in ("noinput", "nomatch")]
+    return max(sum(counts) - 1, 1) if all(counts) else 0
+
+
+def _leaves_at(event: str, scope: Sequence[Handler]) -> int:
+    """At which of its occurrences an event certainly leaves the form; 0 if at none.
+
+    Args:
+        event: its name.
+        scope: the handlers, innermost first.
+    """
+    fitting = [one for one in scope if any(takes(name, event) for name in one.events)]
+    for count in sorted({one.count for one in fitting}):
+        most = [
+            one
+            for one in sorted(fitting, key=lambda one: -one.count)
+            if _may_take(one, event, count)
+        ]
+        sure = [one.cond is None and event in one.events and one.count <= count for one in most]
+        if True in sure and all(
+            is_left(one.content, goes_to_item) for one in most[: sure.index(True) + 1]
+        ):
+            return count
+    return 0
+
+
+def _may_take(handler: Handler, event: str, count: int) -> bool:
+    """Whether a handler may be reached at an occurrence; under a shorter name others count, too."""
+    shorter = any(name != event and takes(name, event) for name in handler.events)
+    return handler.count <= count or shorter
