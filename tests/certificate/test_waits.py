@@ -197,6 +197,18 @@ def test_two_texts_of_one_element_are_said_one_after_the_other(tmp_path: Path) -
     assert text.startswith("wait up to ") and text == told(f"{one}<log/>{two}")
 
 
+def test_a_question_in_a_unit_is_asked_until_the_unit_ends(tmp_path: Path) -> None:
+    field = '<field name="q" type="boolean"><prompt timeout="2s">Well?</prompt></field>'
+    body = f'<form id="f"><iu longest="6s">{field}</iu></form>'
+    own = FA.replace("<speak>Yes?</speak>", '<topological-move to="door"/>')
+    found = certified(tmp_path, body, own)
+    (delay,) = found.delays
+    assert delay.known and delay.lasts == 6000 + lasting("Well?") + 2000
+    records = run(tmp_path, str(tmp_path / "mine.xml"), str(tmp_path / "theirs.xml"), TOUCH)
+    assert faults(found, records, PROFILE.voices) == []
+    assert found.starves == []
+
+
 AGAIN = "<noinput><speak>Again.</speak></noinput>"
 UP = "<noinput><exit/></noinput><nomatch><exit/></nomatch>"
 

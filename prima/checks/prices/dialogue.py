@@ -190,13 +190,16 @@ class DialoguePrices(Times):
 
     def _add_item(self, state: PricedState, item: Item, form: Form) -> None:
         """Add the activity of an item: it asks, calls another form, or is a unit."""
+        if isinstance(item, Field):
+            state.raises |= {"noinput", "nomatch"}
+        if id(item.node) in self.inside:
+            return  # it ends with its unit
         price = self.of_items.get(item.node.index)
-        if price is not None and id(item.node) not in self.inside:
+        if price is not None:
             state.parts.append(price)
         if isinstance(item, Subdialog):
             state.calls |= dict.fromkeys(self.leads(item), item.node)
         elif isinstance(item, Field):
-            state.raises |= {"noinput", "nomatch"}
             most = asks_at_most(item, form, self.document)
             state.times += max(most - 1, 0)
             if not most:

@@ -219,11 +219,6 @@ class PagePrices(DialoguePrices):
         """What may be played while a link's document is fetched."""
         return self.steps(tuple(self.sketch.fetching(link)))
 
-    def _add_item(self, state: PricedState, item: Item, form: Form) -> None:
-        """Add the activity of an item; one in a unit ends with its unit."""
-        if id(item.node) not in self.inside:
-            super()._add_item(state, item, form)
-
     def raised(self, content: Sequence[Act]) -> set[str]:
         """No event that makes a dialog go on by itself: what is said waits for a question."""
         return set()
