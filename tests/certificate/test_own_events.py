@@ -19,6 +19,7 @@ from tests.helpers.certifying import (
     lasting,
     run,
     voiced,
+    waited,
     without_more_for_each_event,
 )
 
@@ -219,3 +220,40 @@ def test_only_what_waits_for_the_speaker_alone_has_a_turn(tmp_path: Path) -> Non
 
 def block_again(content: str) -> str:
     return f'<form id="f"><block>{content}<goto next="#f"/></block></form>'
+
+
+BRANCHES = "<speak>One one one one.</speak><speak>Two two two two.</speak>"
+
+
+@pytest.mark.parametrize(
+    ("content", "most"),
+    [
+        (f"<par>{BRANCHES}</par>", 2),
+        (f'<par>{BRANCHES}<gesture name="wave"/></par>', 2),
+        (f"<if cond='true'><par>{BRANCHES}</par><else/>{BRANCHES}</if>", 2),
+        (f'<par>{BRANCHES[: len(BRANCHES) // 2]}<gesture name="wave"/></par>', 1),
+        (BRANCHES, 1),
+    ],
+)
+def test_all_branches_of_a_reaction_go_first(tmp_path: Path, content: str, most: int) -> None:
+    """Each is a reaction until it starts, so those that need one device go one after another."""
+    body = f'<form id="f"><on event="message">{content}</on></form>'
+    found = certified(tmp_path, body)
+    (delay,) = found.delays
+    assert (delay.lasts, delay.each) == (lasting("One one one one."), most * delay.lasts)
+    message = '<message from="A">Hello.</message>'
+    doings = {900: message, 920: '<touch sensor="head"/>', 940: message}
+    whens = "".join(f'<when at="{at}ms">{doing}</when>' for at, doing in doings.items())
+    records = run(tmp_path, str(tmp_path / "mine.xml"), str(tmp_path / "theirs.xml"), whens)
+    assert faults(found, records, PROFILE.voices) == []
+    assert waited(records) > delay.lasts * (1 + most) / 1000 - 0.1
+
+
+def test_all_branches_of_a_reaction_in_voicexml_go_first(tmp_path: Path) -> None:
+    par = BRANCHES.replace("<", "<p:").replace("<p:/", "</p:")
+    catch = '<catch event="message">{}</catch><form><field name="q" type="boolean"/></form>'
+    later = f'<form id="g"><block><p:par>{par}</p:par></block></form>'
+    for content, more in ((f"<p:par>{par}</p:par>", ""), ('<goto next="#g"/>', later)):
+        found, _, _ = voiced(tmp_path, catch.format(content) + more)
+        (delay,) = found.delays
+        assert delay.each is not None and delay.each >= 2 * lasting("One one one one.")

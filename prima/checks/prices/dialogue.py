@@ -121,8 +121,9 @@ class DialoguePrices(Times):
 
     def _begins(
         self, content: Sequence[Act], form: Form | None, name: str = ""
-    ) -> tuple[list[Price], list[Price]]:
-        """The first Commands of content or of a named form, and those up to its response.
+    ) -> tuple[list[Price], list[Price], list[list[Price]]]:
+        """The first Commands of content or of a named form, those up to its response, and those
+        that begin at once.
 
         Raises:
             UsageError: too many forms lead to one another before the first Command.
@@ -138,7 +139,7 @@ class DialoguePrices(Times):
                 " Go there more directly."
             ) from None
         begins, until = found
-        return begins, until if any(map(responds, until)) else []
+        return begins, until if any(map(responds, until)) else [], self.firsts.together
 
     def _later(self) -> list[Gap]:
         """The delayed events after which the response searched for may come."""

@@ -49,6 +49,8 @@ class Firsts:
         self._response = response
         self.later: list[SendOut] = []
         """The delayed events of the application's own after which a response may come."""
+        self.together: list[list[Price]] = []
+        """The first Commands that begin at once, in branches."""
         self._of_items = of_items
         self._step = step
         self._seen: set[int] = set()
@@ -72,7 +74,8 @@ class Firsts:
         return list(self._found.values())
 
     def _begin(self) -> None:
-        self._seen, self._free, self._found, self.later = set(), set(), {}, []
+        self._seen, self._free, self._found = set(), set(), {}
+        self.later, self.together = [], []
         self._returns = False
 
     def _add(self, price: Price) -> None:
@@ -137,9 +140,12 @@ class Firsts:
         """Add the relevant Commands of a run; gives whether the content after it is, too."""
         prices = [self._step(step) for step in act.steps]
         if not self._response:
-            for step, price in zip(act.steps, prices, strict=True):
-                if not step.after:
-                    self._add(price)
+            begins = [
+                price for step, price in zip(act.steps, prices, strict=True) if not step.after
+            ]
+            for price in begins:
+                self._add(price)
+            self.together += [begins] if len(begins) > 1 else []
             return False
         answering = {at for at, price in enumerate(prices) if responds(price)}
         before = answering or set(range(len(prices)))

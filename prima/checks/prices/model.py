@@ -101,6 +101,8 @@ class PricedReaction:
     responds: list[Price]
     """Its possible Commands up to and including its first word or movement towards the user; empty
     if there is none."""
+    together: Sequence[Sequence[Price]]
+    """Those of its first Commands that begin at once, in branches."""
     does: PricedState
     stays: str | None = None
     """The state that continues alongside it; None if it is left, ``""`` if it may be any."""
@@ -158,3 +160,17 @@ def worst(held: Iterable[Price], devices: frozenset[str]) -> Price | None:
 def devices_of(held: Sequence[Price]) -> frozenset[str]:
     """The devices of some parts together."""
     return frozenset().union(*(price.devices for price in held))
+
+
+def kept(prices: Iterable[Price], devices: frozenset[str]) -> int:
+    """How long some Commands that may begin at once keep any of some devices.
+
+    Those that share a device run one after another.
+    """
+    chains: list[tuple[frozenset[str], int]] = []
+    for price in prices:
+        joined = [one for one in chains if one[0] & price.devices]
+        held = price.devices.union(*(one for one, _ in joined))
+        chains = [one for one in chains if one not in joined]
+        chains.append((held, price.lasts + sum(lasts for _, lasts in joined)))
+    return max((lasts for held, lasts in chains if held & devices), default=0)

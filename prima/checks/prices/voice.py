@@ -61,10 +61,11 @@ class VoicePrices:
             UsageError: a document has too many dialogs and handlers.
         """
         parts = [part for one in self.documents for part in one.parts]
+        branches = [begin for one in self.documents for begin in one.beginnings()]
         states: dict[str, PricedState] = {}
         reactions: list[PricedReaction] = []
         for one in self.documents:
-            one.everything = parts
+            one.everything, one.branches = parts, branches
             found = one.outline()
             states |= found.states
             reactions += found.reactions
@@ -85,6 +86,8 @@ class PagePrices(DialoguePrices):
         self.page, self.pages = page, pages
         self.everything: list[Price] = []
         """The parts of all documents of the application."""
+        self.branches: list[list[Price]] = []
+        """The Commands of all documents that begin at once."""
         self.sketch = Sketch(page, pages.root(page))
         self._reader = SpeechReader(partial(pages.recording, page))
         self._units: dict[int, Unit] = {}
@@ -249,11 +252,15 @@ class PagePrices(DialoguePrices):
         stays = None if left and not returns else ""
         yield PricedReaction(names, node, *self._after(handler), does, stays)
 
-    def _after(self, handler: Handler) -> tuple[list[Price], list[Price]]:
+    def _after(
+        self, handler: Handler
+    ) -> tuple[list[Price], list[Price], Sequence[Sequence[Price]]]:
         """The first Commands of a handler, and those up to its response: perhaps anything."""
-        firsts = self._first(handler) or self.everything
+        first = self._first(handler)
+        firsts = first or self.everything
         until = firsts if all(map(responds, firsts)) else [*firsts, *self.everything]
-        return firsts, until if any(map(responds, until)) else []
+        together = [first] if first else self.branches
+        return firsts, until if any(map(responds, until)) else [], together
 
     def _first(self, handler: Handler) -> list[Price]:
         """The first Commands of a handler, if they are the same in each case; otherwise nothing."""
@@ -264,6 +271,12 @@ class PagePrices(DialoguePrices):
         if first.node.namespace != PRIMA_NAMESPACE:
             return [self._asked_anew(handler.node)]
         return [self.step(step) for step in first.steps if not step.after]
+
+    def beginnings(self) -> list[list[Price]]:
+        """The Commands of a document that begin at once, in branches."""
+        acts = (act for _, content, _ in self.document.contents() for act in all_acts(content))
+        runs = (act for act in acts if isinstance(act, CommandRun) and len(act.steps) > 1)
+        return [[self.step(step) for step in run.steps if not step.after] for run in runs]
 
     def _asked_anew(self, handler: Node) -> Price:
         """The question that listened, asked again from its beginning with the handler's speech."""
