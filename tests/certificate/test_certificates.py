@@ -111,6 +111,13 @@ def test_texts_of_constants_are_known(tmp_path: Path, text: str, known: bool) ->
         assert price.lasts == lasting("Hello there, you.")
 
 
+@pytest.mark.parametrize("text", ["list.length", "list['length']", "list[0].length", "list[0][1]"])
+def test_lengths_and_letters_of_constants_are_not_known(tmp_path: Path, text: str) -> None:
+    script = "<script>const list = ['Hi.', 'You.'];</script>"
+    (price,) = priced(tmp_path, script + block(f'<speak><value expr="{text}"/></speak>'))
+    assert not price.known
+
+
 def test_constants_cost_what_a_run_says_of_them(tmp_path: Path) -> None:
     values = ["1e999", "2e22", "1e20", "0.000001", "1e-7", "12", "-0.5", "true", "null", "'Hi.'"]
     said = "".join(f'<speak><value expr="list[{at}]"/></speak>' for at in range(len(values) + 1))

@@ -36,6 +36,8 @@ class Constants:
             return None
         values: list[Any] = [self._values[found.name]]
         for step in found.steps:
+            if any(_has_more(value, step) for value in values):
+                return None
             values = [inner for value in values for inner in _inside(value, step)]
         if any(isinstance(value, list | dict) for value in values):
             return None
@@ -63,6 +65,13 @@ def _declared_again(document: Document) -> Iterator[str]:
                 yield act.name.partition(".")[0].partition("[")[0]
             elif isinstance(act, Foreach):
                 yield act.item
+
+
+def _has_more(value: Any, step: str | None) -> bool:
+    """Whether a step of a path leads to what a literal does not show, such as its length."""
+    if isinstance(value, list):
+        return step is not None and not step.isdecimal()
+    return isinstance(value, str | float | bool)
 
 
 def _inside(value: Any, step: str | None) -> Iterable[Any]:
