@@ -25,7 +25,7 @@ def outline(document: Document | VoiceDocument, profile: Profile) -> Outline:
     if isinstance(document, Document):
         from prima.checks.prices.dialogue import DialoguePrices
 
-        return DialoguePrices(document, profile).outline()
+        return DialoguePrices(document, profile).price().outline()
     from prima.checks.prices.voice import VoicePrices
 
     return VoicePrices(document, profile).outline()
@@ -42,6 +42,6 @@ def notes(document: Document, profile: Profile) -> list[Problem]:
 
     return [
         UNIT_WAITS.at(price.place, seconds=price.seconds)
-        for price in DialoguePrices(document, profile).parts
+        for price in DialoguePrices(document, profile).price().parts
         if price.what == "unit"
     ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from typing import Self
 
 from prima.checks.prices.contents import handlers_of, hooks_of, own_contents, sent_by
 from prima.checks.prices.firsts import Firsts, asks_at_most, responds
@@ -48,11 +49,16 @@ class DialoguePrices(Times):
         self.inside: set[int] = set()
         """The elements in units, by their identities."""
         self.sent = sent_by(document)
+        self.parts: list[Price] = []
+        """All indivisible parts, in document order."""
+
+    def price(self) -> Self:
+        """Find all parts and what they last."""
+        document = self.document
         for form in document.forms.values():
             for item in all_items(form.items):
                 self._item(item, form)
         self.parts = self._parts()
-        """All indivisible parts, in document order."""
         self.firsts = Firsts(document, self.of_items, self.step)
         self.responses = Firsts(document, self.of_items, self.step, response=True)
         self.own = OwnEvents(document, self.parts, self.steps, self.raised)
@@ -60,6 +66,7 @@ class DialoguePrices(Times):
         self._inner = {id(one) for _, one in handlers_of(document) if self.takes_inner(one)}
         """The handlers of events that the application causes itself, by their identities."""
         self._everywhere = [one for one in document.handlers if id(one) in self._inner]
+        return self
 
     def _parts(self) -> list[Price]:
         """What items and content outside of units consist of, each once."""

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import cached_property, partial
-from itertools import chain
+from functools import partial
+from typing import Self
 
 from prima.checks.prices.dialogue import DialoguePrices
 from prima.checks.prices.firsts import responds
 from prima.checks.prices.model import Outline, Price, PricedReaction, PricedState
 from prima.checks.prices.pages import PricedPages
 from prima.checks.prices.speech import SpeechReader, says
+from prima.checks.prices.spoken import AllSpeech, DocumentSpeech, is_certain
 from prima.checks.prices.times import ASKED_AGAIN, QUESTION, SERVICES
 from prima.devices.profile import Profile
 from prima.devices.voice import duration
@@ -26,7 +27,7 @@ from prima.interpreter.acts import (
     Script,
     all_acts,
 )
-from prima.interpreter.elements import Field, Form, Item, Subdialog, Unit, all_items
+from prima.interpreter.elements import Field, Form, Item, Subdialog, Unit
 from prima.interpreter.entering import goes_to_item, is_left
 from prima.interpreter.selection import takes
 from prima.language.values import milliseconds
@@ -40,7 +41,6 @@ from prima.voicexml.recorder import BEEP_MS
 from prima.voicexml.sketch import FETCHING, Sketch
 from prima.voicexml.vocabulary import PRIMA_NAMESPACE
 
-TIMEOUT_MS = 5000
 LISTENING_MS = 600_000
 """How long a question during a call listens at most, before it is repeated."""
 OWN = ("noinput", "nomatch", "help", "cancel", "exit", "error", "maxspeechtimeout")
@@ -53,6 +53,10 @@ class VoicePrices:
     def __init__(self, document: VoiceDocument, profile: Profile) -> None:
         self.pages = PricedPages(document)
         self.documents = [PagePrices(page, self.pages, profile) for page in self.pages]
+        everywhere = AllSpeech([one.spoken for one in self.documents])
+        for one in self.documents:
+            one.everywhere = everywhere
+            one.price()
 
     def outline(self) -> Outline:
         """All that is known of the application.
@@ -82,6 +86,9 @@ class PagePrices(DialoguePrices):
 
     form_word = "dialog"
 
+    everywhere: AllSpeech
+    """The speech of all documents of the application."""
+
     def __init__(self, page: Page, pages: PricedPages, profile: Profile) -> None:
         self.page, self.pages = page, pages
         self.everything: list[Price] = []
@@ -90,25 +97,30 @@ class PagePrices(DialoguePrices):
         """The Commands of all documents that begin at once."""
         self.sketch = Sketch(page, pages.root(page))
         self._reader = SpeechReader(partial(pages.recording, page))
-        self._units: dict[int, Unit] = {}
-        """The units around items, by those items' identities."""
-        self._heard: dict[int, list[Price]] = {}
-        """The speech of dialogs and handlers, by their identities."""
+        self._units: set[int] = set()
+        """The items in units, by their identities."""
         document = self.sketch.document
         # What the platform's own handlers say is a part of each question.
         handlers = tuple(one for one in document.handlers if one.node is not page.root)
         super().__init__(replace(document, handlers=handlers), profile, self.sketch.finder)
+        self.spoken = DocumentSpeech(self.document, self.steps)
+
+    def price(self) -> Self:
+        """Find all parts of the document, and those of its links."""
+        super().price()
+        root = self.page.root
         # Handlers of the application root document are priced with that document.
-        self.parts = [one for one in self.parts if one.node.source is page.root.source]
-        links = (one for one in page.root.walk() if one.tag == "link")
+        self.parts = [one for one in self.parts if one.node.source is root.source]
+        links = (one for one in root.walk() if one.tag == "link")
         self.parts += [price for link in links for price in self._fetched(link)]
+        return self
 
     # Prices of parts ----------------------------------------------------------------------
 
     def _item(self, item: Item, form: Form) -> None:
         """Price an item; a call to somebody else has a price as well."""
         if isinstance(item, Unit):
-            self._units |= {id(one): item for one in item.items}
+            self._units |= set(map(id, item.items))
         super()._item(item, form)
         call = self._call(item) if item.node.tag == "transfer" else None
         if call is not None:
@@ -127,15 +139,15 @@ class PagePrices(DialoguePrices):
 
     def question(self, field: Field, form: Form) -> Price:
         """A question: the longest speech that may precede it, and the time for an answer."""
-        item, own = field.node, self._speech(field, [field.filled[-1].content])
-        unit = self._units.get(id(field))
-        handlers = chain(field.handlers, unit.handlers if unit else (), form.handlers)
-        heard = [*own, *chain.from_iterable(map(self._said_by, handlers)), *self._said_anywhere]
-        usual = self._timeout(field, form)
-        if not any(_is_certain(one.node) for one in own):
-            heard += self._said_in(form)
-            places: list[Form | Item] = [form, *all_items(form.items)]
-            usual = max(self._timeout(one, form) for one in places)
+        item, own = field.node, self.spoken.asked_by(field)
+        heard = [*own, *self.spoken.by_handlers(form), *self.spoken.anywhere]
+        usual = self.spoken.timeout(field, form)
+        if not any(map(is_certain, own)):
+            heard += self.spoken.said_in(form)
+            usual = max(self.spoken.timeouts_in(form))
+            if id(field) not in self._units and not self.spoken.speaks_first(form):
+                heard += self.everywhere.said
+                usual = max(usual, self.everywhere.timeout)
         stated = [milliseconds(one.node.get("timeout"), usual) for one in heard]
         words = max(own_words(self.page.lang).values(), key=len, default="")
         platform = duration(words, self.page.lang, self.profile.voices)
@@ -147,47 +159,12 @@ class PagePrices(DialoguePrices):
         what = "recording" if item.tag == "record" else "question"
         return Price(item, what, QUESTION.devices, lasts, unknown, engages=True, listens=True)
 
-    def _timeout(self, item: Item | Form, form: Form) -> int:
-        """How long (ms) a question waits for an answer after a prompt that does not say."""
-        settings = (item.properties, form.properties, self.document.properties)
-        usual = next((one["timeout"] for one in settings if "timeout" in one), "")
-        return milliseconds(str(usual), TIMEOUT_MS)
-
-    def _said_by(self, handler: Handler) -> list[Price]:
-        """The speech of a handler."""
-        return self._speech(handler, [handler.content])
-
-    @cached_property
-    def _said_anywhere(self) -> list[Price]:
-        """The speech of the handlers of the document and of its application root."""
-        return [*chain.from_iterable(map(self._said_by, self.document.handlers))]
-
-    def _said_in(self, form: Form) -> list[Price]:
-        """The speech of a dialog and its handlers."""
-        return self._speech(form, self._contents.get(form.id, []))
-
-    @cached_property
-    def _contents(self) -> dict[str, list[Sequence[Act]]]:
-        """The content of each dialog."""
-        found: dict[str, list[Sequence[Act]]] = {}
-        for form, content, _ in self.document.contents():
-            if form is not None:
-                found.setdefault(form.id, []).append(content)
-        return found
-
-    def _speech(self, holder: object, contents: list[Sequence[Act]]) -> list[Price]:
-        """The speech in what an element holds, read once."""
-        if id(holder) not in self._heard:
-            steps = chain.from_iterable(map(self.steps, contents))
-            self._heard[id(holder)] = [one for one in steps if one.what == "speak"]
-        return self._heard[id(holder)]
-
     def _call(self, item: Item) -> Price | None:
         """A call to somebody else: throughout it the robot listens for the user to end it."""
         node, kind = item.node, kind_of(item.node)
         if not isinstance(item, Subdialog) or kind == "blind" or not node.all("grammar"):
             return None
-        said = max((one.lasts for one in self._speech(item, [item.filled[-1].content])), default=0)
+        said = max((one.lasts for one in self.spoken.asked_by(item)), default=0)
         connect = milliseconds(node.get("connecttimeout"), CONNECT_MS)
         longest = milliseconds(node.get("maxtime"), 0) if kind == "bridge" else 1
         lasts = max(min(connect, LISTENING_MS) + said, min(longest or LISTENING_MS, LISTENING_MS))
@@ -287,8 +264,3 @@ class PagePrices(DialoguePrices):
 def is_foreign(name: str) -> bool:
     """Whether an event may come from the user or the surroundings."""
     return takes(SERVICES, name) or not any(takes(one, name) for one in OWN)
-
-
-def _is_certain(node: Node) -> bool:
-    """Whether a prompt is always said before its question, at its first visit."""
-    return not node.get("cond") and node.get("count", "1") == "1"

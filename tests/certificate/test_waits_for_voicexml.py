@@ -1,0 +1,77 @@
+"""How long a certified reaction may wait for prompts of VoiceXML that are said elsewhere."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.helpers.certified import faults
+from tests.helpers.certifying import PROFILE, TOUCH, lasting, run, voiced
+
+LONG = "A long story that goes on and on and on and on and on and on and on and on and on."
+ASKS = '<field name="q" type="boolean"/>'
+BACK = f'<form id="b"><block>{LONG}<return/></block></form>'
+SAID = '<say>yes</say></when><when at="1100ms"><touch sensor="head"/>'
+
+
+@pytest.mark.parametrize(
+    ("body", "more", "timeout"),
+    [
+        (f'<form><block>{LONG}<goto next="#b"/></block></form><form id="b">{ASKS}</form>', "", 5),
+        (
+            f'<form><block><prompt timeout="9s">{LONG}</prompt><goto next="#b"/></block></form>'
+            f'<form id="b"><field name="q" type="boolean"><prompt cond="false">X.</prompt></field></form>',
+            "",
+            9,
+        ),
+        (
+            f'<form><property name="timeout" value="20s"/><block>{LONG}<goto next="#b"/></block>'
+            f'</form><form id="b">{ASKS}</form>',
+            "",
+            20,
+        ),
+        (
+            f'<form><block>{LONG}<goto next="more.vxml#b"/></block></form>',
+            f'<form id="b">{ASKS}</form>',
+            5,
+        ),
+        (f'<form><subdialog name="s" src="more.vxml#b"/>{ASKS}</form>', BACK, 5),
+        (f'<form><subdialog name="s" src="#b"/>{ASKS}</form>{BACK}', "", 5),
+        (
+            f'<form><block><if cond="true"><goto nextitem="q"/></if>Hm.</block>{ASKS}</form>'
+            f'<form id="b"><block>{LONG}</block></form>',
+            "",
+            5,
+        ),
+    ],
+)
+def test_a_question_may_ask_with_what_another_dialog_has_queued(
+    tmp_path: Path, body: str, more: str, timeout: int
+) -> None:
+    """Prompts are queued until something listens, wherever that is (4.1.8)."""
+    found, fa, ea = voiced(tmp_path, body, more=more)
+    (delay,) = found.delays
+    assert delay.known and delay.what == "question"
+    assert 0 <= delay.lasts - lasting(LONG) - timeout * 1000 <= 1
+    touch = TOUCH.replace("1s", "1ms")
+    records = run(tmp_path, fa, ea, touch)
+    assert faults(found, records, PROFILE.voices) == []
+
+
+@pytest.mark.parametrize(
+    "first",
+    [
+        "<block>Well?</block>",
+        '<field name="p" type="boolean"><prompt>Well?</prompt></field>',
+        f'<p:iu longest="9s"><block>Well?</block>{ASKS.replace("q", "p")}</p:iu><block>So.</block>',
+    ],
+)
+def test_a_dialog_that_speaks_before_it_asks_asks_with_its_own_words(
+    tmp_path: Path, first: str
+) -> None:
+    asks = f'<form id="b">{first}{ASKS}</form>'
+    body = f'<form><block>{LONG}<goto next="#b"/></block></form>{asks}'
+    (delay,) = voiced(tmp_path, body)[0].delays
+    unit = "iu" in first
+    assert unit or delay.lasts < lasting(LONG) + 5000
