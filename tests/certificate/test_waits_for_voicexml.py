@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from prima.devices.voice import SENTENCE_MS
 from tests.helpers.certified import faults
-from tests.helpers.certifying import PROFILE, TOUCH, lasting, run, voiced
+from tests.helpers.certifying import PROFILE, TOUCH, lasting, run, voiced, waited
 
 LONG = "A long story that goes on and on and on and on and on and on and on and on and on."
 ASKS = '<field name="q" type="boolean"/>'
@@ -75,3 +76,23 @@ def test_a_dialog_that_speaks_before_it_asks_asks_with_its_own_words(
     (delay,) = voiced(tmp_path, body)[0].delays
     unit = "iu" in first
     assert unit or delay.lasts < lasting(LONG) + 5000
+
+
+def test_what_a_handler_of_another_item_says_may_be_asked_with(tmp_path: Path) -> None:
+    """The item is filled, so that the next one listens; after a handler nothing is asked (C)."""
+    fills = f'<noinput>{LONG}<assign name="p" expr="true"/></noinput>'
+    record = '<record name="r" beep="true" maxtime="9s"><prompt>Now.</prompt></record>'
+    prompt = '<prompt timeout="1s">Well?</prompt>'
+    body = f'<form><field name="p" type="boolean">{prompt}{fills}</field>{record}</form>'
+    found, fa, ea = voiced(tmp_path, body)
+    records = run(tmp_path, fa, ea, TOUCH.replace("1s", "1600ms"))
+    assert waited(records) * 1000 > lasting(LONG) + 5000
+    assert faults(found, records, PROFILE.voices) == []
+
+
+def test_a_beep_comes_after_the_pause_of_a_sentence(tmp_path: Path) -> None:
+    body = f'<form><record name="r" beep="true" maxtime="9s">{LONG}</record></form>'
+    found, fa, ea = voiced(tmp_path, body)
+    records = run(tmp_path, fa, ea, TOUCH.replace("1s", "1ms"))
+    assert waited(records) * 1000 >= lasting(LONG) + 5000 + 500 + SENTENCE_MS - 1
+    assert faults(found, records, PROFILE.voices) == []

@@ -15,7 +15,7 @@ from prima.checks.prices.speech import SpeechReader, says
 from prima.checks.prices.spoken import AllSpeech, DocumentSpeech, is_certain
 from prima.checks.prices.times import ASKED_AGAIN, QUESTION, SERVICES
 from prima.devices.profile import Profile
-from prima.devices.voice import duration
+from prima.devices.voice import SENTENCE_MS, duration
 from prima.interpreter.acts import (
     Act,
     Assign,
@@ -154,7 +154,7 @@ class PagePrices(DialoguePrices):
         lasts = max([platform, *(one.lasts for one in heard)]) + max([usual, *stated, 1]) + 1
         if item.tag == "record":
             lasts += milliseconds(item.get("finalsilence"), 0)
-            lasts += BEEP_MS if item.get("beep") == "true" else 0
+            lasts += BEEP_MS + SENTENCE_MS if item.get("beep") == "true" else 0
         unknown = next((one.unknown for one in heard if one.unknown), "")
         what = "recording" if item.tag == "record" else "question"
         return Price(item, what, QUESTION.devices, lasts, unknown, engages=True, listens=True)
