@@ -96,3 +96,37 @@ def test_a_beep_comes_after_the_pause_of_a_sentence(tmp_path: Path) -> None:
     records = run(tmp_path, fa, ea, TOUCH.replace("1s", "1ms"))
     assert waited(records) * 1000 >= lasting(LONG) + 5000 + 500 + SENTENCE_MS - 1
     assert faults(found, records, PROFILE.voices) == []
+
+
+LISTED = "".join(
+    f'<choice next="#m">the choice number {one}, a long one</choice>' for one in "abcd"
+)
+OPTIONS = LISTED.replace('choice next="#m"', "option").replace("/choice", "/option")
+SAYS = "<noinput>Say <enumerate/></noinput>"
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        f'<menu id="m"><prompt timeout="1s">Well?</prompt>{LISTED}{SAYS}</menu>',
+        f'{SAYS}<menu id="m"><prompt timeout="1s">Well?</prompt>{LISTED}</menu>',
+        f'{SAYS}<form><block><goto next="more.vxml#m"/></block></form>',
+        f'<form>{SAYS}<field name="m"><prompt timeout="1s">Well?</prompt>{OPTIONS}</field></form>',
+    ],
+)
+def test_a_handler_enumerates_the_choices_of_the_item_that_asks(tmp_path: Path, body: str) -> None:
+    root = '<menu id="m"><prompt timeout="1s">Well?</prompt>' + LISTED + "</menu>"
+    more = f"{SAYS if 'more' in body else ''}{root}"
+    found, fa, ea = voiced(tmp_path, body, more=more)
+    (delay,) = found.delays
+    assert delay.known
+    records = run(tmp_path, fa, ea, TOUCH.replace("1s", "1600ms"))
+    assert waited(records) > 12
+    assert faults(found, records, PROFILE.voices) == []
+
+
+def test_a_handler_enumerates_the_choices_of_its_own_item(tmp_path: Path) -> None:
+    short = f'<menu id="s"><choice next="#m">tea</choice>{SAYS}</menu>'
+    long = f'<menu id="m"><prompt timeout="1s">Well?</prompt>{LISTED}</menu>'
+    (delay,) = voiced(tmp_path, short + long)[0].delays
+    assert delay.lasts < 12_000

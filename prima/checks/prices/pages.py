@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from urllib.parse import urldefrag
 
 from prima.checks.prices.model import Gap
+from prima.checks.prices.speech import choices_of
 from prima.markup.tree import Node
 from prima.script.choices import choices
 from prima.voicexml.document import FetchError, Page, VoiceDocument
@@ -22,6 +24,12 @@ class PricedPages(Pages):
         self.gaps = list(dict.fromkeys(gap for gap in found if gap))
         self.throws_any = any(one.get("eventexpr") for page in self for one in page.root.walk())
         """Whether expressions determine events that it throws."""
+
+    @cached_property
+    def choosing(self) -> list[Node]:
+        """The items of all documents whose choices an ``enumerate`` says."""
+        nodes = (one for page in self for one in page.root.walk())
+        return [one for one in nodes if one.tag in ("menu", "field") and choices_of(one)]
 
     def leads(self, page: Page, node: Node) -> tuple[list[str], Gap | None]:
         """The states to which an element of a page leads, or why they are not known."""

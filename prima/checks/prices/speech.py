@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
 from prima.checks.prices.model import UNKNOWN_LETTERS
-from prima.devices.voice import timeline
+from prima.devices.voice import duration, timeline
 from prima.markup.tree import Node
 from prima.messages import Cue
 from prima.voicexml.elements import says_instead, words_of
@@ -41,6 +41,11 @@ class Said:
         )
 
 
+def choices_of(item: Node) -> list[Node]:
+    """The choices of an item that an ``enumerate`` says."""
+    return item.all("choice", "option")
+
+
 class SpeechReader:
     """Reads the speech of elements.
 
@@ -51,15 +56,18 @@ class SpeechReader:
         self._recording = recording
 
     def read(
-        self, pieces: Iterable[Node | str], lang: str, base: str, menu: Node | None = None
+        self, pieces: Iterable[Node | str], lang: str, base: str, choosing: Sequence[Node] = ()
     ) -> Said:
-        """Read pieces of a prompt with a language and a base, or of speech without one."""
+        """Read pieces of a prompt with a language and a base, or of speech without one.
+
+        ``choosing`` has the items whose choices an ``enumerate`` may say.
+        """
         said = Said(Speech(lang, "", base=base))
         for piece in pieces:
-            self._piece(piece, said, menu)
+            self._piece(piece, said, choosing)
         return said
 
-    def _piece(self, piece: Node | str, said: Said, menu: Node | None) -> None:
+    def _piece(self, piece: Node | str, said: Said, choosing: Sequence[Node]) -> None:
         if isinstance(piece, str):
             said.speech.parts.append(piece)
         elif piece.namespace != PRIMA_NAMESPACE:
@@ -67,51 +75,55 @@ class SpeechReader:
             lang = language_of(piece, before)
             if lang != before:
                 said.flush(lang)
-            self._element(piece, said, menu)
+            self._element(piece, said, choosing)
             if said.speech.lang != before:
                 said.flush(before)
 
-    def _inner(self, node: Node, said: Said, menu: Node | None) -> None:
+    def _inner(self, node: Node, said: Said, choosing: Sequence[Node]) -> None:
         for piece in node.content:
-            self._piece(piece, said, menu)
+            self._piece(piece, said, choosing)
 
-    def _element(self, node: Node, said: Said, menu: Node | None) -> None:
+    def _element(self, node: Node, said: Said, choosing: Sequence[Node]) -> None:
         match node.tag:
             case "value":
                 self._guess(said, SAYS)
             case "enumerate":
-                self._enumerate(node, said, menu)
+                self._enumerate(node, said, choosing)
             case "foreach":
                 said.unknown = REPEATED
-                self._inner(node, said, menu)
+                self._inner(node, said, choosing)
             case "audio":
-                self._audio(node, said, menu)
+                self._audio(node, said, choosing)
             case _:
-                read_markup(node, said.speech, lambda: self._inner(node, said, menu))
+                read_markup(node, said.speech, lambda: self._inner(node, said, choosing))
 
     @staticmethod
     def _guess(said: Said, why: str) -> None:
         said.unknown = why
         said.speech.parts.append("x" * UNKNOWN_LETTERS)
 
-    def _enumerate(self, node: Node, said: Said, menu: Node | None) -> None:
+    def _enumerate(self, node: Node, said: Said, choosing: Sequence[Node]) -> None:
         if node.content:
             said.unknown = OF_EACH
-            self._inner(node, said, menu)
-        elif menu is not None:
-            choices = menu.all("choice", "option")
-            said.speech.parts.append("; ".join(filter(None, map(words_of, choices))))
+            self._inner(node, said, choosing)
+            return
+        enumerated = ["; ".join(filter(None, map(words_of, choices_of(one)))) for one in choosing]
 
-    def _audio(self, node: Node, said: Said, menu: Node | None) -> None:
+        def lasts(words: str) -> int:
+            return duration(words, said.speech.lang, {})
+
+        said.speech.parts.append(max(enumerated, key=lasts, default=""))
+
+    def _audio(self, node: Node, said: Said, choosing: Sequence[Node]) -> None:
         if "expr" in node.attributes:
             self._guess(said, "an expression says what is played")
-            self._inner(node, said, menu)
+            self._inner(node, said, choosing)
             return
         ms, speech = self._recording(said.speech.base, node.get("src")), said.speech
         spoken = says_instead(node)
         opened = speech.open(UNKNOWN_MS if ms is None and not spoken else ms)
         if spoken:
-            self._inner(node, said, menu)
+            self._inner(node, said, choosing)
         else:
             speech.parts.append(f"[{node.get('src').rpartition('/')[2]}]")
         speech.close(opened)

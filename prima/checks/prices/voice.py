@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Self
 
 from prima.checks.prices.dialogue import DialoguePrices
@@ -131,11 +131,18 @@ class PagePrices(DialoguePrices):
         if not isinstance(command, VoiceCommand) or not says(command.pieces):
             return None
         holder = command.holder
-        choices = holder if holder is not None and holder.tag in ("menu", "field") else None
+        owner = None if holder is None else self._owners.get(id(holder))
+        choosing = [owner] if owner is not None else self.pages.choosing
         lang = command.node.get("xml:lang") or self.page.lang
         base = command.node.get("xml:base")
-        said = self._reader.read(command.pieces, lang, base, choices)
+        said = self._reader.read(command.pieces, lang, base, choosing)
         return max(said.lasts(self.profile.voices), 1), said.unknown
+
+    @cached_property
+    def _owners(self) -> dict[int, Node]:
+        """The items with choices, by the identities of what is in them."""
+        items = (one for one in self.pages.choosing if one.source is self.page.root.source)
+        return {id(inner): item for item in items for inner in item.walk()}
 
     def question(self, field: Field, form: Form) -> Price:
         """A question: the longest speech that may precede it, and the time for an answer."""
