@@ -89,7 +89,10 @@ def test_an_editors_questions_grow_with_the_size_of_a_document(name: str, tmp_pa
     assert grown(FAMILIES[name], tmp_path, ask) < MOST
 
 
-@pytest.mark.parametrize("name", ["forms with gotos", "subdialogs", "VoiceXML dialogs with gotos"])
+ASKING = ("VoiceXML dialogs with gotos", "VoiceXML menus", "VoiceXML external grammars")
+
+
+@pytest.mark.parametrize("name", ["forms with gotos", "subdialogs", *ASKING])
 def test_a_certificate_grows_with_the_size_of_a_document(name: str, tmp_path: Path) -> None:
     fa = str(ROOT / "documents" / "fa" / "follow.xml")
     assert grown(FAMILIES[name], tmp_path, lambda path: certificates([fa], [str(path)])) < MOST

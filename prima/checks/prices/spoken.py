@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from itertools import chain
 
@@ -22,6 +22,7 @@ class DocumentSpeech:
         self._steps = steps
         self._kept: dict[tuple[str, str | int], list[Price]] = {}
         """What has been read, by what it belongs to."""
+        self._waits: dict[str, int] = {}
 
     def _speech(self, contents: Iterable[Sequence[Act]]) -> list[Price]:
         steps = chain.from_iterable(map(self._steps, contents))
@@ -84,14 +85,17 @@ class DocumentSpeech:
         usual = next((one["timeout"] for one in settings if "timeout" in one), "")
         return milliseconds(str(usual), TIMEOUT_MS)
 
-    def timeouts_in(self, form: Form) -> list[int]:
-        """How long (ms) questions of a dialog wait, wherever their prompts are queued."""
-        places: list[Form | Item] = [form, *all_items(form.items)]
-        return [self.timeout(one, form) for one in places]
+    def longest_timeout(self, form: Form) -> int:
+        """How long (ms) questions of a dialog wait at most, wherever their prompts are queued."""
+        if form.id not in self._waits:
+            places: list[Form | Item] = [form, *all_items(form.items)]
+            self._waits[form.id] = max(self.timeout(one, form) for one in places)
+        return self._waits[form.id]
 
-    def timeouts(self) -> Iterator[int]:
-        """How long (ms) questions of the document wait."""
-        return chain.from_iterable(map(self.timeouts_in, self._document.forms.values()))
+    @cached_property
+    def longest_wait(self) -> int:
+        """How long (ms) questions of the document wait at most."""
+        return max(map(self.longest_timeout, self._document.forms.values()), default=0)
 
 
 class AllSpeech:
@@ -108,7 +112,7 @@ class AllSpeech:
     @cached_property
     def timeout(self) -> int:
         """The longest time (ms) for an answer after a prompt that does not say."""
-        return max((each for one in self._documents for each in one.timeouts()), default=0)
+        return max((one.longest_wait for one in self._documents), default=0)
 
 
 def most(said: Sequence[Price]) -> list[Price]:

@@ -151,7 +151,7 @@ class PagePrices(DialoguePrices):
         usual = self.spoken.timeout(field, form)
         if not any(map(is_certain, own)):
             heard += self.spoken.said_in(form)
-            usual = max(self.spoken.timeouts_in(form))
+            usual = self.spoken.longest_timeout(form)
             if id(field) not in self._units and not self.spoken.speaks_first(form):
                 heard += self.everywhere.said
                 usual = max(usual, self.everywhere.timeout)
