@@ -123,11 +123,12 @@ class _TierBuilder:
         entries = enumerate(self._run.entries, 1)
         turns: list[tuple[int, Entry | Saying]] = [(n, one) for n, one in entries if one.spoken]
         turns += [(one.closed, one) for one in self._run.sayings]
-        until = 0.0
+        until: dict[str, float] = {}
         for _, one in sorted(turns, key=lambda turn: turn[0]):
             if isinstance(one, Entry):
-                self._hear(one, until)
-                until = one.time
+                person = str(one.data.get("person", ""))
+                self._hear(one, until.get(person, 0.0))
+                until[person] = one.time
                 continue
             words = f"{one.heard} ..." if one.heard else one.spell.start.text
             about = {**_about(one.spell), "outcome": one.outcome}
@@ -139,14 +140,16 @@ class _TierBuilder:
                 self._put(floor, mark.start / 1000, mark.end / 1000, tier.who, about)
 
     def _hear(self, entry: Entry, until: float) -> None:
-        """Add what the user said; its start is computed, as the record comes at its end."""
-        text = clean(entry.text)
-        duration = entry.data.get("duration")
-        known = isinstance(duration, int | float) and 0 <= duration <= LONGEST_MS
-        lasted = round(duration or 0) if known else voice.duration(text, voice.language(text), {})
-        start = max(_ms(entry.time) - lasted, _ms(until)) / 1000
+        """Add what a user said; its start is computed, as the record comes at its end.
+
+        It is not before ``until``, the end of what they said before.
+        """
+        text, lasted = clean(entry.text), _lasted(entry)
         about = {"event": "speech", "serial": str(entry.serial or "")}
-        about["note"] = "" if known else "start estimated"
+        about["note"] = "start estimated" if lasted is None else ""
+        if lasted is None:
+            lasted = voice.timeline(text, voice.language(text), {}, ()).total
+        start = max(_ms(entry.time) - lasted, _ms(until)) / 1000
         self._put(self._tier("user-says", "user"), start, entry.time, text, about)
 
     # Streams, floor, reactions --------------------------------------------------------------
@@ -240,6 +243,15 @@ class _TierBuilder:
             "application": entry.app,
         }
         self._put(tier, entry.time, entry.time, text, about)
+
+
+def _lasted(entry: Entry) -> int | None:
+    """How long a user spoke (ms), if the transcript has it: all of it, or what was recorded."""
+    for name, unit in (("lasted", 1000), ("duration", 1)):
+        value = entry.data.get(name)
+        if isinstance(value, int | float) and 0 <= value * unit <= LONGEST_MS:
+            return round(value * unit)
+    return None
 
 
 def _title(spell: Spell) -> str:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
+from pathlib import Path
 
 import pytest
 
 from prima import api
 from prima.errors import UsageError
 from prima.exports import tiers
+from tests import ROOT
 from tests.helpers.exporting import SCENARIOS, end, event, made, of, start
 
 
@@ -123,6 +125,38 @@ def test_a_recorded_duration_counts_and_a_guess_never_overlaps() -> None:
         (1.5, 2.0, "One"),
         (2.0, 2.1, "A long answer to a question"),
     ]
+
+
+def test_who_speaks_at_the_same_time_begins_when_each_does() -> None:
+    found = made(
+        [
+            event(3.0, "speech", "user", text="One", data={"duration": 1500, "person": "ann"}),
+            event(3.5, "speech", "user", text="Two", data={"duration": 1500, "person": "ben"}),
+            event(4.0, "speech", "user", text="Three", data={"duration": 1500, "person": "ann"}),
+        ]
+    )
+    assert of(found, "user: says") == [(1.5, 3.0, "One"), (2.0, 3.5, "Two"), (3.0, 4.0, "Three")]
+
+
+@pytest.mark.parametrize("policy", ["prima", "prima+x10"])
+@pytest.mark.parametrize(
+    "text", ["Hello, my friend. It is me!", "!?", "\U0001f600", "你好，我叫小明。"]
+)
+def test_what_users_say_in_simulation_begins_when_they_begin(
+    text: str, policy: str, tmp_path: Path
+) -> None:
+    robot, world = ROOT / "documents/robots/papero.xml", ROOT / "documents/worlds/room.xml"
+    file = tmp_path / "two.xml"
+    file.write_text(
+        f'<scenario xmlns="urn:prima:scenario:1" version="1.0" id="two" world="{world}"'
+        f' robot="{robot}"><robot at="middle"/><person id="ann" x="1" y="0"/>'
+        f'<person id="ben" x="1" y="1"/><application src="{ROOT}/documents/ea/navigate.xml"/>'
+        f'<when at="1s" person="ann"><say>{text}</say></when>'
+        f'<when at="1.1s" person="ben"><say>{text}</say></when></scenario>',
+        "utf-8",
+    )
+    found = of(made(api.rehearse(file, policy).records), "user: says")
+    assert [start for start, _, _ in found] == [1.0, 1.1]
 
 
 def test_times_that_go_backwards_never_make_an_interval_of_less_than_nothing() -> None:
