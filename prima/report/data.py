@@ -8,7 +8,7 @@ from typing import Any
 
 from prima.errors.visible import visible
 from prima.report.lanes import LONGEST_NAME, Bar, Lanes
-from prima.report.view import View
+from prima.report.view import View, parted
 from prima.scheduler.policy import BASELINES
 from prima.transcript.colours import NOBODY
 from prima.transcript.diff import MARKS, Difference
@@ -70,8 +70,8 @@ def _row_data(view: View, row: Row) -> list[Any]:
     """Time, who, application, what, whether an event; for speech its language and place."""
     made = [row.time, row.actor, visible(row.app[:LONGEST_NAME]), row.what, int(row.event)]
     words, lang = view.spoken.get(row.number, ("", ""))
-    place = row.what.find(words) if words else -1
-    return [*made, lang, _units(row.what[:place]), _units(words)] if place >= 0 else made
+    before, found, _ = parted(row, words)
+    return [*made, lang, _units(before), _units(found)] if found else made
 
 
 def _units(words: str) -> int:

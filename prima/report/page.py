@@ -9,7 +9,7 @@ from prima.errors import counted
 from prima.report.data import page_data
 from prima.report.lanes import LONGEST_NAME
 from prima.report.parts import described, json_text, part, policy_of, style_of, text
-from prima.report.view import View
+from prima.report.view import View, parted
 from prima.transcript import colours
 from prima.transcript.colours import NOBODY
 from prima.transcript.diff import MARKS, Change, Difference, compare, remark, summary_line
@@ -149,10 +149,10 @@ def _what(view: View, row: Row) -> str:
     if said is None:
         return text(row.what)
     words, lang = said
-    before, found, after = row.what.partition(words)
+    before, found, after = parted(row, words)
     if not found:
         return text(row.what)
-    return f'{text(before)}<bdi lang="{text(lang)}">{text(words)}</bdi>{text(after)}'
+    return f'{text(before)}<bdi lang="{text(lang)}">{text(found)}</bdi>{text(after)}'
 
 
 def _marks(row: Row) -> str:

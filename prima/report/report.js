@@ -663,8 +663,8 @@
   function said(index, number, text) {
     const made = make("bdi", {}), row = runs[index].rows[number];
     const words = row && row.length > 5 ? row[3].substr(row[6], row[7]) : "";
-    const place = words ? text.indexOf(words) : -1;
-    if (place < 0) made.append(text);
+    const place = words ? text.indexOf(`"${words}"`) + 1 : 0;
+    if (!place) made.append(text);
     else made.append(text.slice(0, place), make("span", { lang: row[5] }, words), text.slice(place + words.length));
     return made;
   }

@@ -159,20 +159,28 @@ def _spoken(rows: Iterable[Row], run: Run) -> dict[int, tuple[str, str]]:
     own = run.languages
     alike = set(own.values())
     common = next(iter(alike)) if len(alike) == 1 else ""
+    heard = (one.text for one in run.of("event") if one.spoken)  # each has a row, in this order
     said: dict[int, tuple[str, str]] = {}
     for row in rows:
-        if row.kind == "speech" and row.what != '""':
-            said[row.number] = (row.what[1:-1], common)
-            continue
-        request = run.asked(row.behavior)
-        text = request.text if request is not None else ""
+        if row.kind == "speech":
+            text, lang = next(heard, ""), common
+        else:
+            request = run.asked(row.behavior)
+            text, lang = request.text if request is not None else "", own.get(row.app, "")
         if text and f'"{text}"' in row.what:
-            said[row.number] = (text, own.get(row.app, ""))
+            said[row.number] = (text, lang)
     japanese = any(KANA.search(text) for text, _ in said.values())
     return {
         number: (shown(text), lang or language(text, japanese))
         for number, (text, lang) in said.items()
     }
+
+
+def parted(row: Row, words: str) -> tuple[str, str, str]:
+    """A row's text before, in and after the words said, which are in quotation marks."""
+    place = row.what.find(f'"{words}"') + 1 if words else 0
+    end = place + len(words) if place else 0
+    return row.what[:place], row.what[place:end], row.what[end:]
 
 
 def language(text: str, japanese: bool = False) -> str:
@@ -192,12 +200,7 @@ def language(text: str, japanese: bool = False) -> str:
 def _whys(run: Run, rows: Sequence[Row]) -> tuple[list[dict[str, Json]], dict[str, list[Json]]]:
     """The reasons for each row, and descriptions of the ABs that they name."""
     first = {base(row.behavior): row.number for row in reversed(rows) if row.behavior}
-    places = {(row.time, row.kind): row.number for row in reversed(rows)}
-    events = {
-        serial: places[event.time, event.event]
-        for serial, event in run.events.items()
-        if serial and (event.time, event.event) in places
-    }
+    events = _event_rows(run, rows)
     whys: list[dict[str, Json]] = []
     names: dict[str, list[Json]] = {}
     for row in rows:
@@ -207,6 +210,18 @@ def _whys(run: Run, rows: Sequence[Row]) -> tuple[list[dict[str, Json]], dict[st
             if name not in names:
                 names[name] = _named(name, run, first)
     return whys, names
+
+
+def _event_rows(run: Run, rows: Iterable[Row]) -> dict[int, int]:
+    """The rows of events by their serial numbers; events of one name and instant are in order."""
+    places: dict[tuple[float, str], list[int]] = {}
+    for row in rows:
+        places.setdefault((row.time, row.kind), []).append(row.number)
+    found: dict[int, int] = {}
+    for serial, event in run.events.items():
+        if serial and (there := places.get((event.time, event.event))):
+            found[serial] = there.pop(0) if len(there) > 1 else there[0]
+    return found
 
 
 def _why(
