@@ -18,7 +18,7 @@ from prima.transcript.lines import check_head, finished, line, read_lines
 
 CHANGED = (
     "the documents do not give this record again: lines are missing above it or were changed,"
-    " or another version of PRIMA has written them."
+    " a file that an application fetched has changed, or another version of PRIMA has written them."
 )
 
 

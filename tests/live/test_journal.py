@@ -20,6 +20,7 @@ from prima.live.journal import Journal, going_on, known, lacking, read_broken
 from prima.messages import Record
 from prima.sim.devices import Cast
 from prima.transcript.lines import finished
+from tests import ROOT
 from tests.live.stage import carried_out, live_loop
 from tests.live.test_live import HELLO, ROBOT, prima
 
@@ -243,6 +244,25 @@ def test_a_journal_is_replayed_as_far_as_it_goes(journal: Path) -> None:
     ran = prima("replay", str(changed))
     assert ran.returncode == 1
     assert f"the replay differs from line {at + 1}: the documents do not give" in ran.stderr
+
+
+def test_a_replay_tells_that_what_was_fetched_may_have_changed(tmp_path: Path) -> None:
+    vxml = '<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en">'
+    page, second = tmp_path / "first.vxml", tmp_path / "second.vxml"
+    page.write_text(f'{vxml}<form><block><goto next="second.vxml"/></block></form></vxml>')
+    second.write_text(f"{vxml}<form><block>Hello.<exit/></block></form></vxml>")
+    visit, made = tmp_path / "visit.xml", str(tmp_path / "visit.jsonl")
+    visit.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="visit"'
+        f' world="{ROOT}/documents/worlds/room.xml" robot="{ROOT}/documents/robots/papero.xml">'
+        '<robot at="middle"/><person x="1" y="0"/><application src="first.vxml"/></scenario>'
+    )
+    assert prima("run", str(visit), "-o", made).returncode == 0
+    assert prima("replay", made, str(visit)).returncode == 0
+    second.write_text(second.read_text().replace("Hello.", "Farewell."))
+    ran = prima("replay", made, str(visit))
+    assert ran.returncode == 1
+    assert "a file that an application fetched has changed" in ran.stderr
 
 
 def test_a_journal_that_has_lost_a_line_tells_what_is_sound_of_it(journal: Path) -> None:
