@@ -233,10 +233,11 @@ class Algorithm:
         self.owner.engine.set(frame.dialog, item.name, result.data["result"])
         yield from self._process(frame, fiber, item, item.filled)
 
-    def _returned(self, frame: Frame, back: GoBack) -> Notice:
+    def _returned(self, frame: Frame, caller: Frame, back: GoBack) -> Notice:
         """The result of a subdialog that returned without waiting."""
         self.owner.leave(frame)
-        self.owner.frame = frame.caller
+        self.owner.frame = caller
+        self.owner.note(None, "leave", caller.form.id)
         return Notice("done", 0, data={"result": back.values}, event=back.event)
 
     def _chase(self, caller: Frame, pending: tuple[Frame, Transfer] | None) -> Notice | None:
@@ -247,7 +248,7 @@ class Algorithm:
         while pending is not None:
             frame, transfer = pending
             if isinstance(transfer, GoBack) and frame.caller is caller:
-                return self._returned(frame, transfer)
+                return self._returned(frame, caller, transfer)
             pending = self.owner.go_to(frame, transfer)
         return None
 

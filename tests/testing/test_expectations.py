@@ -317,6 +317,22 @@ def test_states_of_subdialogs_and_of_applications_that_end() -> None:
     assert not transcript.failures
 
 
+def test_after_a_subdialog_that_returns_at_once_the_state_is_its_callers(tmp_path: Path) -> None:
+    (tmp_path / "calls.xml").write_text(
+        '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="calls" xml:lang="en">'
+        '<form id="a"><subdialog name="s" src="#c"/><block><speak>Back.</speak></block></form>'
+        '<form id="c"><block><return/></block></form></prima>'
+    )
+    path = tmp_path / "visit.xml"
+    path.write_text(
+        '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="visit"'
+        f' world="{ROOT}/documents/worlds/room.xml" robot="{ROOT}/documents/robots/papero.xml">'
+        '<robot at="middle"/><application src="calls.xml"/></scenario>'
+    )
+    states = states_of(api.rehearse(path, visits=True).visits)
+    assert [change.state for change in states["calls"]] == ["a", "c", "a"]
+
+
 def test_states_of_voicexml() -> None:
     scenario = ROOT / "documents" / "scenarios" / "pizza-and-follow.xml"
     states = states_of(api.rehearse(scenario, visits=True).visits)
