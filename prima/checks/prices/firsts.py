@@ -140,12 +140,9 @@ class Firsts:
         """Add the relevant Commands of a run; gives whether the content after it is, too."""
         prices = [self._step(step) for step in act.steps]
         if not self._response:
-            begins = [
-                price for step, price in zip(act.steps, prices, strict=True) if not step.after
-            ]
-            for price in begins:
-                self._add(price)
-            self.together += [begins] if len(begins) > 1 else []
+            self._begin_with(
+                [price for price, step in zip(prices, act.steps, strict=True) if not step.after]
+            )
             return False
         answering = {at for at, price in enumerate(prices) if responds(price)}
         before = answering or set(range(len(prices)))
@@ -157,6 +154,13 @@ class Firsts:
         if not answering:
             self._ends(act, form)
         return not answering
+
+    def _begin_with(self, branches: list[Price]) -> None:
+        """Add the first Command of each branch of a run."""
+        for price in branches:
+            self._add(price)
+        if len(branches) > 1:
+            self.together.append(branches)
 
     def _ends(self, act: CommandRun, form: Form | None) -> None:
         """Add the Commands of handlers of the ends of Commands."""
@@ -222,18 +226,20 @@ def _leaves_at(event: str, scope: Sequence[Handler]) -> int:
         scope: the handlers, innermost first.
     """
     fitting = [one for one in scope if any(takes(name, event) for name in one.events)]
-    for count in sorted({one.count for one in fitting}):
-        most = [
-            one
-            for one in sorted(fitting, key=lambda one: -one.count)
-            if _may_take(one, event, count)
-        ]
-        sure = [one.cond is None and event in one.events and one.count <= count for one in most]
-        if True in sure and all(
-            is_left(one.content, goes_to_item) for one in most[: sure.index(True) + 1]
-        ):
-            return count
-    return 0
+    fitting.sort(key=lambda one: -one.count)
+    counts = sorted({one.count for one in fitting})
+    return next((count for count in counts if _is_left_at(count, event, fitting)), 0)
+
+
+def _is_left_at(count: int, event: str, fitting: Sequence[Handler]) -> bool:
+    """Whether that occurrence of an event leaves the form, whichever handler takes it."""
+    for one in fitting:
+        if _may_take(one, event, count):
+            if not is_left(one.content, goes_to_item):
+                return False
+            if one.cond is None and event in one.events and one.count <= count:
+                return True
+    return False
 
 
 def _may_take(handler: Handler, event: str, count: int) -> bool:
