@@ -199,15 +199,26 @@ def _move(
 
 
 def moved(workspace: Workspace, moves: Mapping[Path, Path]) -> list[NameEdit]:
-    """The edits of documents that name files, or move, once files are renamed or moved together."""
+    """The edits of documents that name files, or move, once files are renamed or moved together.
+
+    A folder moves with all its files.
+    """
     edits = [edit for old, new in moves.items() for edit in _called(workspace, old, new)]
     for path in sorted({*workspace.files(), *moves}):
-        folder = moves.get(path, path).parent
+        folder = _after(path, moves).parent
         for target, start, end in workspace.named(path):
-            written = _written(workspace, path, moves.get(target, target), folder)
+            written = _written(workspace, path, _after(target, moves), folder)
             if written != _written(workspace, path, target, path.parent):
                 edits.append(NameEdit(path, start, end, written))
     return edits
+
+
+def _after(path: Path, moves: Mapping[Path, Path]) -> Path:
+    """Where a file is after some moves."""
+    for old, new in moves.items():
+        if path.is_relative_to(old):
+            return new / path.relative_to(old)
+    return path
 
 
 def _called(workspace: Workspace, old: Path, new: Path) -> Iterator[NameEdit]:

@@ -171,8 +171,12 @@ def make_server() -> Server:
     """A server, ready to start."""
     server = Server()
     kinds_of_files = ",".join(kind[1:] for kind in KINDS)
-    pattern = lsp.FileOperationPattern(f"**/*.{{{kinds_of_files}}}")
-    files = lsp.FileOperationRegistrationOptions([lsp.FileOperationFilter(pattern, "file")])
+    patterns = (
+        lsp.FileOperationPattern(f"**/*.{{{kinds_of_files}}}"),
+        lsp.FileOperationPattern("**", lsp.FileOperationPatternKind.Folder),
+    )
+    moving = [lsp.FileOperationFilter(pattern, "file") for pattern in patterns]
+    files = lsp.FileOperationRegistrationOptions(moving)
     kinds = lsp.CodeActionOptions([lsp.CodeActionKind.QuickFix])
     for method, handler, options in (
         (lsp.INITIALIZED, _initialized, None),
