@@ -15,6 +15,8 @@ from prima.lsp.text import Lines
 from prima.lsp.workspace import Workspace
 
 TAG = re.compile(r"</?[^\s<>/]*")
+NEAR = ("urn:", "http://www.w3.org/2001/")
+"""How namespaces begin that may be misspelt ones."""
 WORD = re.compile(r"[^\s=<>/\"'(){}\[\];,+*!&|?]+")
 
 
@@ -29,7 +31,7 @@ def is_ours(page: ScannedText) -> bool:
         namespace in BY_NAMESPACE
         or "prima" in namespace
         or (root is not None and root.local in ("prima", "vxml"))
-        or (known and namespace.startswith("urn:") and bool(nearest_word(namespace, BY_NAMESPACE)))
+        or (known and namespace.startswith(NEAR) and bool(nearest_word(namespace, BY_NAMESPACE)))
     )
 
 

@@ -64,6 +64,8 @@ def test_what_never_ends_before_the_root_is_told(editor: Editor, before: str) ->
     [
         (BEGIN.removeprefix("<") + "<form/></prima>", ["not-xml"]),
         ('<world xmlns="urn:pima:world:1" version="1.0" id="w"/>', ["wrong-namespace"]),
+        ('<grammar xmlns="http://www.w3.org/2001/6/grammar" version="1.0"/>', ["wrong-root"]),
+        ('<grammar xmlns="http://www.w3.org/1999/xhtml"/>', []),
         ('<robot xmlns="urn:acme:arm" name="r"/>', []),
         ('<catalog><of name="urn:prima:dialogue"/></catalog>', []),
     ],
