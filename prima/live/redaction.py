@@ -11,7 +11,7 @@ from urllib.parse import unquote
 
 from prima.grammar.answers import Answers
 from prima.grammar.text import fold
-from prima.messages import Json, Record
+from prima.messages import Heard, Json, Record
 
 REDACTED = "[redacted]"
 """Replaces what a user has said."""
@@ -87,9 +87,9 @@ class Redactor:
 
     def _hear(self, record: Record, filled: bool) -> None:
         """Remember what was said, and what else the recogniser takes it for."""
-        others = (record.get("data") or {}).get("alternatives", [])
-        for said in (record.get("text") or "", *(one["text"] for one in others)):
-            self._note(said, filled)
+        heard = Heard(record.get("text") or "", record.get("data") or {})
+        for one in heard.hypotheses:
+            self._note(one.text, filled)
 
     def _note(self, said: str, filled: bool) -> None:
         """Remember free speech; short words only if a question takes any text or has taken them."""

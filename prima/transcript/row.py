@@ -202,9 +202,10 @@ def _heard(text: str, data: Record) -> str:
     said = f'{data["person"]}: "{text}"' if "person" in data else f'"{text}"'
     if "confidence" not in data:
         return said
+    told = data.get("alternatives")
     others = "".join(
         f', or "{one.get("text")}" {one.get("confidence")}'
-        for one in data.get("alternatives") or ()
+        for one in (told if isinstance(told, list) else ())
         if isinstance(one, dict)
     )
     return f"{said} (confidence {data['confidence']}{others})"

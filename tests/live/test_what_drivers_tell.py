@@ -120,7 +120,7 @@ ROBOT = """<robot xmlns="urn:prima:robot:1" version="1.0" id="odd">
 </robot>"""
 
 
-def live(folder: Path, what: str) -> tuple[int, str, list[dict[str, Any]]]:
+def live(folder: Path, what: str, *more: str) -> tuple[int, str, list[dict[str, Any]]]:
     """A run whose driver does something odd for its one Command, and then a replay of it."""
     (folder / "odd.py").write_text(DRIVER.format(what))
     (folder / "robot.xml").write_text(ROBOT)
@@ -129,8 +129,10 @@ def live(folder: Path, what: str) -> tuple[int, str, list[dict[str, Any]]]:
         "<block><speak>Hi.</speak><exit/></block></form></prima>"
     )
     words = ["--driver", "odd.py", "--robot", "robot.xml", "--ea", "hi.xml", "--until", "8s"]
-    ran = command.prima("live", *words, "-o", "m.jsonl", cwd=folder)
+    ran = command.prima("live", *words, "-o", "m.jsonl", *more, cwd=folder)
     records = [json.loads(line) for line in (folder / "m.jsonl").read_text().splitlines()]
+    if more:
+        return ran.returncode, ran.stderr, records
     again = prima("replay", "m.jsonl", cwd=folder)
     assert (again.returncode, again.stderr) == (0, "the same, byte for byte\n")
     return ran.returncode, ran.stderr, records
@@ -166,6 +168,16 @@ def test_a_driver_that_goes_wrong_ends_in_a_clear_sentence(
     assert code == 3
     assert records[-1]["outcome"] in ("over", "until")
     assert told in said + json.dumps(records), (said, records)
+
+
+@pytest.mark.parametrize("more", [(), ("--redact",)])
+@pytest.mark.parametrize("others", [5, None, "Bye.", ["Bye."], [{}], [{"text": 5}]])
+def test_alternatives_in_another_form_end_no_run(
+    others: object, more: tuple[str, ...], tmp_path: Path
+) -> None:
+    data = {"confidence": 0.5, "alternatives": others}
+    code, said, _ = live(tmp_path, f'self.tell(Heard("Hello.", {data!r}))', *more)
+    assert (code, said) == (0, "")
 
 
 @pytest.mark.parametrize(("lasted", "known"), [(300, 300), (-5, 0), (10**9, 1000)])
