@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import ctypes
-from collections.abc import Collection, Coroutine
+from collections.abc import Callable, Collection, Coroutine
 from typing import Any, TypeVar
 
 from prima.errors import RunError
@@ -42,6 +42,21 @@ async def guarded(work: Coroutine[Any, Any, T]) -> T:
         raise
     except BaseException as error:
         raise Escaped(f"{type(error).__name__}: {error}") from error
+
+
+def unescaped(what: Callable[[], T]) -> T:
+    """The result of a driver's plain method, which neither ends the program nor cancels the run.
+
+    Raises:
+        Escaped: it raises what would do so: nothing can cancel it.
+        Exception: whatever else it raises.
+    """
+    try:
+        return what()
+    except (Exception, KeyboardInterrupt):
+        raise
+    except BaseException as error:
+        raise Escaped(f"{type(error).__name__}: {error}".removesuffix(": ")) from error
 
 
 async def within(seconds: float, work: Coroutine[Any, Any, T]) -> T:

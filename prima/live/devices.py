@@ -34,8 +34,8 @@ from prima.devices.goals import (
 from prima.devices.profile import Profile
 from prima.grammar.answers import Answers
 from prima.live.carried import lacking, limits_of, own_copy, route
-from prima.live.deadlines import within
-from prima.live.driver import Driver, why
+from prima.live.deadlines import unescaped, within
+from prima.live.driver import Driver, due_of, why
 from prima.live.journal import KnownAtCut
 from prima.live.speaking import UserSpeech
 from prima.messages import ApplicationLoaded, Emergency, Heard, Inbound, Order, Record, Sensed
@@ -147,7 +147,7 @@ class LiveDevices:
             self.conductor.due(self._sees.visible),
             self._speech.too_long,
             self.services.due(),
-            *(self._after(self._let(driver, driver.due)) for driver in self.drivers),
+            *(self._after(self._let(driver, partial(due_of, driver))) for driver in self.drivers),
         )
 
     def _after(self, time: int | None) -> int | None:
@@ -296,8 +296,8 @@ class LiveDevices:
         if driver in self._failing:
             return None
         try:
-            return what()
-        except (Exception, SystemExit) as error:
+            return unescaped(what)
+        except Exception as error:
             self._failing.add(driver)
             driver.lose(f"the driver has failed: {why(error)}")
             return None
@@ -337,8 +337,8 @@ class LiveDevices:
             return
         self._routes[goal.key] = driver
         try:
-            driver.start(own_copy(goal))
-        except (Exception, SystemExit) as error:
+            unescaped(partial(driver.start, own_copy(goal)))
+        except Exception as error:
             reason = f"the driver {driver.kind} has failed: {why(error)}"
             self.conductor.report(now, Broke(goal.key, goal.device, reason))
 

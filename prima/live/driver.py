@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Sequence
+from math import isnan
+from numbers import Real
 from threading import get_ident
 from typing import Any, ClassVar
 
@@ -319,6 +321,19 @@ class TaskDriver(Driver):
             self._tasks.pop(goal.key, None)
             self._said.pop(goal.key, None)
         self.tell(report)
+
+
+def due_of(driver: Driver) -> int | None:
+    """When a driver next has something to report.
+
+    Raises:
+        TypeError: what it returns is not a time.
+    """
+    due: Any = driver.due()
+    if due is None or (isinstance(due, Real) and not isnan(due)):
+        return due
+    kind = "NaN" if isinstance(due, Real) else type(due).__name__
+    raise TypeError(f"due returns {kind}, not a time")
 
 
 def speaks(goal: Begin) -> str:

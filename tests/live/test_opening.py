@@ -92,6 +92,14 @@ class Due(Well):
     kind = "due"
     def due(self): raise ValueError("no such joint")
 
+class Soon(Well):
+    kind = "soon"
+    def due(self): return "soon"
+
+class Cancelled(Well):
+    kind = "cancelled"
+    def sample(self, now): raise asyncio.CancelledError
+
 class Past(Well):
     kind = "past"
     def due(self): return 5
@@ -229,6 +237,8 @@ def test_a_run_that_goes_on_keeps_its_journal(stage: Path) -> None:
     [
         ("samples", "the driver has failed: ValueError: no such joint"),
         ("due", "the driver has failed: ValueError: no such joint"),
+        ("soon", "the driver has failed: TypeError: due returns str, not a time"),
+        ("cancelled", "the driver has failed: CancelledError"),
         ("pings", "KeyError: 'battery'"),
     ],
 )
