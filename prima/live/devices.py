@@ -341,6 +341,7 @@ class LiveDevices:
         except Exception as error:
             reason = f"the driver {driver.kind} has failed: {why(error)}"
             self.conductor.report(now, Broke(goal.key, goal.device, reason))
+            self._let(driver, partial(driver.cancel, goal.key))  # it may have begun
 
 
 def _releases(news: News | Inbound) -> bool:

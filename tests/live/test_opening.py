@@ -92,6 +92,15 @@ class Due(Well):
     kind = "due"
     def due(self): raise ValueError("no such joint")
 
+class Starts(Well):
+    kind = "starts"
+    def start(self, goal):
+        super().start(goal)
+        raise ValueError("too late")
+    async def perform(self, goal):
+        print("begins", file=sys.stderr)
+        return await super().perform(goal)
+
 class Soon(Well):
     kind = "soon"
     def due(self): return "soon"
@@ -230,6 +239,14 @@ def test_a_run_that_goes_on_keeps_its_journal(stage: Path) -> None:
     on = prima("live", *words)
     assert on.returncode == 0, on.stderr
     assert "Turn (angle 30)" in on.stdout, "although it was asked for before the cut"
+
+
+def test_what_a_driver_has_begun_ends_where_its_start_fails(stage: Path) -> None:
+    waits = '<on event="error"><pause time="300ms"/><exit/></on></form>'
+    (stage / "hello.xml").write_text(HELLO.replace("</form>", waits))
+    ran = live(stage, '<driver kind="starts"/>')
+    assert ran.returncode == 0, ran.stderr
+    assert "begins" not in ran.stderr, "its device is free for another Command"
 
 
 @pytest.mark.parametrize(
