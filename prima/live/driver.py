@@ -327,13 +327,15 @@ def due_of(driver: Driver) -> int | None:
     """When a driver next has something to report.
 
     Raises:
-        TypeError: what it returns is not a time.
+        TypeError, ValueError: what it returns is not a time.
     """
-    due: Any = driver.due()
-    if due is None or (isinstance(due, Real) and not isnan(due)):
-        return due
-    kind = "NaN" if isinstance(due, Real) else type(due).__name__
-    raise TypeError(f"due returns {kind}, not a time")
+    due = driver.due()
+    given: Any = due
+    if given is not None and not isinstance(given, Real):
+        raise TypeError(f"due returns {type(given).__name__}, not a time")
+    if given is not None and isnan(given):
+        raise ValueError("due returns NaN, not a time")
+    return due
 
 
 def speaks(goal: Begin) -> str:

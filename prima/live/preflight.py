@@ -11,12 +11,11 @@ from typing import Any
 
 from prima.devices.goals import LISTEN, SAY, Begin, Broke, Done, Lost, News, Report, Stopped
 from prima.devices.profile import Profile, read_robot
-from prima.devices.settings import DriverLimits
 from prima.errors import UsageError
 from prima.language.commands import Argument, CommandType
 from prima.live.carried import SPOKEN, lacking, limits_of, route
 from prima.live.chosen import Chosen
-from prima.live.deadlines import run, within
+from prima.live.deadlines import guarded, run, within
 from prima.live.devices import SAFE_S
 from prima.live.driver import Driver, Unreachable, why
 from prima.live.shell import open_driver
@@ -106,7 +105,7 @@ async def _stoppable(preflight: Preflight) -> int:
             await asyncio.wait([trying])
         finally:
             code = await preflight.end()
-    if not trying.cancelled():
+    if not (signals and trying.cancelled()):
         trying.result()
     return INTERRUPTED if signals else code
 
@@ -139,6 +138,9 @@ class Preflight:
             await self._try(command)
         for driver in self._opened:
             found = await self._let(driver, driver.settings.open / 1000, driver.check)
+            if not isinstance(found, dict | None):
+                reason = f"check has failed: it returns {type(found).__name__}, not a dict"
+                found = {"check": reason}
             for what, problem in (found or {}).items():
                 self._tell(not problem, what, problem, driver.kind)
 
@@ -288,21 +290,19 @@ class Preflight:
 
     async def _carried_out(self, driver: Driver, begin: Begin, lasts: int) -> CommandFinding:
         """Begin a Command, let it run for a while (ms), and cancel it."""
-        key, limits = begin.key, limits_of(self._drivers, begin, self._robot.voices)
-        self._reports[key] = asyncio.Queue()
+        self._reports[begin.key] = asyncio.Queue()
         try:
-            driver.sample(self._now())
-            driver.start(begin)
-            return await self._watch(driver, key, limits, lasts)
-        except (Exception, SystemExit) as error:
+            return await guarded(self._watch(driver, begin, lasts))
+        except Exception as error:
             return CommandFinding(False, f"the driver has failed: {why(error)}")
         finally:
-            del self._reports[key]
+            del self._reports[begin.key]
 
-    async def _watch(
-        self, driver: Driver, key: str, limits: DriverLimits, lasts: int
-    ) -> CommandFinding:
-        """The result of a Command that was begun."""
+    async def _watch(self, driver: Driver, begin: Begin, lasts: int) -> CommandFinding:
+        """Begin a Command, and cancel it; its result."""
+        key, limits = begin.key, limits_of(self._drivers, begin, self._robot.voices)
+        driver.sample(self._now())
+        driver.start(begin)
         began = monotonic()
         first = await self._report(key, limits.accept)
         accepted = _ms(monotonic() - began)

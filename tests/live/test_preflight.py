@@ -79,6 +79,18 @@ class Raises(Well):
     kind = "raises"
     def cancel(self, key): raise KeyError("joint")
 
+class Cancelled(Well):
+    kind = "cancelled"
+    def cancel(self, key): raise asyncio.CancelledError
+
+class Begun(Well):
+    kind = "begun"
+    def start(self, goal): raise asyncio.CancelledError
+
+class Lists(Well):
+    kind = "lists"
+    async def check(self): return ["microphone"]
+
 class Mute(Well):
     kind = "mute"
     async def check(self): return {"microphone": "no sound comes from it"}
@@ -137,6 +149,9 @@ LIMITS = 'accept="300ms" cancel="600ms"'
         ("drops", 3, r"FAILS +turn +drops .* the cable is out$"),
         ("refuses", 3, r"FAILS +turn +refuses .* the motor is hot$"),
         ("raises", 3, r"FAILS +turn +raises .* the driver has failed: KeyError: 'joint'$"),
+        ("cancelled", 3, r"FAILS +turn +cancelled .* the driver has failed: CancelledError"),
+        ("begun", 3, r"FAILS +turn +begun .* the driver has failed: CancelledError"),
+        ("lists", 3, r"FAILS +check +lists +check has failed: .* returns list, not a dict$"),
         ("mute", 3, r"FAILS +microphone +mute +no sound comes from it$"),
         ("hears", 0, r"ok +microphone +hears$"),
         ("away", 3, r"FAILS +connection +away .*robot\.xml:3:3: away: it is switched off$"),
