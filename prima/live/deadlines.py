@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import ctypes
 from collections.abc import Callable, Collection, Coroutine
+from inspect import isawaitable
 from typing import Any, TypeVar
 
 from prima.errors import RunError
@@ -16,7 +17,10 @@ T = TypeVar("T")
 
 
 class Escaped(Exception):
-    """What a driver raised would have ended the program, or passed for a cancellation."""
+    """What a driver raised would have ended the program, or passed for a cancellation.
+
+    Or what it returned cannot be awaited.
+    """
 
 
 class Late(TimeoutError):
@@ -28,9 +32,11 @@ async def guarded(work: Coroutine[Any, Any, T]) -> T:
 
     Raises:
         Escaped: it raises what would do so, such as the ``SystemExit`` of a robot's library, or
-            ``CancelledError`` though nobody has cancelled it.
+            ``CancelledError`` though nobody has cancelled it; or it is not a coroutine.
         Exception: whatever else the work raises.
     """
+    if not isawaitable(work):
+        raise Escaped(f"a coroutine is needed, not {type(work).__name__}: write async def")
     try:
         return await work
     except asyncio.CancelledError:

@@ -15,7 +15,7 @@ from prima.devices.goals import Back
 from prima.devices.loop import Loop
 from prima.errors import UsageError, brief
 from prima.live.clock import Clock
-from prima.live.deadlines import within
+from prima.live.deadlines import guarded, within
 from prima.live.devices import SAFE_S, LiveDevices
 from prima.live.driver import Driver, Unreachable, Unusable, why
 
@@ -250,5 +250,5 @@ async def open_driver(driver: Driver) -> None:
 
 
 async def _opened(driver: Driver) -> None:
-    await driver.open()
-    await driver.ping()
+    await guarded(driver.open())
+    await guarded(driver.ping())

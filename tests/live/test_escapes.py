@@ -153,3 +153,24 @@ def test_a_check_that_fails_is_a_line_of_the_table(what: str, told: str, tmp_pat
     code, said = live(tmp_path, "CHECK", what, "--check")
     assert code == 3
     assert f"check has failed: {told}\n" in said
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("open", "robot.xml:2:3: escaping: the driver has failed: {}, not NoneType: {}"),
+        ("ping", "robot.xml:2:3: escaping: the driver has failed: {}, not NoneType: {}"),
+        ("safe", "escaping: safe has failed: {}, not NoneType: {}"),
+        ("close", "escaping: close has failed: {}, not NoneType: {}"),
+        ("perform", "{}, not dict: {}"),
+    ],
+)
+def test_a_method_that_is_plain_where_it_is_awaited_says_what_to_write(
+    name: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    code = DRIVER.replace("await asyncio.sleep(0.1)", "").replace(
+        f"async def {name}", f"def {name}"
+    )
+    monkeypatch.setitem(globals(), "DRIVER", code)
+    said = live(tmp_path, "CHECK", "pass")[1]
+    assert told.format("a coroutine is needed", "write async def") in said
