@@ -197,7 +197,8 @@ def _run(visit: Visit, why: bool, as_json: bool) -> None:
         tell_line(f"prima: {failure}")
     if visit.stopped:
         journal = visit.journal
-        if journal is not None and os.path.exists(journal.path) and not visit.settings.redact:
+        kept = journal is not None and os.path.exists(journal.path) and not visit.loop.outcome
+        if journal is not None and kept and not visit.settings.redact:
             tell(f"Stopped. {how_to_go_on(journal.path, visit.settings.drivers)}")
         raise Exit(INTERRUPTED)
     if session.failures:

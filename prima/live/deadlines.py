@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import ctypes
 from collections.abc import Callable, Collection, Coroutine
-from inspect import isawaitable
+from inspect import CORO_CREATED, getcoroutinestate, isawaitable, iscoroutine
 from typing import Any, TypeVar
 
 from prima.errors import RunError
@@ -50,6 +50,23 @@ async def guarded(work: Coroutine[Any, Any, T]) -> T:
         raise Escaped(f"{type(error).__name__}: {error}") from error
 
 
+async def unbroken(
+    work: Callable[[], Coroutine[Any, Any, T]], tell: Callable[[str], object]
+) -> T | None:
+    """The result of a driver's work; None if it blocked until signals broke it off, which is told.
+
+    The robots of other drivers are still to be made safe.
+
+    Raises:
+        Exception: whatever the work raises.
+    """
+    try:
+        return await guarded(work())
+    except KeyboardInterrupt as error:
+        tell(str(error) or "A driver was broken off.")
+        return None
+
+
 def unescaped(what: Callable[[], T]) -> T:
     """The result of a driver's plain method, which neither ends the program nor cancels the run.
 
@@ -79,6 +96,8 @@ async def within(seconds: float, work: Coroutine[Any, Any, T]) -> T:
             raise Late(f"no answer within {seconds:g} s")
         return task.result()
     finally:
+        if iscoroutine(work) and getcoroutinestate(work) == CORO_CREATED:
+            work.close()  # it was broken off before it began
         await leave([task])
 
 

@@ -15,7 +15,7 @@ from prima.errors import UsageError
 from prima.language.commands import Argument, CommandType
 from prima.live.carried import SPOKEN, lacking, limits_of, route
 from prima.live.chosen import Chosen
-from prima.live.deadlines import guarded, run, within
+from prima.live.deadlines import guarded, run, unbroken, within
 from prima.live.devices import SAFE_S
 from prima.live.driver import Driver, Unreachable, why
 from prima.live.shell import open_driver
@@ -160,7 +160,7 @@ class Preflight:
     ) -> Any:
         """What a driver returns; None if it fails, which is printed."""
         try:
-            return await within(seconds, what())
+            return await within(seconds, unbroken(what, self._say))
         except Exception as error:
             reason = f"{what.__name__} has failed: {why(error)}"
             self._tell(False, what.__name__, reason, driver.kind)

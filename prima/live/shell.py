@@ -15,7 +15,7 @@ from prima.devices.goals import Back
 from prima.devices.loop import Loop
 from prima.errors import UsageError, brief
 from prima.live.clock import Clock
-from prima.live.deadlines import guarded, within
+from prima.live.deadlines import guarded, unbroken, within
 from prima.live.devices import SAFE_S, LiveDevices
 from prima.live.driver import Driver, Unreachable, Unusable, why
 
@@ -164,7 +164,7 @@ class Shell:
     async def _end(self, driver: Driver, end: Callable[[], Coroutine[Any, Any, None]]) -> None:
         """Let a driver end something; warn if it fails."""
         try:
-            await within(SAFE_S, end())
+            await within(SAFE_S, unbroken(end, self._warn))
         except Exception as error:
             self._warn(f"{driver.kind}: {end.__name__} has failed: {why(error)}.")
 

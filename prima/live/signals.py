@@ -45,6 +45,7 @@ def heeding_signals(stop: Callable[[], object]) -> Iterator[None]:
             running.call_soon_threadsafe(heed)
         elif now - unheeded > BLOCKED_S:
             stops = True
+            stop()
             raise KeyboardInterrupt(_told(frame))
 
     running.set_exception_handler(_tell_defects)

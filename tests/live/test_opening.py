@@ -88,6 +88,12 @@ class Blocks(Well):
         print("blocks", file=sys.stderr, flush=True)
         time.sleep(1000)
 
+class Stands(Well):
+    kind = "stands"
+    async def safe(self):
+        print("blocks", file=sys.stderr, flush=True)
+        time.sleep(999)
+
 class Due(Well):
     kind = "due"
     def due(self): raise ValueError("no such joint")
@@ -178,8 +184,11 @@ def test_a_driver_that_cannot_be_opened_ends_the_run(
 
 
 @pytest.mark.parametrize("check", [[], ["--check"]])
-def test_a_second_signal_ends_a_run_that_a_driver_blocks(check: list[str], stage: Path) -> None:
-    words = ["--robot", robot(stage, TWO.format("blocks", "")), "--driver", "drivers.py", *check]
+@pytest.mark.parametrize(("kind", "blocked"), [("blocks", 1000), ("stands", 999)])
+def test_a_second_signal_ends_a_run_that_a_driver_blocks(
+    kind: str, blocked: int, check: list[str], stage: Path
+) -> None:
+    words = ["--robot", robot(stage, TWO.format(kind, "")), "--driver", "drivers.py", *check]
     journal = [] if check else ["--ea", "hello.xml", "-o", "visit.jsonl"]
     command = [sys.executable, "-m", "prima", "live", *words, *journal]
     with subprocess.Popen(command, cwd=stage, stdout=PIPE, stderr=PIPE, text=True) as run:
@@ -190,13 +199,13 @@ def test_a_second_signal_ends_a_run_that_a_driver_blocks(check: list[str], stage
             run.wait(2 * BLOCKED_S)
         run.send_signal(signal.SIGINT)
         told = "".join(run.communicate(timeout=60))
-    line = 1 + DRIVERS.splitlines().index("        time.sleep(1000)")
+    line = 1 + DRIVERS.splitlines().index(f"        time.sleep({blocked})")
     assert run.returncode == 130, told
     assert f"drivers.py:{line}. Drivers must wait with await." in told
     assert "well is safe" in told
-    assert "Traceback" not in told
+    assert "Traceback" not in told and "never awaited" not in told
     assert "Go on with" not in told
-    assert not (stage / "visit.jsonl").exists()
+    assert (stage / "visit.jsonl").exists() == (kind == "stands" and not check)
 
 
 @pytest.mark.parametrize("check", [[], ["--check"]])
