@@ -87,7 +87,17 @@ def _human(senses: Senses, value: Json) -> Sees:
 
 
 def pose(value: Json) -> At | None:
-    """The pose in a message: ROS's pose within poses, x, y and theta in radians, or a list of these."""
+    """The pose in a message: ROS's pose within poses, x, y and theta in radians, or a list of these.
+
+    None if there is none.
+    """
+    try:
+        return _pose(value)
+    except (AttributeError, KeyError, TypeError, ValueError, OverflowError):
+        return None
+
+
+def _pose(value: Json) -> At | None:
     while isinstance(value, dict) and "pose" in value:
         value = value["pose"]
     if isinstance(value, dict) and "position" in value:

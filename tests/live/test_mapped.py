@@ -137,7 +137,22 @@ def test_a_pose_is_read_as_robots_write_it(message: Json) -> None:
     assert told('as="pose" by="/p" field="at"', {"at": message}, {"at": message}) == [at]
 
 
-@pytest.mark.parametrize("message", ["here", [1, 2], {"x": 1}, ["a", "b", "c"], None])
+NO_POSES: list[Json] = [
+    "here",
+    [1, 2],
+    {"x": 1},
+    ["a", "b", "c"],
+    [1, 2, 10**400],
+    {"position": 5},
+    {"position": {"x": 1}},
+    {"position": {"x": "a", "y": 2}},
+    {"position": {"x": 1, "y": 2}, "orientation": [0, 0, 0, 1]},
+    {"position": {"x": 1, "y": 2}, "orientation": {"w": None}},
+    None,
+]
+
+
+@pytest.mark.parametrize("message", NO_POSES)
 def test_what_is_no_pose_is_passed_over(message: Json) -> None:
     assert pose(message) is None
 
