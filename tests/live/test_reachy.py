@@ -317,6 +317,8 @@ def test_nonsense_ends_no_move_and_a_daemon_that_hangs_up_meanwhile_is_lost() ->
                 await asyncio.sleep(0.001)
             fake.send("x" * 200)
             fake.send('{"type": "move_completed", "uuid": 7, "details": ""}' + " " * 99)
+            fake.send('{"type": "move_completed", "uuid": ["a"], "details": ""}' + " " * 99)
+            fake.send('{"type": {"a": 1}, "uuid": "a", "details": ""}' + " " * 99)
             await asyncio.sleep(0.01)
             assert not any(isinstance(one, Lost) for one in run.told)
             fake.hang_up()

@@ -190,9 +190,10 @@ class ReachyLink:
         try:
             event = json.loads(message)
             how, uuid = event["type"], event["uuid"]
-        except (ValueError, KeyError, TypeError):
+        except (ValueError, KeyError, TypeError, RecursionError):
             return
-        if how in ENDS and self.playing.locked():
+        named = isinstance(how, str) and isinstance(uuid, str)
+        if named and how in ENDS and self.playing.locked():
             self._ended[uuid] = how, str(event.get("details", ""))
             self._news.set()
 
