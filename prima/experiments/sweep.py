@@ -20,7 +20,14 @@ from prima.experiments.levels import Factor, cell, read_factor
 from prima.experiments.pools import Pool
 from prima.experiments.scenariotext import Variant
 from prima.experiments.settings import ExperimentSettings
-from prima.experiments.table import columns, count_runs, dictionary, line, read_rows, write_parquet
+from prima.experiments.table import (
+    columns,
+    dictionary,
+    line,
+    read_rows,
+    whole_rows,
+    write_parquet,
+)
 from prima.experiments.variants import Made, Stage, discard
 from prima.loading.files import is_name
 from prima.loading.similar import in_words
@@ -291,22 +298,7 @@ class Output:
             why = what.get(different[0], "with other factors or options")
             message = f"{self.path}: it was made {why}, so it cannot be resumed."
             raise UsageError(f"{message} Begin anew without --resume, or name another file.")
-        return self._whole_rows()
-
-    def _whole_rows(self) -> int:
-        """The number of rows; anything after the last complete one is cut off."""
-        end = 0
-        with self.rows.open("rb+") as stream:
-            for data in stream:
-                end += len(data) if data.endswith(b"\r\n") else 0
-            stream.truncate(end)
-        if not end:
-            return 0
-        with self.rows.open(encoding="utf-8", newline="") as text:
-            try:
-                return count_runs(read_rows(text, self.sweep.columns))
-            except ValueError as error:
-                raise UsageError(f"{self.rows}: not the table of a sweep: {error}.") from None
+        return whole_rows(self.rows, self.sweep.columns)
 
     def read(self) -> Iterator[dict[str, Json]]:
         """The rows of the table."""

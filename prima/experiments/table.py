@@ -136,6 +136,30 @@ def read_rows(stream: IO[str], made: Sequence[Column]) -> Iterator[dict[str, Jso
         raise ValueError(f"line {rows.line_num}: {error}") from None
 
 
+def whole_rows(path: Path, made: Sequence[Column]) -> int:
+    """The number of rows of a table that was cut off; anything after the last whole one is removed.
+
+    Raises:
+        OSError: it cannot be read or written.
+        UsageError: it is another table, or is damaged.
+    """
+    end = size = quotes = 0
+    with path.open("rb+") as stream:
+        for data in stream:
+            size += len(data)
+            quotes += data.count(b'"')
+            if data.endswith(b"\r\n") and quotes % 2 == 0:  # else a cell goes on in the next line
+                end = size
+        stream.truncate(end)
+    if not end:
+        return 0
+    with path.open(encoding="utf-8", newline="") as text:
+        try:
+            return count_runs(read_rows(text, made))
+        except ValueError as error:
+            raise UsageError(f"{path}: not the table of a sweep: {error}.") from None
+
+
 def count_runs(rows: Iterable[Mapping[str, Json]]) -> int:
     """The number of rows of a sweep's table; they have to be those of its runs, in order.
 

@@ -118,6 +118,20 @@ def here(work: Callable[[Run, int, Variant], Made | Died]) -> Any:
     return pool
 
 
+def test_texts_of_several_lines_are_resumed_wherever_they_are_cut() -> None:
+    vary = {"reply": 'Yes,\n"please".|No.\r\nNever.', "touch": "1s|2s"}
+    sweep = Sweep(SweepQuestion(("visit.xml",), vary))
+    pool = here(lambda run, _number, one: run(one))
+    for _ in Output(sweep, "t.csv", pool).write():
+        pass
+    made = Path("t.csv").read_bytes()
+    for cut in range(made.index(b"\r\n") + 2, len(made), 7):
+        Path("t.csv").write_bytes(made[:cut])
+        for _ in Output(sweep, "t.csv", pool).write(resume=True):
+            pass
+        assert Path("t.csv").read_bytes() == made, cut
+
+
 def test_parquet_is_there_after_an_interrupt() -> None:
     parquet = pytest.importorskip("pyarrow.parquet")
 
