@@ -21,6 +21,7 @@ from prima.experiments.pools import Pool
 from prima.experiments.scenariotext import Variant
 from prima.experiments.settings import ExperimentSettings
 from prima.experiments.table import (
+    check_name,
     columns,
     dictionary,
     line,
@@ -127,12 +128,10 @@ class Sweep:
         """The factors; every scenario has to contain the varied values."""
         made = []
         for index, (path, levels) in enumerate(self.question.vary.items()):
-            if path == "policy":
-                how = 'in a study file policies = ["prima", "fifo"]'
-                raise UsageError(f"policy: write --policy prima --policy fifo, {how}.")
             kinds = set()
             for number in range(len(self.question.scenarios)):
                 target = self.stage.targets(number)[index]
+                check_name(target)
                 kinds.add(target.kind)
                 factor = read_factor(target, levels, self.question.folder)
             if len(kinds) > 1:

@@ -17,6 +17,7 @@ from prima.errors.visible import harmless, unharmed
 from prima.experiments.levels import Factor
 from prima.experiments.variants import ORDER
 from prima.messages import Json
+from prima.sim.paths import ScenarioValue
 from prima.transcript.criteria import CRITERIA, MEANINGS
 from prima.version import __version__
 
@@ -74,6 +75,22 @@ def _criterion(name: str) -> Column:
 
 FIXED = (*OUTCOMES, *MEASURES, *map(_criterion, CRITERIA))
 """The columns of every table that do not depend on what is varied, behind its factors."""
+
+
+def check_name(value: ScenarioValue) -> None:
+    """Check that a table can have a column with a value's path for its name.
+
+    Raises:
+        UsageError: another column has this name.
+    """
+    path = value.path
+    if path == "policy":
+        how = 'in a study file policies = ["prima", "fifo"]'
+        raise UsageError(f"policy: write --policy prima --policy fifo, {how}.")
+    is_seed = path == "seed" and value.node.tag == "scenario"
+    if any(one.name == path for one in (*HEAD, *FIXED)) and not is_seed:
+        message = f'{path}: each table has a column "{path}" of its own.'
+        raise UsageError(f"{message} Name the value by its place, as when[2].at, or change its id.")
 
 
 def columns(factors: Sequence[Factor]) -> list[Column]:

@@ -394,3 +394,15 @@ def test_planning_takes_no_longer_with_more_levels_than_are_tried(
         )
         counts.append(len(tried))
     assert counts == [1002, 1002, 1002]
+
+
+@pytest.mark.parametrize("name", ["run", "scenario", "seed", "exit", "order", "seconds", "left"])
+def test_ids_that_are_names_of_columns(name: str) -> None:
+    write_visit(Path(), VISIT.replace('id="touch"', f'id="{name}"'))
+    with pytest.raises(UsageError) as caught:
+        rows(vary={name: "1s|4s"})
+    assert str(caught.value) == (
+        f'{name}: each table has a column "{name}" of its own.'
+        " Name the value by its place, as when[2].at, or change its id."
+    )
+    assert [one["when[1].at"] for one in rows(vary={"when[1].at": "1s|4s"})] == [1, 4]
