@@ -131,15 +131,26 @@ class Stage:
                 read_named(document)
 
     def digests(self) -> list[str]:
-        """The SHA-256 of everything that the scenarios name, without what ``pack`` adds."""
+        """The SHA-256 of everything that the scenarios name, without what ``pack`` adds.
+
+        They are in the order of the files' paths, so that two files that are exchanged differ.
+        """
         return self._digests
 
     @cached_property
     def _digests(self) -> list[str]:
         assert isinstance(self.files, Kept)
-        heads = (data + str(size).encode() for data, size in self.files.heads.values())
-        contents = (*self.files.texts.values(), *heads, *(data for _, data in self.scenarios))
-        return sorted({digest(data) for data in contents})
+        texts, heads, here = self.files.texts, self.files.heads, self.files.folder
+
+        def place(path: Path) -> str:
+            return os.path.relpath(path, here)
+
+        contents = [data for _, data in self.scenarios]
+        contents += [texts[path] for path in sorted(texts, key=place)]
+        for path in sorted(heads, key=place):
+            data, size = heads[path]
+            contents.append(data + str(size).encode())
+        return [digest(data) for data in contents]
 
     def problems(self, variant: Variant) -> list[Problem]:
         """The error of a variant before it runs, if any."""

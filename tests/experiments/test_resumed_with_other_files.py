@@ -8,6 +8,7 @@ import pytest
 
 from tests.helpers.here import prima
 from tests.helpers.spoken import recording
+from tests.helpers.sweeps import write_visit
 
 PAGE = """<vxml version="2.1" xmlns="http://www.w3.org/2001/vxml" xml:lang="en">
   <script src="names.js"/>
@@ -53,6 +54,23 @@ def test_what_has_changed_is_noticed(folder: Path, name: str) -> None:
     else:
         path.write_bytes(path.read_bytes() + b"\n")
     refused = prima(*SWEEP, "--resume", cwd=folder)
+    assert refused.returncode == 2 and "it was made with other documents" in refused.stderr
+
+
+def test_files_that_were_exchanged(tmp_path: Path) -> None:
+    visit = write_visit(tmp_path)
+    visit.write_text(visit.read_text().replace('speed="1"', 'user="one.xml"'))
+    user = '<user xmlns="urn:prima:user:1" version="1.0" id="{}"><answers after="{}"/></user>'
+    one, two = user.format("one", "1s"), user.format("two", "4s")
+    made = ("--vary", "person.user=one.xml|two.xml", "--workers", "1", "-o", "t.csv")
+    (tmp_path / "one.xml").write_text(one)
+    (tmp_path / "two.xml").write_text(two)
+    assert prima("sweep", "visit.xml", *made, cwd=tmp_path).returncode == 0
+    again = prima("sweep", "visit.xml", *made, "--resume", cwd=tmp_path)
+    assert (again.returncode, again.stderr) == (0, "2 of 2 runs had been made before\n")
+    (tmp_path / "one.xml").write_text(two)
+    (tmp_path / "two.xml").write_text(one)
+    refused = prima("sweep", "visit.xml", *made, "--resume", cwd=tmp_path)
     assert refused.returncode == 2 and "it was made with other documents" in refused.stderr
 
 
