@@ -19,6 +19,7 @@ from typing import TypeVar
 from prima.errors import UsageError, did_you_mean
 from prima.language.distributions import MEASURED, RANGE, Distributions, Quantile, written
 from prima.language.values import read_value
+from prima.loading.applications import digest
 from prima.script.surrogates import SURROGATE
 from prima.sim.paths import ScenarioValue
 
@@ -41,6 +42,8 @@ class Factor:
     levels: tuple[str, ...] = ()
     quantile: Quantile | None = None
     """The value (ms for times) below which a share of all values lies, if they are drawn."""
+    file: str = ""
+    """The SHA-256 of the file that they are drawn from, if any."""
 
     def drawn(self, share: float) -> str:
         """The quantile at a share, from 0 to 1."""
@@ -100,7 +103,8 @@ class _Levels:
                 raise self.wrong(f"A level has {longest:,} characters; {most}.")
             return Factor(path, kind, self.checked(pieces))
         if len(pieces) == 1 and (drawn := self.read_by(self.values.read, pieces[0].strip())):
-            return Factor(path, kind, (), drawn)
+            file = self.values.file
+            return Factor(path, kind, (), drawn, digest(file) if file else "")
         levels: list[str] = []
         for piece in pieces:
             levels += self.several(piece.strip())

@@ -207,7 +207,7 @@ class Sweep:
             "question": json.loads(json.dumps(question)),
             "levels": [list(one.levels) for one in self.factors],
             "runs": len(self),
-            "files": self.stage.digests(),
+            "files": [*self.stage.digests(), *(one.file for one in self.factors if one.file)],
         }
 
     def results(self, pool: Pool, begin: int = 0, folder: str = "") -> Iterator[list[Json]]:

@@ -73,6 +73,8 @@ class Distributions:
         least, most = (0.0, float(LONGEST_MS)) if kind == "duration" else (-1e12, 1e12)
         self.low = least if low is None else float(low)
         self.high = most if high is None else float(high)
+        self.file = b""
+        """The content of the file of values that was read, if any."""
 
     def value(self, text: str) -> float:
         """A number, or a time in ms.
@@ -208,7 +210,7 @@ class Distributions:
             if path.exists() and not path.is_file():
                 raise ValueError("it is not a file")
             with path.open("rb") as stream:
-                data = stream.read(MOST_BYTES + 1)
+                self.file = data = stream.read(MOST_BYTES + 1)
             if len(data) > MOST_BYTES:
                 raise ValueError(f"it is larger than {MOST_BYTES:,} bytes")
             reader = csv.reader(io.StringIO(data.decode("utf-8-sig"), newline=""))

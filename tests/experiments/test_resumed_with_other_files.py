@@ -74,6 +74,18 @@ def test_files_that_were_exchanged(tmp_path: Path) -> None:
     assert refused.returncode == 2 and "it was made with other documents" in refused.stderr
 
 
+def test_measured_values_that_have_changed(tmp_path: Path) -> None:
+    write_visit(tmp_path)
+    made = ("--vary", "touch=empirical(touches.csv)", "--seeds", "2", "--workers", "1")
+    (tmp_path / "touches.csv").write_text("1\n2\n")
+    assert prima("sweep", "visit.xml", *made, "-o", "t.csv", cwd=tmp_path).returncode == 0
+    again = prima("sweep", "visit.xml", *made, "-o", "t.csv", "--resume", cwd=tmp_path)
+    assert (again.returncode, again.stderr) == (0, "2 of 2 runs had been made before\n")
+    (tmp_path / "touches.csv").write_text("1\n3\n")
+    refused = prima("sweep", "visit.xml", *made, "-o", "t.csv", "--resume", cwd=tmp_path)
+    assert refused.returncode == 2 and "it was made with other documents" in refused.stderr
+
+
 def test_an_archive_makes_no_difference(folder: Path) -> None:
     from prima import documents_folder
 
