@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from urllib.parse import quote
 
 import pytest
 
@@ -227,6 +228,17 @@ def test_paths_that_lead_elsewhere_are_no_links(tmp_path: Path) -> None:
         )
         page = results.make(results.read(table), tmp_path)
         assert not [one for one in Tables(page).links if one[:1] != "#"]
+
+
+@pytest.mark.parametrize("name", ["a,b", "it's", "#1", "50% & more", ".hidden", "v1..2", "日本"])
+def test_tables_of_any_name_have_links(tmp_path: Path, name: str) -> None:
+    orders = tmp_path / name / "orders"
+    orders.mkdir(parents=True)
+    (orders / "aa.jsonl").write_text("")
+    path = f"{name}/orders/aa.jsonl"
+    table = write(tmp_path, [row | {"order": "aa", "transcript": path} for row in runs()])
+    links = Tables(results.make(results.read(table), tmp_path)).links
+    assert f"./{quote(path)}" in links
 
 
 def test_parquet_gives_the_same_page(table: Path, tmp_path: Path) -> None:
