@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 from math import ceil, floor, log10
+from sys import float_info
 
 from prima.errors.visible import visible
 from prima.graph.svg import box, circle, fit, line, measure, picture, text
@@ -95,7 +96,7 @@ class Scale:
 
     def ticks(self, least: float = 0.0) -> list[float]:
         """At most eight round values between the ends, with a minimum distance."""
-        rough = max((self.high - self.low) / 5, least)
+        rough = max((self.high - self.low) / 5, least, float_info.min)
         power = 10.0 ** floor(log10(rough))
         step = next(one * power for one in (1, 2, 5, 10) if one * power >= rough)
         first, last = ceil(self.low / step - 1e-9), floor(self.high / step + 1e-9)

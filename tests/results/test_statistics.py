@@ -13,6 +13,7 @@ import numpy as np
 
 from prima.experiments.table import Column
 from prima.results.data import FactorColumn
+from prima.results.figures import Scale
 from prima.results.statistics import (
     KRUSKAL_WALLIS,
     MANN_WHITNEY,
@@ -160,3 +161,8 @@ def test_ranges_are_told_apart() -> None:
     column = Column("when.at", "number", "factor", "")
     names = FactorColumn(column, (1000 + np.arange(100) / 1000).tolist()).levels(12, 8).names
     assert len(set(names)) == 8 and names[0].startswith("1000 to 1000.01")
+
+
+def test_a_scale_of_the_least_numbers_has_ticks() -> None:
+    assert Scale(0.0, 5e-324, 0, 100).ticks() == [0]
+    assert Scale(0.0, 10.0, 0, 100).ticks() == [0, 2, 4, 6, 8, 10]
