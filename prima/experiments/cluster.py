@@ -19,6 +19,7 @@ from prima.errors.visible import escaped
 from prima.experiments.pools import Pool, Runs, local
 from prima.experiments.scenariotext import Variant
 from prima.experiments.variants import Made, Stage
+from prima.loading.files import check_text
 from prima.pool import Died, cores
 from prima.version import __version__
 
@@ -55,6 +56,7 @@ def pool_of(address: str | None, workers: int | None) -> Pool:
     """
     if address is None:
         return local(workers or 0)
+    check_text(address, "on")
     if workers is not None:
         raise UsageError("--workers is for this machine; a cluster has the workers it has.")
     if ADDRESS.fullmatch(address) is None:

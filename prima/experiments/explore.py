@@ -88,7 +88,7 @@ class Exploration:
         if not 1 <= plan.depth <= MOST_DEPTH:
             raise UsageError(f"--depth: write a number from 1 to {MOST_DEPTH}.")
         if not 1 <= plan.within <= LONGEST_MS:
-            raise UsageError("--within: write a time above 0.")
+            raise UsageError("--within: write a time above 0, at most 86400s.")
         settings = ExperimentSettings(isolate=plan.isolate)
         moves = list(plan.moves) or _events(plan.scenario, settings)
         if not moves:

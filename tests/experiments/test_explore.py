@@ -304,6 +304,10 @@ def test_scenarios_that_cannot_be_explored() -> None:
     assert done.returncode == 2 and '"normal(2s,1s)" is drawn' in done.stderr, done.stderr
     with pytest.raises(UsageError, match="depth: write a number from 1 to 4"):
         package.explore("visit.xml", depth=9)
+    with pytest.raises(UsageError, match="within: write a time above 0, at most 86400s"):
+        package.explore("visit.xml", within=86_400_001)
+    with pytest.raises(UsageError, match="on=8786: write a text"):
+        package.explore("visit.xml", on=8786)  # type: ignore[arg-type]
     Path("none.xml").write_text(VISIT.replace("<when", "<!--").replace("</when>", "-->"))
     done = prima("explore", "none.xml")
     assert done.returncode == 2 and "nothing to move" in done.stderr, done.stderr
