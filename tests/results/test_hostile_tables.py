@@ -111,3 +111,13 @@ def test_a_dictionary_that_repeats_itself_makes_no_larger_page(tmp_path: Path) -
     fields["fields"] = fields["fields"] * 1000 + lost
     told.write_text(json.dumps(fields))
     assert len(results.make(results.read(table), tmp_path)) < len(plain) + 10_000
+
+
+def test_a_dictionary_that_takes_an_outcome_for_a_factor(tmp_path: Path) -> None:
+    table = write(tmp_path, [one | {"expects_failed": "none"} for one in runs()])
+    told = tmp_path / "sweep" / "dictionary.json"
+    fields = json.loads(told.read_text())
+    outcome = next(one for one in fields["fields"] if one["name"] == "expects_failed")
+    outcome |= {"role": "factor", "type": "string"}
+    told.write_text(json.dumps(fields))
+    assert "With failed expectations" not in results.make(results.read(table), tmp_path)
