@@ -231,29 +231,35 @@ class Exploration:
         self.problems = self._problems()
 
     def _shrink(self) -> Iterator[int]:
-        """Find the smallest shifts."""
+        """Find the smallest shifts, also of what is found on the way."""
         self.most = None
         self.settle()
-        searches: dict[Any, Search[Point]] = {}
-        for order in self.orders:
-            searches["order", order.signature] = shrunk(
-                self.base, order.point, _is(order.signature)
-            )
-        for problem in self.problems:
-            has = self._has(problem.finding)
-            searches["problem", problem.finding] = shrunk(self.base, problem.point, has)
-        found: dict[Any, Point] = {}
-        yield from self._together(searches, found)
-        for order in self.orders:
-            order.point = found["order", order.signature]
-        for problem in self.problems:
-            problem.point = found["problem", problem.finding]
-            problem.finding = next(
-                one
-                for one in self.findings(self.seen[problem.point])
-                if one[:2] == problem.finding[:2]
-            )
+        done: set[Any] = set()
+        while searches := {name: one for name, one in self._searches() if name not in done}:
+            found: dict[Any, Point] = {}
+            yield from self._together(searches, found)
+            self._put(found)
+            done |= found.keys()
+            orders, problems = set(map(_name, self.orders)), set(map(_name, self.problems))
+            self.orders += [one for one in self._orders() if _name(one) not in orders]
+            self.problems += [one for one in self._problems() if _name(one) not in problems]
         self.orders.sort(key=lambda one: (*shift(self.base, one.point), one.point))
+
+    def _searches(self) -> Iterator[tuple[Any, Search[Point]]]:
+        """The searches for the smallest shift of each order and each problem, by their names."""
+        for order in self.orders:
+            yield _name(order), shrunk(self.base, order.point, _is(order.signature))
+        for problem in self.problems:
+            yield _name(problem), shrunk(self.base, problem.point, self._has(problem.finding))
+
+    def _put(self, found: dict[Any, Point]) -> None:
+        """Put orders and problems where searches have found them."""
+        everything: list[FoundOrder | FoundProblem] = [*self.orders, *self.problems]
+        for one in everything:
+            one.point = found.get(_name(one), one.point)
+        for problem in self.problems:
+            there = self.findings(self.seen[problem.point])
+            problem.finding = next(one for one in there if one[:2] == problem.finding[:2])
 
     def findings(self, seen: Seen) -> list[Finding]:
         """The findings of a run, including that it does not end although the base run does."""
@@ -300,6 +306,11 @@ class Exploration:
             if point == moved(self.base, which, point[which])
         }
         return pieces(times)
+
+
+def _name(one: FoundOrder | FoundProblem) -> Any:
+    """The name of what was found: the same wherever it is found."""
+    return one.signature if isinstance(one, FoundOrder) else one.finding[:2]
 
 
 def _is(signature: str) -> Callable[[Seen], bool]:

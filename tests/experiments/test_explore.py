@@ -20,6 +20,7 @@ from prima.experiments.explore import MOST_MOVES, Exploration, ExplorationPlan
 from prima.experiments.scenariotext import Variant
 from prima.experiments.settings import ExperimentSettings
 from prima.experiments.sweep import Sweep, SweepQuestion
+from tests import ROOT
 from tests.helpers.batches import files, until
 from tests.helpers.here import prima
 from tests.helpers.sweeps import VISIT, write_visit
@@ -152,6 +153,18 @@ def test_no_more_runs_than_allowed() -> None:
     done = prima("explore", "visit.xml", "--runs", "20")
     assert done.returncode == 0
     assert "not complete: raise --runs (20), or move less" in done.stdout
+
+
+def test_orders_met_while_shifts_are_made_small_are_reported() -> None:
+    scenario = ROOT / "documents" / "rules" / "unwound.xml"
+    made: Any = package.explore(
+        scenario, within=1_000, runs=10, policy="none", workers=1, output="found"
+    )
+    runs = [
+        json.loads(one)["order"] for one in Path("found/runs.jsonl").read_text().split("\n")[1:-1]
+    ]
+    assert not made["complete"] and made["runs"] == len(runs)
+    assert {one["order"] for one in made["orders"]} == set(runs)
 
 
 def test_runs_are_used_again(visit: Path) -> None:
