@@ -78,6 +78,25 @@ def test_a_dialog_that_speaks_before_it_asks_asks_with_its_own_words(
     assert unit or delay.lasts < lasting(LONG) + 5000
 
 
+@pytest.mark.parametrize("src", ["#b", "more.vxml#b"])
+@pytest.mark.parametrize(
+    "first",
+    [
+        "<block>Well?</block>",
+        '<field name="p" type="boolean"><prompt timeout="1s">Well?</prompt>'
+        '<noinput><assign name="p" expr="true"/></noinput></field>',
+    ],
+)
+def test_a_subdialog_may_queue_words_although_its_caller_speaks_first(
+    tmp_path: Path, first: str, src: str
+) -> None:
+    body = f'<form>{first}<subdialog name="s" src="{src}"/>{ASKS}</form>{BACK}'
+    found, fa, ea = voiced(tmp_path, body, more=BACK)
+    records = run(tmp_path, fa, ea, TOUCH.replace("1s", "3s"))
+    assert waited(records) > 7
+    assert faults(found, records, PROFILE.voices) == []
+
+
 def test_what_a_handler_of_another_item_says_may_be_asked_with(tmp_path: Path) -> None:
     """The item is filled, so that the next one listens; after a handler nothing is asked (C)."""
     fills = f'<noinput>{LONG}<assign name="p" expr="true"/></noinput>'

@@ -71,7 +71,12 @@ class DocumentSpeech:
         return found
 
     def speaks_first(self, form: Form) -> bool:
-        """Whether a dialog speaks before it asks, so that it asks with no prompt of another."""
+        """Whether a dialog speaks before it asks, so that it asks with no prompt of another.
+
+        One that calls others may ask with theirs at any time.
+        """
+        if any(one.node.tag == "subdialog" for one in all_items(form.items)):
+            return False
         first = next(iter(form.items), None)
         if first is None or first.cond is not None or first.expr is not None:
             return False
