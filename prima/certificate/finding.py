@@ -19,7 +19,7 @@ from prima.checks.prices.bounds import (
     loops,
     size,
 )
-from prima.checks.prices.model import EndlessLoop, devices_of, kept
+from prima.checks.prices.model import EndlessLoop, devices_of
 from prima.interpreter.selection import prefixes, takes
 
 ANY_EVENT = "any event"
@@ -269,8 +269,9 @@ def _add_further(delay: Delay, theirs: _Other) -> None:
 
 def _first(reaction: PricedReaction, needed: frozenset[str]) -> int:
     """How long the first Command of a reaction keeps devices, or all that begin at once."""
-    begins = [*([one] for one in reaction.firsts), *reaction.together]
-    return max((kept(each, needed) for each in begins), default=0)
+    alone = [one.lasts for one in reaction.firsts if one.devices & needed]
+    together = [lasts for held, lasts in reaction.together.items() if held & needed]
+    return max([*alone, *together], default=0)
 
 
 # What may starve ----------------------------------------------------------------------------

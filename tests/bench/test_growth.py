@@ -89,7 +89,12 @@ def test_an_editors_questions_grow_with_the_size_of_a_document(name: str, tmp_pa
     assert grown(FAMILIES[name], tmp_path, ask) < MOST
 
 
-ASKING = ("VoiceXML dialogs with gotos", "VoiceXML menus", "VoiceXML external grammars")
+ASKING = (
+    "VoiceXML dialogs with gotos",
+    "VoiceXML menus",
+    "VoiceXML external grammars",
+    "VoiceXML branches",
+)
 
 
 @pytest.mark.parametrize("name", ["forms with gotos", "subdialogs", *ASKING])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Self
 
 from prima.checks.prices.contents import handlers_of, hooks_of, own_contents, sent_by
@@ -128,9 +128,9 @@ class DialoguePrices(Times):
 
     def _begins(
         self, content: Sequence[Act], form: Form | None, name: str = ""
-    ) -> tuple[list[Price], list[Price], list[list[Price]]]:
-        """The first Commands of content or of a named form, those up to its response, and those
-        that begin at once.
+    ) -> tuple[list[Price], list[Price], Mapping[frozenset[str], int]]:
+        """The first Commands of content or of a named form, those up to its response, and how long
+        those that begin at once keep devices.
 
         Raises:
             UsageError: too many forms lead to one another before the first Command.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from prima.checks.prices.model import Price
+from prima.checks.prices.model import Price, add_longer, chains
 from prima.interpreter.acts import (
     Act,
     CommandRun,
@@ -49,8 +49,8 @@ class Firsts:
         self._response = response
         self.later: list[SendOut] = []
         """The delayed events of the application's own after which a response may come."""
-        self.together: list[list[Price]] = []
-        """The first Commands that begin at once, in branches."""
+        self.together: dict[frozenset[str], int] = {}
+        """How long (ms) first Commands that begin at once, in branches, keep devices."""
         self._of_items = of_items
         self._step = step
         self._seen: set[int] = set()
@@ -75,7 +75,7 @@ class Firsts:
 
     def _begin(self) -> None:
         self._seen, self._free, self._found = set(), set(), {}
-        self.later, self.together = [], []
+        self.later, self.together = [], {}
         self._returns = False
 
     def _add(self, price: Price) -> None:
@@ -160,7 +160,7 @@ class Firsts:
         for price in branches:
             self._add(price)
         if len(branches) > 1:
-            self.together.append(branches)
+            add_longer(self.together, chains(branches))
 
     def _ends(self, act: CommandRun, form: Form | None) -> None:
         """Add the Commands of handlers of the ends of Commands."""

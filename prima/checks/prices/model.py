@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from prima.errors import Place
@@ -101,8 +101,8 @@ class PricedReaction:
     responds: list[Price]
     """Its possible Commands up to and including its first word or movement towards the user; empty
     if there is none."""
-    together: Sequence[Sequence[Price]]
-    """Those of its first Commands that begin at once, in branches."""
+    together: Mapping[frozenset[str], int]
+    """How long (ms) those of its first Commands that begin at once, in branches, keep devices."""
     does: PricedState
     stays: str | None = None
     """The state that continues alongside it; None if it is left, ``""`` if it may be any."""
@@ -162,15 +162,21 @@ def devices_of(held: Sequence[Price]) -> frozenset[str]:
     return frozenset().union(*(price.devices for price in held))
 
 
-def kept(prices: Iterable[Price], devices: frozenset[str]) -> int:
-    """How long some Commands that may begin at once keep any of some devices.
+def chains(prices: Iterable[Price]) -> dict[frozenset[str], int]:
+    """How long (ms) Commands that may begin at once keep devices, by those devices.
 
     Those that share a device run one after another.
     """
-    chains: list[tuple[frozenset[str], int]] = []
+    found: dict[frozenset[str], int] = {}
     for price in prices:
-        joined = [one for one in chains if one[0] & price.devices]
-        held = price.devices.union(*(one for one, _ in joined))
-        chains = [one for one in chains if one not in joined]
-        chains.append((held, price.lasts + sum(lasts for _, lasts in joined)))
-    return max((lasts for held, lasts in chains if held & devices), default=0)
+        held, lasts = price.devices, price.lasts
+        for one in [one for one in found if one & price.devices]:
+            held, lasts = held | one, lasts + found.pop(one)
+        found[held] = lasts
+    return found
+
+
+def add_longer(kept: dict[frozenset[str], int], more: Mapping[frozenset[str], int]) -> None:
+    """Add how long devices are kept otherwise: of the same devices the longer time."""
+    for held, lasts in more.items():
+        kept[held] = max(lasts, kept.get(held, 0))

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from typing import Self
 
 from prima.checks.prices.dialogue import DialoguePrices
 from prima.checks.prices.firsts import responds
-from prima.checks.prices.model import Outline, Price, PricedReaction, PricedState
+from prima.checks.prices.model import (
+    Outline,
+    Price,
+    PricedReaction,
+    PricedState,
+    add_longer,
+    chains,
+)
 from prima.checks.prices.pages import PricedPages
 from prima.checks.prices.speech import SpeechReader, says
 from prima.checks.prices.spoken import AllSpeech, DocumentSpeech, is_certain
@@ -65,7 +72,9 @@ class VoicePrices:
             UsageError: a document has too many dialogs and handlers.
         """
         parts = [part for one in self.documents for part in one.parts]
-        branches = [begin for one in self.documents for begin in one.beginnings()]
+        branches: dict[frozenset[str], int] = {}
+        for one in self.documents:
+            one.add_beginnings(branches)
         states: dict[str, PricedState] = {}
         reactions: list[PricedReaction] = []
         for one in self.documents:
@@ -93,8 +102,8 @@ class PagePrices(DialoguePrices):
         self.page, self.pages = page, pages
         self.everything: list[Price] = []
         """The parts of all documents of the application."""
-        self.branches: list[list[Price]] = []
-        """The Commands of all documents that begin at once."""
+        self.branches: Mapping[frozenset[str], int] = {}
+        """How long (ms) Commands of all documents that begin at once keep devices."""
         self.sketch = Sketch(page, pages.root(page))
         self._reader = SpeechReader(partial(pages.recording, page))
         self._units: set[int] = set()
@@ -238,12 +247,12 @@ class PagePrices(DialoguePrices):
 
     def _after(
         self, handler: Handler
-    ) -> tuple[list[Price], list[Price], Sequence[Sequence[Price]]]:
+    ) -> tuple[list[Price], list[Price], Mapping[frozenset[str], int]]:
         """The first Commands of a handler, and those up to its response: perhaps anything."""
         first = self._first(handler)
         firsts = first or self.everything
         until = firsts if all(map(responds, firsts)) else [*firsts, *self.everything]
-        together = [first] if first else self.branches
+        together = chains(first) if first else self.branches
         return firsts, until if any(map(responds, until)) else [], together
 
     def _first(self, handler: Handler) -> list[Price]:
@@ -256,11 +265,13 @@ class PagePrices(DialoguePrices):
             return [self._asked_anew(handler.node)]
         return [self.step(step) for step in first.steps if not step.after]
 
-    def beginnings(self) -> list[list[Price]]:
-        """The Commands of a document that begin at once, in branches."""
+    def add_beginnings(self, branches: dict[frozenset[str], int]) -> None:
+        """Add how long Commands of the document that begin at once, in branches, keep devices."""
         acts = (act for _, content, _ in self.document.contents() for act in all_acts(content))
-        runs = (act for act in acts if isinstance(act, CommandRun) and len(act.steps) > 1)
-        return [[self.step(step) for step in run.steps if not step.after] for run in runs]
+        for run in acts:
+            if isinstance(run, CommandRun) and len(run.steps) > 1:
+                begin = [self.step(step) for step in run.steps if not step.after]
+                add_longer(branches, chains(begin))
 
     def _asked_anew(self, handler: Node) -> Price:
         """The question that listened, asked again from its beginning with the handler's speech."""
