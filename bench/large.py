@@ -231,6 +231,9 @@ FAMILIES: dict[str, Family] = {
     "VoiceXML branches": _voice(
         lambda i, n: f'<form id="f{i}"><catch event="message"><goto next="#f0"/></catch><block><par xmlns="urn:prima:dialogue:1"><speak>A.</speak><speak>B.</speak></par></block></form>\n'
     ),
+    "VoiceXML enumerates": _voice(
+        lambda i, n: f'<form id="f{i}"><help>Say <enumerate/></help><field name="q"><option>tea {i}</option></field></form>\n'
+    ),
     "VoiceXML links": _voice(lambda i, n: f'<link event="e{i}"><grammar mode="voice" version="1.0" root="r"><rule id="r">number {i}</rule></grammar></link>\n', after="<form/>"),
     "VoiceXML catches": _voice(lambda i, n: f'<catch event="e{i}">Yes.</catch>\n', after="<form/>"),
     "VoiceXML values": _voice(lambda i, n: f'<value expr="{i}"/>\n', "<form><block>", "</block></form>"),

@@ -94,6 +94,7 @@ ASKING = (
     "VoiceXML menus",
     "VoiceXML external grammars",
     "VoiceXML branches",
+    "VoiceXML enumerates",
 )
 
 

@@ -6,7 +6,8 @@ from functools import cached_property
 from urllib.parse import urldefrag
 
 from prima.checks.prices.model import Gap
-from prima.checks.prices.speech import choices_of
+from prima.checks.prices.speech import choices_of, enumerated
+from prima.devices.voice import duration
 from prima.markup.tree import Node
 from prima.script.choices import choices
 from prima.voicexml.document import FetchError, Page, VoiceDocument
@@ -24,12 +25,25 @@ class PricedPages(Pages):
         self.gaps = list(dict.fromkeys(gap for gap in found if gap))
         self.throws_any = any(one.get("eventexpr") for page in self for one in page.root.walk())
         """Whether expressions determine events that it throws."""
+        self._longest_choices: dict[str, str] = {}
+        """The longest that an ``enumerate`` says, by its language."""
 
     @cached_property
     def choosing(self) -> list[Node]:
         """The items of all documents whose choices an ``enumerate`` says."""
         nodes = (one for page in self for one in page.root.walk())
         return [one for one in nodes if one.tag in ("menu", "field") and choices_of(one)]
+
+    def longest_choices(self, lang: str) -> str:
+        """The longest that an ``enumerate`` says in a language, of whichever item."""
+        if lang not in self._longest_choices:
+
+            def lasts(words: str) -> int:
+                return duration(words, lang, {})
+
+            said = map(enumerated, self.choosing)
+            self._longest_choices[lang] = max(said, key=lasts, default="")
+        return self._longest_choices[lang]
 
     def leads(self, page: Page, node: Node) -> tuple[list[str], Gap | None]:
         """The states to which an element of a page leads, or why they are not known."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from prima.checks.prices.model import UNKNOWN_LETTERS
-from prima.devices.voice import duration, timeline
+from prima.devices.voice import timeline
 from prima.markup.tree import Node
 from prima.messages import Cue
 from prima.voicexml.elements import says_instead, words_of
@@ -46,28 +46,37 @@ def choices_of(item: Node) -> list[Node]:
     return item.all("choice", "option")
 
 
+def enumerated(item: Node) -> str:
+    """What an ``enumerate`` says of an item."""
+    return "; ".join(filter(None, map(words_of, choices_of(item))))
+
+
 class SpeechReader:
     """Reads the speech of elements.
 
-    ``recording`` returns a recording's duration (ms), if known, by its prompt's base and its name.
+    ``recording`` returns a recording's duration (ms), if known, by its prompt's base and its name;
+    ``choices`` the longest that an ``enumerate`` may say in a language.
     """
 
-    def __init__(self, recording: Callable[[str, str], int | None]) -> None:
+    def __init__(
+        self, recording: Callable[[str, str], int | None], choices: Callable[[str], str]
+    ) -> None:
         self._recording = recording
+        self._choices = choices
 
     def read(
-        self, pieces: Iterable[Node | str], lang: str, base: str, choosing: Sequence[Node] = ()
+        self, pieces: Iterable[Node | str], lang: str, base: str, choosing: Node | None = None
     ) -> Said:
         """Read pieces of a prompt with a language and a base, or of speech without one.
 
-        ``choosing`` has the items whose choices an ``enumerate`` may say.
+        ``choosing`` is the item whose choices an ``enumerate`` says; if None, it may be any.
         """
         said = Said(Speech(lang, "", base=base))
         for piece in pieces:
             self._piece(piece, said, choosing)
         return said
 
-    def _piece(self, piece: Node | str, said: Said, choosing: Sequence[Node]) -> None:
+    def _piece(self, piece: Node | str, said: Said, choosing: Node | None) -> None:
         if isinstance(piece, str):
             said.speech.parts.append(piece)
         elif piece.namespace != PRIMA_NAMESPACE:
@@ -79,11 +88,11 @@ class SpeechReader:
             if said.speech.lang != before:
                 said.flush(before)
 
-    def _inner(self, node: Node, said: Said, choosing: Sequence[Node]) -> None:
+    def _inner(self, node: Node, said: Said, choosing: Node | None) -> None:
         for piece in node.content:
             self._piece(piece, said, choosing)
 
-    def _element(self, node: Node, said: Said, choosing: Sequence[Node]) -> None:
+    def _element(self, node: Node, said: Said, choosing: Node | None) -> None:
         match node.tag:
             case "value":
                 self._guess(said, SAYS)
@@ -102,19 +111,17 @@ class SpeechReader:
         said.unknown = why
         said.speech.parts.append("x" * UNKNOWN_LETTERS)
 
-    def _enumerate(self, node: Node, said: Said, choosing: Sequence[Node]) -> None:
+    def _enumerate(self, node: Node, said: Said, choosing: Node | None) -> None:
         if node.content:
             said.unknown = OF_EACH
             self._inner(node, said, choosing)
             return
-        enumerated = ["; ".join(filter(None, map(words_of, choices_of(one)))) for one in choosing]
+        speech = said.speech
+        speech.parts.append(
+            self._choices(speech.lang) if choosing is None else enumerated(choosing)
+        )
 
-        def lasts(words: str) -> int:
-            return duration(words, said.speech.lang, {})
-
-        said.speech.parts.append(max(enumerated, key=lasts, default=""))
-
-    def _audio(self, node: Node, said: Said, choosing: Sequence[Node]) -> None:
+    def _audio(self, node: Node, said: Said, choosing: Node | None) -> None:
         if "expr" in node.attributes:
             self._guess(said, "an expression says what is played")
             self._inner(node, said, choosing)

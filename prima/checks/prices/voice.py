@@ -105,7 +105,7 @@ class PagePrices(DialoguePrices):
         self.branches: Mapping[frozenset[str], int] = {}
         """How long (ms) Commands of all documents that begin at once keep devices."""
         self.sketch = Sketch(page, pages.root(page))
-        self._reader = SpeechReader(partial(pages.recording, page))
+        self._reader = SpeechReader(partial(pages.recording, page), pages.longest_choices)
         self._units: set[int] = set()
         """The items in units, by their identities."""
         document = self.sketch.document
@@ -140,8 +140,7 @@ class PagePrices(DialoguePrices):
         if not isinstance(command, VoiceCommand) or not says(command.pieces):
             return None
         holder = command.holder
-        owner = None if holder is None else self._owners.get(id(holder))
-        choosing = [owner] if owner is not None else self.pages.choosing
+        choosing = None if holder is None else self._owners.get(id(holder))
         lang = command.node.get("xml:lang") or self.page.lang
         base = command.node.get("xml:base")
         said = self._reader.read(command.pieces, lang, base, choosing)
