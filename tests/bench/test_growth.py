@@ -104,6 +104,17 @@ def test_a_certificate_grows_with_the_size_of_a_document(name: str, tmp_path: Pa
     assert grown(FAMILIES[name], tmp_path, lambda path: certificates([fa], [str(path)])) < MOST
 
 
+def test_each_question_looks_at_each_handler_a_few_times(tmp_path: Path) -> None:
+    head = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="large" xml:lang="en">'
+    fa, path, counts = str(ROOT / "documents" / "fa" / "follow.xml"), tmp_path / "ea.xml", []
+    for number in (10, 40, 160):
+        handlers = "".join(f'<noinput count="{one + 1}"/>' for one in range(number))
+        fields = "".join(f'<field name="q{one}" type="boolean"/>' for one in range(number))
+        path.write_text(f'{head}{handlers}<form id="f">{fields}</form></prima>')
+        counts.append(calls(lambda: certificates([fa], [str(path)])))
+    assert counts[2] / counts[1] < 4**2 * MOST
+
+
 def test_a_certificate_of_two_large_documents_grows_with_their_size(tmp_path: Path) -> None:
     def both(path: Path) -> object:
         ea = path.with_name("ea.xml")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import groupby
 
 from prima.checks.prices.model import Price, add_longer, chains
 from prima.interpreter.acts import (
@@ -225,24 +226,31 @@ def _leaves_at(event: str, scope: Sequence[Handler]) -> int:
         event: its name.
         scope: the handlers, innermost first.
     """
-    fitting = [one for one in scope if any(takes(name, event) for name in one.events)]
-    fitting.sort(key=lambda one: -one.count)
-    counts = sorted({one.count for one in fitting})
-    return next((count for count in counts if _is_left_at(count, event, fitting)), 0)
+    fitting = sorted(_fitting(event, scope), key=_count, reverse=True)
+    leaves = {id(one): is_left(one.content, goes_to_item) for one in fitting}
+    staying = [one.count for one in fitting if not leaves[id(one)] and _under_shorter(one, event)]
+    least = max(staying, default=0)
+    left = False
+    for count, alike in groupby(reversed(fitting), key=_count):
+        for one in alike:
+            certain = one.cond is None and event in one.events
+            left = leaves[id(one)] and (certain or left)
+        if left and count >= least:
+            return count
+    return 0
 
 
-def _is_left_at(count: int, event: str, fitting: Sequence[Handler]) -> bool:
-    """Whether that occurrence of an event leaves the form, whichever handler takes it."""
-    for one in fitting:
-        if _may_take(one, event, count):
-            if not is_left(one.content, goes_to_item):
-                return False
-            if one.cond is None and event in one.events and one.count <= count:
-                return True
-    return False
+def _fitting(event: str, scope: Sequence[Handler]) -> Iterator[Handler]:
+    """The handlers that take an event at some of its occurrences."""
+    for one in scope:
+        if any(takes(name, event) for name in one.events):
+            yield one
 
 
-def _may_take(handler: Handler, event: str, count: int) -> bool:
-    """Whether a handler may be reached at an occurrence; under a shorter name others count, too."""
-    shorter = any(name != event and takes(name, event) for name in handler.events)
-    return handler.count <= count or shorter
+def _count(handler: Handler) -> int:
+    return handler.count
+
+
+def _under_shorter(handler: Handler, event: str) -> bool:
+    """Whether a handler takes an event under a shorter name, too: then others count as well."""
+    return any(name != event and takes(name, event) for name in handler.events)
