@@ -133,14 +133,16 @@ class Stage:
     def digests(self) -> list[str]:
         """The SHA-256 of everything that the scenarios name, without what ``pack`` adds.
 
-        They are in the order of the files' paths, so that two files that are exchanged differ.
+        They are in the order of the files' paths from the first scenario, so that two files that
+        are exchanged differ.
         """
         return self._digests
 
     @cached_property
     def _digests(self) -> list[str]:
         assert isinstance(self.files, Kept)
-        texts, heads, here = self.files.texts, self.files.heads, self.files.folder
+        texts, heads = self.files.texts, self.files.heads
+        here = os.path.dirname(os.path.join(self.files.folder, self.scenarios[0][0]))
 
         def place(path: Path) -> str:
             return os.path.relpath(path, here)

@@ -100,6 +100,21 @@ def test_an_archive_makes_no_difference(folder: Path) -> None:
         assert again.returncode == 0 and "2 of 2 runs had been made before" in again.stderr
 
 
+def test_the_folder_from_which_a_command_is_given_makes_no_difference(folder: Path) -> None:
+    from prima import documents_folder
+
+    for kind, name in (("worlds", "office.xml"), ("robots", "papero.xml")):
+        (folder / kind).mkdir()
+        (folder / kind / name).write_bytes((documents_folder() / kind / name).read_bytes())
+    text = (folder / "visit.xml").read_text().replace(f"{documents_folder()}/", "")
+    (folder / "visit.xml").write_text(text)
+    for command, scenario, *words in (SWEEP, EXPLORE):
+        made = (command, folder / scenario, *words[:-1], folder / words[-1])
+        assert prima(*made, cwd=folder).returncode == 0
+        again = prima(*made, "--resume", cwd=folder / "robots")
+        assert again.returncode == 0 and "had been made before" in again.stderr
+
+
 def test_an_exploration_is_not_resumed_with_another_grammar(folder: Path) -> None:
     assert prima(*EXPLORE, cwd=folder).returncode == 0
     assert "had been made before" in prima(*EXPLORE, "--resume", cwd=folder).stderr
