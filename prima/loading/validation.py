@@ -81,8 +81,8 @@ class Validation:
         self._ignores = Ignores(read_file)
         self._folders: dict[Path, Path] = {}
         """The folders of the applications that have fetched files, by the files."""
-        self._pages: set[Path] = set()
-        """The documents of the VoiceXML applications checked."""
+        self._pages: set[tuple[Path, str]] = set()
+        """The documents of the VoiceXML applications checked, and the URIs of their folders."""
 
     def problems(self, path: str | Path) -> list[Problem]:
         """The problems of a document that are not ignored.
@@ -122,11 +122,13 @@ class Validation:
 
     def _voicexml(self, path: str, data: bytes) -> list[Problem]:
         """The problems of a VoiceXML document and of all that it leads to, unless one led to it."""
-        if absolute(path) in self._pages:
+        site = mapped_site(path, self._maps)
+        served = site.root if site else ""
+        if (absolute(path), served) in self._pages:
             return []
-        pages = pages_from(path, data, mapped_site(path, self._maps), self._folder(path))
+        pages = pages_from(path, data, site, self._folder(path))
         if not pages.cut:
-            self._pages.update(absolute(page.root.source.file) for page in pages)
+            self._pages.update((absolute(page.root.source.file), served) for page in pages)
         return list(voicexml_problems(pages))
 
     def _folder(self, path: str) -> str:
