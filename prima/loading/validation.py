@@ -136,7 +136,8 @@ class Validation:
         file = absolute(path)
         folder = self._folders.get(file, file.parent)
         up = [".."] * len(file.parent.relative_to(folder).parts)
-        return normpath(join(dirname(path), *up)) if up else dirname(path)
+        named = normpath(join(dirname(path), *up)) if up else dirname(path)
+        return "" if named == "." else named
 
 
 def _problems_by_namespace(path: str, data: bytes) -> list[Problem]:
