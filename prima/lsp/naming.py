@@ -215,9 +215,9 @@ def moved(workspace: Workspace, moves: Mapping[Path, Path]) -> list[NameEdit]:
 
 def _after(path: Path, moves: Mapping[Path, Path]) -> Path:
     """Where a file is after some moves."""
-    for old, new in moves.items():
-        if path.is_relative_to(old):
-            return new / path.relative_to(old)
+    for place in (path, *path.parents):
+        if place in moves:
+            return moves[place] / path.relative_to(place)
     return path
 
 

@@ -175,5 +175,18 @@ def test_files_in_a_folder_that_the_editor_moves_are_followed(editor: Editor) ->
     ]
 
 
+def test_a_file_that_leaves_a_folder_that_moves_goes_its_own_way(tmp_path: Path) -> None:
+    workspace, folder = Workspace(), tmp_path.resolve()
+    page = (
+        VOICE
+        + '<form><block><goto next="sub/a.vxml"/><goto next="sub/b.vxml"/></block></form></vxml>'
+    )
+    workspace.put((folder / "main.vxml").as_uri(), page)
+    moves = {folder / "sub": folder / "low", folder / "sub/a.vxml": folder / "top.vxml"}
+    for order in (moves, dict(reversed(moves.items()))):
+        edits = naming.moved(workspace, order)
+        assert [one.text for one in edits] == ["top.vxml", "low/b.vxml"]
+
+
 def _start(edit: naming.NameEdit) -> int:
     return edit.start
