@@ -59,7 +59,7 @@ _fetched: ContextVar[dict[Path, Path] | None] = ContextVar("fetched", default=No
 
 @contextmanager
 def noting_fetched(folders: dict[Path, Path]) -> Iterator[None]:
-    """Note each file that an application fetches, with the folder of the first one that does."""
+    """Record the files that applications fetch, each with the folder of the first such application."""
     token = _fetched.set(folders)
     try:
         yield
