@@ -75,7 +75,18 @@ def refused_by_channel(memory: Memory, ab: AB) -> Tree | None:
 
 def keeps_user(memory: Memory, tree: Tree, ab: AB) -> bool:
     """K1: whether a stream engages the user when another application's AB would leave them."""
-    return tree.app != ab.app and tree.open and tree.engages(sensed(memory))
+    engages = tree.app != ab.app and tree.open and tree.engages(sensed(memory))
+    return engages and not _both_go_back(memory, tree, ab)
+
+
+def _both_go_back(memory: Memory, tree: Tree, ab: AB) -> bool:
+    """X1: whether the AB and all that the stream does next are ways back, or leave the user, too.
+
+    If both streams engage the user, each way back would wait for the other.
+    """
+    coming = [one for one in tree.members.values() if one.contends]
+    back = any(one.inserted for one in coming) and all(one.leaves for one in coming)
+    return bool(ab.inserted) and back and ab.tree.engages(sensed(memory))
 
 
 def channel_kept(memory: Memory, ab: AB, shown: str) -> None:

@@ -178,9 +178,20 @@ def k1(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
     if not ab.leaves:
         return None
     for stream in memory.engaged.values():
-        if stream.app is not ab.app and engages(stream, memory):
+        if stream.app is ab.app or not engages(stream, memory):
+            continue
+        if not waits_in_turn(stream, ab, memory):
             return ("K1", stream.name)
     return None
+
+
+def waits_in_turn(stream: Stream, ab: Behavior, memory: WorkingMemory) -> bool:
+    """K1, X1: whether the stream only waits to go back, as the AB does, and would wait for it."""
+    present = stream.present()
+    if not ab.inserted or not any(one.inserted for one in present):
+        return False
+    engaged = ab.stream.name in memory.engaged and engages(ab.stream, memory)
+    return engaged and all(one.leaves for one in present)
 
 
 def engages(stream: Stream, memory: WorkingMemory) -> bool:

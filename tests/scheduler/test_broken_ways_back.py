@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from prima.invariants import check
 from prima.messages import Step
-from tests.helpers.stage import Stage, command, inserted, move, restartable, say
+from tests.helpers.stage import Stage, ask, command, inserted, move, restartable, say
 
 EVENT = 7
 NOD = command("move-head", pan=0, tilt=20)
@@ -86,3 +86,33 @@ def test_x1_what_was_interrupted_without_a_pose_leaves_the_robot_where_it_is() -
     stage.at(1500).end("fa#2")
     assert stage.select() == ["ea#3.1"] and inserted(stage) == [("X1", "set-position")]
     assert check(stage.records, "prima+x1+x2") == []
+
+
+def test_x1_two_conversations_do_not_wait_for_each_others_way_back() -> None:
+    """K1: either engages the user, and the robot is where neither goes on."""
+    stage = Stage("prima+x1")
+    stage.request("ea", move(), ask("One?"), ask("Two?"))
+    stage.select()
+    stage.at(500).end("ea#1.1", x=4.0, y=1.0, heading=90.0)
+    assert stage.select() == ["ea#2"]
+    drive = command("set-speed-and-time", speed=0.5, time="1s")
+    stage.request("fa", drive, ask("A?"), ask("B?"), cause=EVENT)
+    assert stage.select() == ["fa#1"]
+    stage.at(1500).end("fa#1", x=0.0, y=0.0, heading=0.0)
+    stage.end("ea#2")
+    assert stage.select() == ["fa#2"]
+    stage.request("ea", command("turn", angle=3), cause=EVENT + 1)
+    assert stage.select() == ["ea#4"]
+    stage.at(2500).end("ea#4", x=2.0, y=0.0, heading=0.0)
+    stage.end("fa#2")
+    assert stage.select() == ["fa#4.1"], "the one with the floor"
+    assert stage.holds("ea#5") == ["F2"]
+    stage.at(4000).end("fa#4.1", x=0.0, y=0.0, heading=0.0)
+    assert stage.select() == ["fa#3"]
+    stage.at(5000).end("fa#3")
+    assert stage.select() == ["ea#5.1"]
+    stage.at(7000).end("ea#5.1", x=4.0, y=1.0, heading=90.0)
+    assert stage.select() == ["ea#3"]
+    stage.at(8000).end("ea#3")
+    stage.select()
+    assert check(stage.records, "prima+x1") == []
