@@ -65,6 +65,8 @@ def _takes_place(memory: Memory, ab: AB, before: AB) -> None:
     before.cause = before.fresh_until = None
     ab.requested, ab.place = before.requested, before.place
     ab.followed_at = before.followed_at
+    if rule != "X1":  # a way back needs no speaker
+        ab.waits_as = before.waits_as or before.name
 
 
 def _restores(memory: Memory, ab: AB, record: Record) -> None:

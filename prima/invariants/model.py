@@ -58,6 +58,8 @@ class AB:
     inserted: str = ""
     put_before: str = ""
     """The AB before which it was inserted."""
+    waits_as: str = ""
+    """The AB whose wait for the speaker it goes on with (E6)."""
     phase: str = WAITING
     loop: int = 0
     starts: int = 0

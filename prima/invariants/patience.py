@@ -22,10 +22,15 @@ def note_keepers(memory: Memory) -> None:
     if memory.halted:
         return
     waiting = {ab.name: ab for ab in memory.waiting.values() if ab.unit is None}
-    memory.kept_now = {name for name, ab in waiting.items() if _kept_from_speaker(memory, ab)}
-    for name in sorted((memory.kept.keys() & waiting.keys()) - memory.starving):
-        if overdue(memory, waiting[name]):
+    memory.kept_now = {_counted(ab) for ab in waiting.values() if _kept_from_speaker(memory, ab)}
+    for name, ab in sorted(waiting.items()):
+        if overdue(memory, ab) and _counted(ab) not in memory.starving:
             memory.report(13, "E6", f"{name} starves, and nothing says so")
+
+
+def _counted(ab: AB) -> str:
+    """The AB for which its wait counts."""
+    return ab.waits_as or ab.name
 
 
 def _waits(memory: Memory, name: str) -> bool:
@@ -51,7 +56,7 @@ def _kept_from_speaker(memory: Memory, ab: AB) -> bool:
 
 def overdue(memory: Memory, ab: AB) -> bool:
     """Whether others have kept it from the speaker for the maximum time."""
-    return memory.patience > 0 and memory.kept.get(ab.name, 0) >= memory.patience
+    return memory.patience > 0 and memory.kept.get(_counted(ab), 0) >= memory.patience
 
 
 def its_turn(memory: Memory, ab: AB) -> bool:
@@ -86,6 +91,6 @@ def note_starve(memory: Memory, record: Record) -> None:
     if ab is None or ab.name not in memory.waiting:
         memory.report(13, "E6", f"{record['behavior']} is said to starve, but does not wait")
         return
-    memory.starving.add(ab.name)
+    memory.starving.add(_counted(ab))
     if record["rule"] == "E6" and not overdue(memory, ab):
         memory.report(13, "E6", f"{ab.name} is said to starve, but nobody kept it so long")

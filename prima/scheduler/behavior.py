@@ -141,6 +141,10 @@ class Wait:
     overdue: bool = False
     """Whether they have done so for the maximum time."""
 
+    def end(self) -> None:
+        """The AB starts. One that it was put in for (X4, X9) goes on with the counts."""
+        self.blocked, self.since, self.kept_since = ("", ""), None, None
+
 
 @dataclass(slots=True, eq=False)
 class Inside:

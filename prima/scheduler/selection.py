@@ -181,6 +181,7 @@ def run(mediation: Mediation, ab: Behavior, resumes: bool) -> None:
     memory, now = mediation.memory, mediation.now
     ab.resumed = ab.restarting or (ab.loop > 0 and ab.freed != now)
     ab.restarting = False
+    ab.wait.end()
     ab.wait = Wait()
     if ab.run is not None:
         ab.run.begun = True

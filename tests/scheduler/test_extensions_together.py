@@ -225,8 +225,9 @@ def test_x4_who_has_waited_for_the_speaker_waits_no_longer_for_the_turn() -> Non
     stage.request("fa", say("On and on."))
     stage.select()
     stage.at(100).request("ea", say("A word."), connect=True)
+    assert stage.select() == []
     time, last = 100, "fa#1"
-    while time < 10_000:
+    while time < 8_000:
         time += 2000
         stage.at(time)
         stage.end(last, then=lambda: stage.request("fa", say("On and on.")))
@@ -235,6 +236,52 @@ def test_x4_who_has_waited_for_the_speaker_waits_no_longer_for_the_turn() -> Non
     stage.mediator.sees_user(False)
     stage.at(time + 2000).end(last, then=lambda: stage.request("fa", say("On and on.")))
     assert stage.select() == ["ea#2"] and inserted(stage) == [("X4", "face-human")]
+    stage.at(time + 4000).end("ea#2", then=lambda: stage.request("fa", say("On and on.")))
+    stage.mediator.sees_user(True)
+    assert stage.select() == ["ea#1"] and stage.rule("ea#1") == "E6"
+    stage.at(time + 6000).end("ea#1")
+    stage.select()
+    assert check(stage.records, "prima+x4", patience=10_000) == []
+
+
+def test_x4_the_time_of_the_turn_to_the_user_is_no_time_of_the_wait() -> None:
+    """E6 counts until the turn starts, once."""
+    stage = Stage("prima+x4", patience=10_000)
+    stage.request("fa", say("First."), say("Second."))
+    stage.select()
+    stage.request("ea", say("A word."), connect=True)
+    assert stage.select() == []
+    stage.at(6000).end("fa#1")
+    assert stage.select() == ["fa#2"]
+    stage.at(9000).end("fa#2")
+    assert stage.select() == ["ea#2"] and inserted(stage) == [("X4", "face-human")]
+    stage.request("fa", say("Third."), cause=EVENT)
+    stage.select()
+    stage.at(11_000).end("ea#2")
+    stage.mediator.sees_user(True)
+    assert stage.select() == ["fa#3"]
+    stage.at(12_000).end("fa#3")
+    assert stage.select() == ["ea#1"] and stage.phases("starve") == []
+    assert check(stage.records, "prima+x4", patience=10_000) == []
+
+
+def test_x4_a_word_that_waits_after_the_turn_says_for_which_stream_anew() -> None:
+    """X3 holds a stream, which keeps first the turn and then the word waiting (F2)."""
+    stage = Stage("prima+x3+x4")
+    stage.request("ea", say("Welcome."), hold=5000)
+    stage.select()
+    stage.request("fa", say("A word."), connect=True)
+    assert stage.select() == []
+    stage.at(1000).end("ea#1")
+    stage.select()
+    stage.at(1100).request("fa", command("move-head", pan=10), cause=EVENT)
+    assert stage.select() == ["fa#3", "fa#2"]
+    stage.at(1400).end("fa#3")
+    stage.select()
+    stage.at(1500).end("fa#2")
+    assert stage.select() == []
+    assert stage.holds("fa#1") == ["F2"] and stage.holds("fa#2") == ["S1", "F2"]
+    assert check(stage.records, "prima+x3+x4") == []
 
 
 TURN = command("set-direction", heading=90)
