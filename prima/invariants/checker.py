@@ -216,6 +216,7 @@ def _made(memory: Memory, record: Record, tree: Tree) -> AB:
         fresh_until=memory.now + ms(record["fresh"]) if record.get("fresh") else None,
         inserted=record.get("inserted") or "",
         put_before=base(record.get("before") or ""),
+        waits_as=record["behavior"],
         leaves=bool(record.get("leaves")),
         engages=bool(record.get("engages")),
         feedback=bool(record.get("feedback")),

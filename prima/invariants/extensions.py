@@ -12,13 +12,7 @@ from prima.invariants.turn import third_turn
 
 RESTORING = ("set-position", "set-position-and-direction", "set-direction", "face-human")
 """The Commands that X1 may insert, and the head's Command."""
-GOING = (
-    "set-position",
-    "set-position-and-direction",
-    "topological-move",
-    "set-speed-and-time",
-    "tracking-human",
-)
+GOING = (*RESTORING[:2], "topological-move", "set-speed-and-time", "tracking-human")
 """Commands that change the robot's place, and so do not rely on it."""
 FAR = 0.5
 """The distance (m) from its place at which a stream counts as moved (X1)."""
@@ -65,8 +59,7 @@ def _takes_place(memory: Memory, ab: AB, before: AB) -> None:
     before.cause = before.fresh_until = None
     ab.requested, ab.place = before.requested, before.place
     ab.followed_at = before.followed_at
-    if rule != "X1":  # a way back needs no speaker
-        ab.waits_as = before.waits_as or before.name
+    ab.waits_as = ab.name if rule == "X1" else before.waits_as
 
 
 def _restores(memory: Memory, ab: AB, record: Record) -> None:

@@ -59,7 +59,7 @@ class AB:
     put_before: str = ""
     """The AB before which it was inserted."""
     waits_as: str = ""
-    """The AB whose wait for the speaker it goes on with (E6)."""
+    """The AB for which its wait for the speaker counts (E6): itself, or what it was put before."""
     phase: str = WAITING
     loop: int = 0
     starts: int = 0

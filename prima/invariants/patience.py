@@ -21,16 +21,15 @@ def note_keepers(memory: Memory) -> None:
     memory.kept_now = set()
     if memory.halted:
         return
-    waiting = {ab.name: ab for ab in memory.waiting.values() if ab.unit is None}
-    memory.kept_now = {_counted(ab) for ab in waiting.values() if _kept_from_speaker(memory, ab)}
-    for name, ab in sorted(waiting.items()):
-        if overdue(memory, ab) and _counted(ab) not in memory.starving:
-            memory.report(13, "E6", f"{name} starves, and nothing says so")
+    waiting = [ab for ab in memory.waiting.values() if ab.unit is None]
+    memory.kept_now = {ab.waits_as for ab in waiting if _kept_from_speaker(memory, ab)}
+    for ab in sorted(waiting, key=lambda one: one.name):
+        if _starves_untold(memory, ab):
+            memory.report(13, "E6", f"{ab.name} starves, and nothing says so")
 
 
-def _counted(ab: AB) -> str:
-    """The AB for which its wait counts."""
-    return ab.waits_as or ab.name
+def _starves_untold(memory: Memory, ab: AB) -> bool:
+    return overdue(memory, ab) and ab.waits_as not in memory.starving
 
 
 def _waits(memory: Memory, name: str) -> bool:
@@ -56,7 +55,7 @@ def _kept_from_speaker(memory: Memory, ab: AB) -> bool:
 
 def overdue(memory: Memory, ab: AB) -> bool:
     """Whether others have kept it from the speaker for the maximum time."""
-    return memory.patience > 0 and memory.kept.get(_counted(ab), 0) >= memory.patience
+    return memory.patience > 0 and memory.kept.get(ab.waits_as, 0) >= memory.patience
 
 
 def its_turn(memory: Memory, ab: AB) -> bool:
@@ -91,6 +90,6 @@ def note_starve(memory: Memory, record: Record) -> None:
     if ab is None or ab.name not in memory.waiting:
         memory.report(13, "E6", f"{record['behavior']} is said to starve, but does not wait")
         return
-    memory.starving.add(_counted(ab))
+    memory.starving.add(ab.waits_as)
     if record["rule"] == "E6" and not overdue(memory, ab):
         memory.report(13, "E6", f"{ab.name} is said to starve, but nobody kept it so long")
