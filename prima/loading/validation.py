@@ -127,8 +127,7 @@ class Validation:
         if (absolute(path), served) in self._pages:
             return []
         pages = pages_from(path, data, site, self._folder(path))
-        if not pages.cut:
-            self._pages.update((absolute(page.root.source.file), served) for page in pages)
+        self._pages.update((absolute(page.root.source.file), served) for page in pages.whole)
         return list(voicexml_problems(pages))
 
     def _folder(self, path: str) -> str:

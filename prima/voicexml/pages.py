@@ -74,10 +74,15 @@ class Pages:
         """Whether something leads to a document that only a run determines."""
         self.cut = False
         """Whether there are more documents than are read."""
+        self.whole: list[Page] = []
+        """The documents of which all that they name is read, as far as it can be."""
         for page in self._read:  # which grows meanwhile
+            before, self.cut = self.cut, False
             self.root(page)
             for node in self.nodes(page):
                 self.open |= node.key in TARGETS and self._is_open(page, node)
+            self.whole += () if self.cut else (page,)
+            self.cut |= before
         self.thrown = {name for page in self for name in thrown_in(page.root)}
         """The events that they throw."""
 
