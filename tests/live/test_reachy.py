@@ -291,6 +291,21 @@ def test_a_goal_that_is_cancelled_stops_its_move_and_none_that_waits_begins() ->
     play(test())
 
 
+@pytest.mark.parametrize("told", [[{"uuid": 5}, {"uuid": "other"}, "x"], {"uuid": "x"}, 7, None])
+def test_safe_stops_the_moves_that_a_strange_daemon_names(told: object) -> None:
+    async def test() -> None:
+        async with fake_reachy() as fake:
+            run = Run(fake)
+            await run.driver.open()
+            fake.running.append("other")
+            fake.answers["/api/move/running"] = 200, told
+            await run.driver.safe()
+            assert fake.running == ([] if isinstance(told, list) else ["other"])
+            await run.driver.close()
+
+    play(test())
+
+
 def test_a_daemon_that_hangs_up_is_lost_though_nothing_moves() -> None:
     async def test() -> None:
         async with fake_reachy() as fake:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Callable
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
@@ -165,13 +166,16 @@ class ReachyLink:
             pass  # it has just ended
 
     async def stop_all(self) -> None:
-        """Stop all moves of the robot, whoever requested them.
+        """Stop all moves that the daemon names, whoever requested them.
 
         Raises:
-            Unreachable: the daemon is gone.
+            Refused: the daemon does not tell which moves it makes.
+            Unreachable: it is gone.
         """
-        for move in await self.ask("GET", "/api/move/running"):
-            await self._stop(_uuid(move))
+        moves = await self.ask("GET", "/api/move/running")
+        for move in moves if isinstance(moves, list) else ():
+            with suppress(Refused):
+                await self._stop(_uuid(move))
 
     async def _watch(self, socket: ClientConnection) -> None:
         from websockets.exceptions import WebSocketException
