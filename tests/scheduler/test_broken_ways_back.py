@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from prima.invariants import check
 from prima.messages import Step
-from tests.helpers.stage import Stage, ask, command, inserted, move, restartable, say
+from tests.helpers.stage import Stage, ask, chain, command, inserted, move, restartable, say
 
 EVENT = 7
 NOD = command("move-head", pan=0, tilt=20)
@@ -88,13 +88,14 @@ def test_x1_what_was_interrupted_without_a_pose_leaves_the_robot_where_it_is() -
     assert check(stage.records, "prima+x1+x2") == []
 
 
-def test_x1_two_conversations_do_not_wait_for_each_others_way_back() -> None:
-    """K1: either engages the user, and the robot is where neither goes on."""
+def two_conversations(nods: bool = False) -> Stage:
+    """Both engage the user, and the robot stands where neither goes on."""
     stage = Stage("prima+x1")
-    stage.request("ea", move(), ask("One?"), ask("Two?"))
+    nod = [Step(command("gesture", name="nod"), (0,))] if nods else []
+    stage.request("ea", steps=[*chain(move(), ask("One?"), ask("Two?")), *nod])
     stage.select()
     stage.at(500).end("ea#1.1", x=4.0, y=1.0, heading=90.0)
-    assert stage.select() == ["ea#2"]
+    assert stage.select() == ["ea#2", "ea#4"][: 1 + nods]
     drive = command("set-speed-and-time", speed=0.5, time="1s")
     stage.request("fa", drive, ask("A?"), ask("B?"), cause=EVENT)
     assert stage.select() == ["fa#1"]
@@ -102,9 +103,14 @@ def test_x1_two_conversations_do_not_wait_for_each_others_way_back() -> None:
     stage.end("ea#2")
     assert stage.select() == ["fa#2"]
     stage.request("ea", command("turn", angle=3), cause=EVENT + 1)
-    assert stage.select() == ["ea#4"]
-    stage.at(2500).end("ea#4", x=2.0, y=0.0, heading=0.0)
+    (turn,) = stage.select()
+    stage.at(2500).end(turn, x=2.0, y=0.0, heading=0.0)
     stage.end("fa#2")
+    return stage
+
+
+def test_x1_two_conversations_do_not_wait_for_each_others_way_back() -> None:
+    stage = two_conversations()
     assert stage.select() == ["fa#4.1"], "the one with the floor"
     assert stage.holds("ea#5") == ["F2"]
     stage.at(4000).end("fa#4.1", x=0.0, y=0.0, heading=0.0)
@@ -115,4 +121,17 @@ def test_x1_two_conversations_do_not_wait_for_each_others_way_back() -> None:
     assert stage.select() == ["ea#3"]
     stage.at(8000).end("ea#3")
     stage.select()
+    assert check(stage.records, "prima+x1") == []
+
+
+def test_x1_a_way_back_waits_for_a_conversation_that_does_more_than_go_back() -> None:
+    """K1, though its stream has the floor; the other's way back does not wait for it (F2)."""
+    stage = two_conversations(nods=True)
+    assert stage.select() == ["ea#6.1"] and stage.holds("fa#4") == ["K1", "F2"]
+    stage.at(3000).end("ea#4")
+    assert stage.select() == []
+    stage.at(4000).end("ea#6.1", x=4.0, y=1.0, heading=90.0)
+    assert stage.select() == ["ea#3"]
+    stage.at(5000).end("ea#3")
+    assert stage.select() == ["fa#4.1"]
     assert check(stage.records, "prima+x1") == []
