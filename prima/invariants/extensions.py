@@ -8,7 +8,6 @@ from typing import TypeGuard
 from prima.invariants.floor import give_floor
 from prima.invariants.memory import Memory
 from prima.invariants.model import AB, LINKED, RUNNING, WAITING, Record, Tree, base, ms
-from prima.invariants.turn import third_turn
 
 RESTORING = ("set-position", "set-position-and-direction", "set-direction", "face-human")
 """The Commands that X1 may insert, and the head's Command."""
@@ -167,7 +166,7 @@ def note_interrupt(memory: Memory, record: Record) -> None:
         memory.report(2, "X2", f"{ab.shown} is interrupted, which is not marked so")
     if memory.is_given_up(ab):
         memory.report(2, "X2", f"{ab.shown} is interrupted, but nobody wants it to start again")
-    if third_turn(memory, ab):
+    if memory.third_turn(ab):
         memory.report(16, "X7", f"{ab.shown} is interrupted between an answer and its response")
     if not _reacts_to(by, ab):
         memory.report(2, "X2", f"{ab.shown} is interrupted for {record['by']}, no reaction to it")
@@ -304,7 +303,7 @@ def gives_way(memory: Memory, ab: AB, reaction: AB) -> bool:
     """
     ab = ab.outermost
     may = "x2" in memory.extensions and ab.restartable and not ab.silent
-    outranked = _later(reaction, ab) and not third_turn(memory, ab)
+    outranked = _later(reaction, ab) and not memory.third_turn(ab)
     return may and outranked and not memory.is_given_up(ab)
 
 

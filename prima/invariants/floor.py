@@ -5,7 +5,6 @@ from __future__ import annotations
 from prima.invariants.channel import refused_by_channel
 from prima.invariants.memory import Memory
 from prima.invariants.model import AB, LINKED, RUNNING, Record, Tree, base
-from prima.invariants.turn import third_turn
 
 # Who may start ----------------------------------------------------------------
 
@@ -21,12 +20,12 @@ def carries_floor(memory: Memory, ab: AB) -> bool:
 
 def refused_by_floor(memory: Memory, ab: AB, surely: bool = False) -> Tree | None:
     """F2, X7: the stream that keeps, or may keep, the AB from starting."""
-    return None if third_turn(memory, ab) else kept_by_floor(memory, ab, surely)
+    return None if memory.third_turn(ab) else kept_by_floor(memory, ab, surely)
 
 
 def starts_aside(memory: Memory, ab: AB) -> bool:
     """X7: whether it starts although another has the floor, without taking or ending it."""
-    return third_turn(memory, ab) and kept_by_floor(memory, ab) is not None
+    return memory.third_turn(ab) and kept_by_floor(memory, ab) is not None
 
 
 def kept_by_floor(memory: Memory, ab: AB, surely: bool = False) -> Tree | None:
@@ -62,7 +61,7 @@ def refused_by_topic(memory: Memory, ab: AB) -> Tree | None:
     """F6: the stream that the AB would interrupt by speaking."""
     if "speaker" not in ab.devices or ab.cause is not None or memory.holder is ab.tree:
         return None
-    return None if third_turn(memory, ab) else _topic_kept(memory, ab)
+    return None if memory.third_turn(ab) else _topic_kept(memory, ab)
 
 
 def _topic_kept(memory: Memory, ab: AB) -> Tree | None:

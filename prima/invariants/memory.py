@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
+from prima.digraphs import led_to
 from prima.invariants.model import (
     AB,
     COMPOSED,
@@ -203,10 +204,25 @@ class Memory:
     def join_first(self, ab: AB) -> None:
         """X1, X9: ABs of a stream wait for the inserted one, except those with ``now`` (O2)."""
         ways = ab.tree.put_first()
-        if ways and not (ab.inserted or ab.begins_now or ab.unit):
+        if ways and not (ab.inserted or ab.begins_now or ab.unit or self.third_turn(ab)):
             ab.parents |= {way.name for way in ways}
             ab.phase, ab.joined_at = LINKED, self.now
             self.waiting.pop(ab.name)
+
+    def third_turn(self, ab: AB) -> bool:
+        """X7: whether it is the asker's response to an answer, or comes before it."""
+        return self.turn is not None and ab in self.way_to(self.turn)
+
+    def way_to(self, ab: AB) -> set[AB]:
+        """An AB and all that has to end before it may start."""
+        return led_to([ab], lambda one: map(self.abs.__getitem__, one.parents))
+
+    def go_without(self, ab: AB) -> None:
+        """X7: what answers the user does not wait for what was inserted for its stream before."""
+        if ab.phase == LINKED and ab.joined_at == self.now:
+            ab.parents -= {way.name for way in ab.tree.put_first()}
+            ab.phase, ab.joined_at = WAITING, -1
+            self.waiting[ab.name] = ab
 
     def remove(self, ab: AB, ended: bool = True) -> None:
         """An AB leaves working memory; ABs that waited only for its end may start (S2c)."""

@@ -18,7 +18,7 @@ from prima.invariants.floor import (
 from prima.invariants.memory import Memory
 from prima.invariants.model import AB, RUNNING, WAITING, Record, base
 from prima.invariants.patience import its_turn, overdue
-from prima.invariants.turn import refused_by_turn, third_turn
+from prima.invariants.turn import refused_by_turn
 
 RULES = ("S2a", "X7", "S2b", "E6", "S2c", "S2d", "S2e", "S2f")
 MANY = 8
@@ -40,7 +40,7 @@ def key(memory: Memory, ab: AB) -> tuple[Any, ...]:
         reaction = (0, -ab.cause, ab.app != active_app(memory))
     return (
         not ab.high,
-        not third_turn(memory, ab),
+        not memory.third_turn(ab),
         reaction,
         not its_turn(memory, ab),
         ab.followed_at != memory.now,
@@ -86,7 +86,7 @@ def free_to_go(memory: Memory, ab: AB) -> bool:
 
 def keeps_devices(memory: Memory, ab: AB) -> bool:
     """S3: whether it holds its devices back from lower-ranked ABs while it waits."""
-    return ab.cause is not None or overdue(memory, ab) or third_turn(memory, ab)
+    return ab.cause is not None or overdue(memory, ab) or memory.third_turn(ab)
 
 
 def held_back(memory: Memory, ab: AB, winner: AB | None = None, surely: bool = True) -> bool:
@@ -171,7 +171,7 @@ def admitted_by(memory: Memory, ab: AB) -> str:
         return "X5"
     if carries_floor(memory, ab):
         return "X5"
-    if third_turn(memory, ab) and kept_otherwise(memory, ab):
+    if memory.third_turn(ab) and kept_otherwise(memory, ab):
         return "X7"
     if holder is not None and holder.app != ab.app:
         return "F2"

@@ -15,7 +15,6 @@ from prima.invariants.floor import carries_floor, check_floor, resume, starts_as
 from prima.invariants.memory import Memory
 from prima.invariants.model import AB, GONE, RUNNING, WAITING, Record, base
 from prima.invariants.selection import allowed, decided_rightly, started_by
-from prima.invariants.turn import third_turn
 
 
 def note_start(memory: Memory, record: Record) -> None:
@@ -43,7 +42,7 @@ def _start_outside(memory: Memory, ab: AB, record: Record) -> None:
     if memory.prima and ab.phase == WAITING:
         allowed(memory, ab, shown)
         decided_rightly(memory, ab, shown)
-    response, now = third_turn(memory, ab), ab.begins_now
+    response, now = memory.third_turn(ab), ab.begins_now
     if not response:
         channel_connected(memory, ab)
         stands_right(memory, ab)
@@ -78,7 +77,7 @@ def _run(memory: Memory, ab: AB) -> None:
     memory.waiting.pop(ab.name, None)
     if not ab.starts:  # what starts again still reacts to the same event
         ab.reacted = ab.cause
-    if third_turn(memory, ab):  # it precedes all waiting reactions (X7)
+    if memory.third_turn(ab):  # it precedes all waiting reactions (X7)
         ab.reacted = max(one.cause or 0 for one in (ab, *memory.waiting.values()))
     memory.turn = None if ab is memory.turn else memory.turn
     ab.phase = RUNNING

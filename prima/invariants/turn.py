@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from prima.digraphs import led_to
 from prima.invariants.memory import Memory
 from prima.invariants.model import AB, LINKED, WAITING, Record, Tree, base
 
@@ -24,6 +23,8 @@ def look_for_turn(memory: Memory) -> None:
     tree, memory.answered_tree = memory.answered_tree, None
     if tree is not None and "x7" in memory.extensions and memory.prima:
         memory.turn = _acknowledgement(memory, tree)
+        for ab in memory.way_to(memory.turn) if memory.turn is not None else ():
+            memory.go_without(ab)
 
 
 def _acknowledgement(memory: Memory, tree: Tree) -> AB | None:
@@ -32,7 +33,7 @@ def _acknowledgement(memory: Memory, tree: Tree) -> AB | None:
         for one in tree.members.values()
         if one.phase in (LINKED, WAITING) and one.unit is None and "speaker" in one.devices
     ]
-    if not coming or not all(map(_soon_over, _way_to(memory, coming[0]))):
+    if not coming or not all(map(_soon_over, memory.way_to(coming[0]))):
         return None
     return coming[0]
 
@@ -42,22 +43,12 @@ def _soon_over(ab: AB) -> bool:
     return not (lasts or ab.spans) and ab.cause is None
 
 
-def _way_to(memory: Memory, ab: AB) -> set[AB]:
-    """An AB and all that has to end before it may start."""
-    return led_to([ab], lambda one: map(memory.abs.__getitem__, one.parents))
-
-
-def third_turn(memory: Memory, ab: AB) -> bool:
-    """X7: whether it is the asker's response to an answer, or comes before it."""
-    return memory.turn is not None and ab in _way_to(memory, memory.turn)
-
-
 def refused_by_turn(memory: Memory, ab: AB) -> AB | None:
     """X7: the utterance that precedes everything else to be said."""
     turn = memory.turn
     if turn is None or turn.phase != LINKED or "speaker" not in ab.devices:
         return None
-    if third_turn(memory, ab) or any(_is_kept(memory, one) for one in _way_to(memory, turn)):
+    if memory.third_turn(ab) or any(_is_kept(memory, one) for one in memory.way_to(turn)):
         return None
     return turn
 

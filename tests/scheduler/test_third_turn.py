@@ -13,7 +13,7 @@ from prima.invariants import check
 from prima.language.commands import TABLE_4_2, CommandType
 from prima.messages import Command, Step
 from prima.scheduler import interruption
-from tests.helpers.stage import TRACK, Stage, ask, command, move, restartable, say
+from tests.helpers.stage import TRACK, Stage, ask, command, inserted, move, restartable, say
 
 TOUCH = 7
 HEAD = command("move-head", pan=30)
@@ -339,6 +339,32 @@ def test_x7_an_answer_that_comes_early_is_answered_behind_what_is_being_said() -
     stage.at(2000).end("ea#1")
     stage.select()
     assert {"ea#3", "ea#4"} & stage.running and "fa#1" not in stage.running
+
+
+def test_x7_an_answer_that_comes_while_its_topic_resumes_in_words_does_not_wait_for_them() -> None:
+    """X9, X10: the response waits for the speaker alone; its other Commands start at once."""
+    policy = "prima+x7+x9+x10"
+    stage = Stage(policy)
+    words = say("As I was saying.")
+    stage.request("ea", say("Well."), ask(), words=words)
+    assert stage.select() == ["ea#1"]
+    stage.request("fa", say("That feels good."), cause=TOUCH)
+    assert stage.select() == []
+    stage.at(1000).end("ea#1")
+    assert stage.select() == ["fa#1"]
+    stage.at(2000).end("fa#1")
+    assert stage.select() == ["ea#3"] and inserted(stage) == [("X9", "speak")]
+    question = stage.mediator.coming_question("ea")
+    assert question is not None
+    stage.at(2100).mediator.answered(question, {"outcome": "filled"}, "X10", TOUCH + 1)
+    stage.settle(lambda: stage.request("ea", HEAD, say("Thank you."), words=words))
+    assert stage.select() == ["ea#4"] and stage.holds("ea#5") == []
+    stage.at(2200).end("ea#4")
+    assert stage.select() == [] and stage.holds("ea#5") == ["S1"]
+    stage.at(3000).end("ea#3")
+    assert stage.select() == ["ea#5"]
+    found = check(stage.records, policy)
+    assert [one for one in found if "nobody has said anything" not in one] == []
 
 
 def test_x7_its_own_reaction_waits_as_well() -> None:
