@@ -141,6 +141,7 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     ab.reacted = goes_before(ab, reaction, memory)
     aside = rules.aside(ab, memory)
     response, begins = rules.third_turn(ab, memory), wanted_now(ab)
+    acknowledges = rules.acknowledges(ab, mediation.now)
     beside = composed or aside or not rules.f3(ab, memory)
     run(mediation, ab, not aside)
     changed = f1(mediation, ab, reaction, beside)
@@ -150,7 +151,8 @@ def _start(mediation: Mediation, rank: Rank, ab: Behavior, lower: list[Ranked], 
     mediation.recorder.decision(ab, rule, [loser.id for _, loser in losers])
     mediation.recorder.start(ab, rule, reaction)
     advance(mediation, ab)
-    changed = changed or memory.active is not active  # which ranks reactions to one event (S2b)
+    # The active application ranks reactions to one event (S2b), a word after an answer who is overdue.
+    changed = changed or memory.active is not active or acknowledges
     return e4(mediation, ab) or changed or policy.turning
 
 

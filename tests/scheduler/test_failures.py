@@ -308,6 +308,23 @@ def test_e6_what_has_waited_beside_the_question_is_no_word_to_its_answer() -> No
     assert check(stage.records, "prima", patience=1000) == []
 
 
+def test_e6_what_comes_beside_the_word_after_an_answer_waits_for_the_turn() -> None:
+    """Only that word goes first: the devices of the FA's unit are held back as soon as it starts."""
+    stage = Stage(patience=1000)
+    stage.request("ea", replace(BRIEF))
+    stage.select()
+    stage.at(1).request("fa", Group(chain(say("One."), command("turn", angle=1))))
+    stage.select()
+    stage.at(5000).mediator.ended("ea#1", True, {"outcome": "filled"}, inbound=False)
+    beside = [Step(say("Thank you.")), Step(command("turn", angle=2))]
+    stage.settle(lambda: stage.request("ea", steps=beside))
+    assert stage.select() == ["ea#2"]
+    assert stage.holds("ea#3") == ["S3"]
+    stage.at(6000).end("ea#2")
+    assert stage.select() == ["fa#1", "fa#2"]
+    assert check(stage.records, "prima", patience=1000) == []
+
+
 def test_e6_holds_other_devices_back_as_well() -> None:
     """Two devices that another application uses in turn are kept for it (S3)."""
     stage = Stage(patience=1000)
