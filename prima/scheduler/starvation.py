@@ -91,11 +91,13 @@ def _due(mediation: Mediation, ab: Behavior) -> int | None:
     if application(wait.blocked[1]) == ab.app.name:
         wait.since = None
         return None
-    if rules.keeps_speaker(ab, mediation.memory):
-        wait.kept_since = now
     if wait.since is None:
         wait.since = now
-    return None if wait.starves else wait.since + mediation.patience
+    waited = now - wait.since
+    if rules.keeps_speaker(ab, mediation.memory):
+        wait.kept_since = now
+        waited = max(waited, wait.kept)
+    return None if wait.starves else now + mediation.patience - waited
 
 
 def forget_waits(mediation: Mediation) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from prima.language.commands import PATIENCE_MS
-from prima.messages import Command, Step
-from tests.helpers.stage import TRACK, Stage, command, restartable, say
+from prima.messages import Command, Group, Step
+from tests.helpers.stage import TRACK, Stage, chain, command, restartable, say
 
 EVENT = 7
 TURN = command("turn", angle=3)
@@ -268,6 +268,26 @@ def test_e6_time_stands_still_while_another_has_the_floor() -> None:
     assert stage.select() == ["eb#1"]
     stage.at(9000).end("eb#1")
     assert stage.select() == ["ea#2"], "the other has been kept from the speaker for 2 s"
+
+
+def test_e6_who_has_been_kept_twice_is_told_when_both_times_are_the_patience() -> None:
+    stage = Stage(apps={"eb": "ea", "fa": "fa", "ea": "ea"}, patience=5000)
+    stage.request("ea", steps=[Step(say("First.")), Step(command("point-by-hand", angle=1))])
+    stage.select()
+    stage.request("eb", Group(chain(say("Two."), command("point-by-hand", angle=2))))
+    stage.request("fa", steps=[Step(say("One.")), Step(say("Three."))])
+    stage.select()
+    stage.at(3000).end("ea#1")
+    assert stage.select() == ["fa#1"], "so that its other sentence waits for its own application"
+    stage.at(9000).end("ea#2")
+    stage.select()
+    stage.at(9100).end("fa#1")
+    assert stage.select() == ["eb#1", "eb#2"]
+    assert stage.mediator.deadline() == 11_100, "3 s before it, and 2 s from now on"
+    stage.at(11_100).mediator.expire()
+    stage.select()
+    told = stage.phases("starve")[-1]
+    assert (told["behavior"], told["rule"], told["data"]) == ("fa#2", "E6", {"waited": 5.0})
 
 
 def test_e6_in_an_emergency_time_stands_still() -> None:
