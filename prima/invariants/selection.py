@@ -102,6 +102,7 @@ def held_back(memory: Memory, ab: AB, winner: AB | None = None, surely: bool = T
         and outranks(memory, other, ab)
         and refused_by_turn(memory, other) is None
         and refused_by_floor(memory, other, surely) is None
+        and refused_by_topic(memory, other) is None
         and refused_by_channel(memory, other) is None
         for other in competing(memory, ab)
     )

@@ -325,6 +325,22 @@ def test_e6_what_comes_beside_the_word_after_an_answer_waits_for_the_turn() -> N
     assert check(stage.records, "prima", patience=1000) == []
 
 
+def test_e6_whoever_may_not_speak_into_a_topic_holds_nothing_back_meanwhile() -> None:
+    stage = Stage(apps={"fa": "fa", "ea": "ea", "xa": "ea"}, patience=1000)
+    stage.request("xa", command("point-by-hand", angle=1))
+    stage.request("ea", say("The answer is"), command("turn", angle=1), say("forty two."))
+    stage.select()
+    stage.at(1).request("fa", Group(chain(say("One."), command("point-by-hand", angle=2))))
+    stage.request("xa", steps=[Step(command("point-by-hand", angle=one)) for one in (3, 4)])
+    stage.select()
+    stage.at(2000).end("ea#1")
+    stage.select()
+    stage.at(2500).end("xa#1")
+    assert stage.select() == ["xa#2"]
+    assert stage.holds("fa#1")[-1] == "F6" and stage.losers("xa#2") == ["xa#3"]
+    assert check(stage.records, "prima", patience=1000) == []
+
+
 def test_e6_holds_other_devices_back_as_well() -> None:
     """Two devices that another application uses in turn are kept for it (S3)."""
     stage = Stage(patience=1000)
