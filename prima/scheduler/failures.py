@@ -77,8 +77,9 @@ def deadline(mediation: Mediation) -> int | None:
     late = [ab.late for ab in memory.running.values()]
     late += mediation.holds.values()
     if not mediation.halted:
-        late += [mediation.starving, *(ab.stale for ab in memory.waiting.values())]
-    return earliest(_lapse(memory, mediation.absence), *late)
+        late += [_lapse(memory, mediation.absence), mediation.starving]
+        late += [ab.stale for ab in memory.waiting.values()]
+    return earliest(None, *late)
 
 
 def _lapse(memory: WorkingMemory, absence: int) -> int | None:

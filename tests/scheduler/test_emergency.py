@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from prima.invariants import check
+from prima.language.commands import ABSENCE_MS
 from prima.messages import (
     ApplicationLoaded,
     Emergency,
@@ -14,7 +15,7 @@ from tests.helpers.generated.plays import perform
 from tests.helpers.generated.scripts import Ask, Leave, Script, drive
 from tests.helpers.generated.world import World
 from tests.helpers.plays import NESTED, play, stepped, told
-from tests.helpers.stage import Stage, chain, command, say
+from tests.helpers.stage import Stage, ask, chain, command, move, say
 
 EVENT = 7
 
@@ -32,6 +33,20 @@ def test_e5_an_emergency_stop_ends_everything_until_released() -> None:
     assert stage.select() == ["fa#1"]
     stage.at(30).end("fa#1")
     assert stage.select() == ["ea#1"], "what was cut is done again"
+
+
+def test_e5_a_user_who_is_gone_meanwhile_is_absent_after_the_release() -> None:
+    """K1: until then there is nothing to do; the run came to the same instant again and again."""
+    stage = Stage()
+    stage.request("ea", ask())
+    stage.request("fa", move())
+    assert stage.select() == ["ea#1"]
+    stage.at(10).mediator.emergency(True, True, 8)
+    stage.select()
+    assert stage.mediator.deadline() is None
+    stage.at(2 * ABSENCE_MS).mediator.emergency(False, True, 9)
+    assert stage.select() == ["ea#1", "fa#1.1"]
+    assert check(stage.records) == []
 
 
 def test_e5_only_what_returns_is_recorded_as_halted() -> None:
