@@ -61,9 +61,14 @@ class _Other:
         return busy_after_each(self.outline, self.foreign)
 
     @cached_property
+    def joined(self) -> list[Busy]:
+        """How long it is busy because of each event to which it does not react, as :attr:`after`."""
+        return busy_after_each(self.outline, self.outline.joins)
+
+    @cached_property
     def later(self) -> list[Gap]:
         """Why anything of it may take longer."""
-        does = [one.does for one in self.outline.reactions]
+        does = [one.does for one in self.outline.handled]
         states = [*self.outline.states.values(), *does, *self.outline.wakes]
         return list(dict.fromkeys(gap for state in states for gap in state.unknown))
 
@@ -260,11 +265,11 @@ def _wait_for_all(delay: Delay, whole: Busy, theirs: _Other) -> None:
 
 
 def _add_further(delay: Delay, theirs: _Other) -> None:
-    """Everything that the other does about each further event, and each unfinished one."""
+    """All that the other does about each further event, reacting or not, and each unfinished one."""
     delay.whole = True
-    delay.each = max((one.lasts for one in theirs.after), default=0)
-    if any(one.endless or one.unknown for one in theirs.after):
-        delay.each = None
+    each = [*theirs.after, *theirs.joined]
+    bounded = not any(one.endless or one.unknown for one in each)
+    delay.each = max((one.lasts for one in each), default=0) if bounded else None
 
 
 def _first(reaction: PricedReaction, needed: frozenset[str]) -> int:
@@ -306,15 +311,15 @@ def _again(theirs: Outline, causes: list[Starving], drives: bool) -> list[Starvi
 def _parts_with_floor(theirs: Outline) -> set[Price]:
     """The parts that may hold the floor: of states that may, and of reactions."""
     floor = {part for name in _floors(theirs) for part in theirs.states[name].parts}
-    return floor | {part for one in theirs.reactions for part in one.does.parts}
+    return floor | {part for one in theirs.handled for part in one.does.parts}
 
 
 def _floors(theirs: Outline) -> set[str]:
     """The states that may hold the floor: those that reactions lead to, or go on beside."""
-    begun = [*(one.does for one in theirs.reactions), *theirs.wakes]
+    begun = [*(one.does for one in theirs.handled), *theirs.wakes]
     starts = [name for one in begun for name in (*one.goes, *one.calls)]
-    starts += [one.stays for one in theirs.reactions if one.stays]
-    if any(one.stays == "" for one in theirs.reactions):
+    starts += [one.stays for one in theirs.handled if one.stays]
+    if any(one.stays == "" for one in theirs.handled):
         return set(theirs.states)
     return {state.name for state in closure(theirs, starts)}
 

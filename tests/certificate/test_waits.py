@@ -110,6 +110,24 @@ def test_a_reaction_to_the_same_event_is_waited_for_to_its_end(tmp_path: Path) -
     assert more in format_certificate(certified(tmp_path, body))
 
 
+def test_a_reaction_may_wait_for_what_its_application_does_without_reacting(tmp_path: Path) -> None:
+    """The EA's words about the touch keep its own reaction to the bell, for which the FA waits."""
+    words = "This sentence goes on and on until everybody who stands in the room is tired of it."
+    own = '<form id="s"><on event="bell"><move-head pan="10"/></on></form>'
+    body = (
+        f'<form id="f"><on event="touch" reactive="false"><speak>{words}</speak></on>'
+        '<on event="bell"><gesture name="bow"/><speak>Hi.</speak></on></form>'
+    )
+    found = certified(tmp_path, body, own)
+    (delay,) = found.delays
+    assert delay.each is not None and delay.each >= lasting(words)
+    assert found.others.lasts >= lasting(words)
+    whens = '<when at="1100ms"><event name="bell"/></when>'
+    records = run(tmp_path, "mine.xml", "theirs.xml", TOUCH + whens)
+    (began,) = [r["time"] for r in records if r["phase"] == "start" and r["app"] == "mine"]
+    assert delay.lasts / 1000 < began - 1.1 <= (delay.lasts + delay.each) / 1000
+
+
 def test_a_reaction_to_the_same_event_may_have_no_end(tmp_path: Path) -> None:
     field = '<form id="q"><field name="a" type="boolean"><prompt>Well?</prompt></field></form>'
     body = f'<form id="f"><on event="touch"><goto next="#q"/></on></form>{field}'

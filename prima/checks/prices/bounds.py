@@ -99,7 +99,7 @@ def size(outline: Outline) -> int:
 
 def busy_at_all(outline: Outline) -> Busy:
     """The longest activity without a wait, whatever starts it."""
-    does = [reaction.does for reaction in outline.reactions]
+    does = [one.does for one in outline.handled]
     return _busy(outline, [*outline.states.values(), *does, *outline.wakes])
 
 

@@ -98,14 +98,17 @@ class DialoguePrices(Times):
         self._check_size(len(forms), sum(1 for _ in handlers_of(self.document)))
         states = {self.name_of(form): self._state(form) for form in forms}
         reactions: list[PricedReaction] = []
+        joins: list[PricedReaction] = []
         for form, handler in handlers_of(self.document):
-            reactions += self._reactions(handler, form, self.own.leads_round(handler, form))
+            does = joins if handler.reactive is False else reactions
+            does += self._reactions(handler, form, self.own.leads_round(handler, form))
         for form, hook in hooks_of(self.document):
-            reactions += self._reactions(hook, form, False)
+            if hook.reactive is not False:
+                reactions += self._reactions(hook, form, False)
         reactions += [self._link(link, None) for link in self.document.links]
         reactions += [self._link(link, form) for form in forms for link in form.links]
         holds = [hold for form in forms for hold in _holds(form)]
-        return Outline(self.parts, states, reactions, self._wakes(), holds, [])
+        return Outline(self.parts, states, reactions, self._wakes(), holds, [], joins)
 
     def _check_size(self, forms: int, handlers: int) -> None:
         scopes = (forms + handlers) * len(self.document.handlers)
@@ -269,10 +272,8 @@ class DialoguePrices(Times):
     def _reactions(
         self, handler: Handler, form: Form | None, rounds: bool
     ) -> Iterator[PricedReaction]:
-        """The reactions of a handler: to events from outside and, if declared so, to the
-        application's own (C5); ``rounds`` if it leads to itself again."""
-        if handler.reactive is False:
-            return
+        """What a handler does about events from outside and, if it is declared to react to them,
+        about the application's own (C5); ``rounds`` if it leads to itself again."""
         foreign, own = self._divided(handler.events)
         does = self._content(PricedState(handler.events[0], handler.node), [handler.content], form)
         begins = self._begins(handler.content, form)

@@ -140,10 +140,17 @@ class Outline:
     """The handling of the application's own delayed events, which are not reactions."""
     holds: list[tuple[Place, int]]
     gaps: list[Gap]
+    joins: list[PricedReaction] = field(default_factory=list)
+    """What it does about events from outside without reacting (C5): it continues a stream (O1)."""
     loops: list[EndlessLoop] | None = None
     """Endless activity, computed on demand."""
     backwards: tuple[dict[str, list[str]], dict[str, list[str]]] | None = None
     """The predecessors and the callers of each state, computed on demand."""
+
+    @property
+    def handled(self) -> list[PricedReaction]:
+        """What it does about events, whether it reacts to them or not."""
+        return [*self.reactions, *self.joins]
 
     @property
     def devices(self) -> set[str]:
