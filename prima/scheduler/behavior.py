@@ -209,6 +209,8 @@ class Behavior:
     """How it moves the robot, ``faithful`` or ``free`` in its path, if it may be composed (X5)."""
     reacted: int = -1
     """The event to which it reacts, if it is a reaction: it yields to later ones (X2)."""
+    begun: bool = False
+    """Whether the AB has ever started."""
     restarting: bool = False
     """Whether the AB was interrupted and has not started again (X2)."""
     since: Data | None = None

@@ -63,8 +63,7 @@ def _note_effects(mediation: Mediation, ab: Behavior, data: Data, ending: bool) 
 
 def forget_effects(ab: Behavior) -> None:
     """X1: nothing relies on the effects of a Command that is cut short or fails."""
-    begun = ab.state is RUNNING or ab.loop or ab.restarting
-    if begun and ab.type is not None and ab.inserted != "X1":
+    if ab.begun and ab.type is not None and ab.inserted != "X1":
         ab.stream.effects.forget(ab.type.effects)
 
 

@@ -132,7 +132,7 @@ def join_first(mediation: Mediation) -> None:
 
 def wanted_now(ab: Behavior) -> bool:
     """O2: whether an AB waits for nothing of its own application; what resumes does."""
-    return ab.what.now and not (ab.loop or ab.restarting)
+    return ab.what.now and not ab.begun
 
 
 def first_of(stream: Stream) -> Behavior | None:

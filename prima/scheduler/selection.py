@@ -182,7 +182,7 @@ def run(mediation: Mediation, ab: Behavior, resumes: bool) -> None:
     """Run an AB; if it ``resumes``, so does its stream (C2)."""
     memory, now = mediation.memory, mediation.now
     ab.resumed = ab.restarting or (ab.loop > 0 and ab.freed != now)
-    ab.restarting = False
+    ab.begun, ab.restarting = True, False
     ab.wait.end()
     ab.wait = Wait()
     if ab.run is not None:

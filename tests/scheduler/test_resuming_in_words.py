@@ -316,3 +316,23 @@ def test_x9_the_response_to_an_answer_does_not_resume_the_topic() -> None:
     assert stage.select() == [] and inserted(stage) == []
     stage.at(3100).end("fa#1.1")
     assert stage.select() == ["ea#5"] and inserted(stage) == [("X9", "speak")]
+
+
+def test_x9_what_was_wanted_now_resumes_after_an_emergency_in_words() -> None:
+    """It has begun before: what starts again is the topic."""
+    stage = Stage(POLICY)
+    stage.request("ea", say("One."), words=words())
+    stage.select()
+    now = Command("face-human", now=True)
+    stage.at(500).end("ea#1", then=lambda: stage.request("ea", now, words=words()))
+    assert stage.select() == ["ea#2"]
+    stage.at(600).mediator.emergency(True, True, TOUCH)
+    stage.select()
+    stage.at(800).mediator.emergency(False, True, TOUCH + 1)
+    stage.request("fa", say("Oh!"), cause=TOUCH + 1)
+    assert stage.select() == ["fa#1"]
+    stage.at(1000).end("fa#1")
+    assert stage.select() == ["ea#3"] and inserted(stage) == [("X9", "speak")]
+    stage.at(2000).end("ea#3")
+    assert stage.select() == ["ea#2"]
+    assert check(stage.records, POLICY) == []

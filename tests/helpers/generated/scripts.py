@@ -252,12 +252,17 @@ class Driver:
     def run(self) -> Run:
         """Drive it to its end."""
         records: list[Record] = []
+        problems: list[str] = []
         now = steps = 0
         while steps < STEPS and (due := self._due(now)) is not None:
             steps, now = steps + 1, due
             self._instant(now, len(self.events) + steps)
             records += self.recorder.drain()
-        return Run(records, steps < STEPS, orders_match(records, self.devices.starts))
+            overdue = self.mediator.deadline()
+            if overdue is not None and overdue <= now:
+                problems.append(f"at {now} ms it leaves undone what was due at {overdue}")
+        problems += orders_match(records, self.devices.starts)
+        return Run(records, steps < STEPS, problems)
 
     def _due(self, now: int) -> int | None:
         """The next instant; where nothing more happens by itself, a unit is concluded (U5)."""
@@ -382,6 +387,8 @@ _TURNS = (
     Ask(("face-human",), ((),)),
 )
 """A question or an utterance, and little with it: what conversations are made of."""
+_lasting = st.one_of(st.integers(1, 2000), st.just(25_000))
+"""How long (ms) an emergency lasts: at times so long that nobody engages the user any more (K1)."""
 _talk = st.builds(
     replace,
     st.sampled_from(_TURNS),
@@ -424,9 +431,7 @@ def scripts(draw: Any) -> Script:
         events.append((time, tuple(draw(_deeds) for _ in range(apps))))
     emergencies = []
     if draw(st.integers(1, 5)) == 5:
-        emergencies.append(
-            (draw(st.integers(1, 6000)), draw(st.integers(1, 2000)), draw(st.booleans()))
-        )
+        emergencies.append((draw(st.integers(1, 6000)), draw(_lasting), draw(st.booleans())))
     world = World(
         draw(st.integers(0, 10_000)),
         draw(st.sampled_from((0, 0, 5, 20))),
