@@ -82,11 +82,11 @@ def keeps_user(memory: Memory, tree: Tree, ab: AB) -> bool:
 def _both_go_back(memory: Memory, tree: Tree, ab: AB) -> bool:
     """X1: whether the AB and all that the stream does next are ways back, or leave the user, too.
 
-    If both streams engage the user, each way back would wait for the other.
+    If both streams have engaged the user, each way back would wait for the other.
     """
     coming = [one for one in tree.members.values() if one.contends]
     back = any(one.inserted for one in coming) and all(one.leaves for one in coming)
-    return bool(ab.inserted) and back and ab.tree.engages(sensed(memory))
+    return bool(ab.inserted) and back and ab.tree.engaged
 
 
 def channel_kept(memory: Memory, ab: AB, shown: str) -> None:

@@ -188,10 +188,9 @@ def k1(ab: Behavior, memory: WorkingMemory) -> Refusal | None:
 def waits_in_turn(stream: Stream, ab: Behavior, memory: WorkingMemory) -> bool:
     """K1, X1: whether the stream only waits to go back, as the AB does, and would wait for it."""
     present = stream.present()
-    if not ab.inserted or not any(one.inserted for one in present):
+    if not ab.inserted or ab.stream.name not in memory.engaged:
         return False
-    engaged = ab.stream.name in memory.engaged and engages(ab.stream, memory)
-    return engaged and all(one.leaves for one in present)
+    return any(one.inserted for one in present) and all(one.leaves for one in present)
 
 
 def engages(stream: Stream, memory: WorkingMemory) -> bool:
