@@ -29,7 +29,16 @@ from prima.session import Session
 from prima.voicexml.document import VoiceDocument
 from tests.helpers.generated.author import EVENTS, Author
 from tests.helpers.generated.voice import VoiceAuthor
-from tests.helpers.generated.world import APPS, STEPS, Devices, Run, World, orders_match
+from tests.helpers.generated.world import (
+    APPS,
+    STEPS,
+    Devices,
+    Run,
+    World,
+    lasting,
+    left_undone,
+    orders_match,
+)
 from tests.helpers.voice import voice
 
 
@@ -56,6 +65,7 @@ def perform(
     for time, value in play.events:
         devices.plan(time, value)
     records: list[Record] = []
+    problems: list[str] = []
     now = steps = 0
     while steps < STEPS:
         times = [time for time in (devices.due(), session.deadline()) if time is not None]
@@ -65,7 +75,8 @@ def perform(
         for order in session.step(now, devices.collect(now)):
             devices.order(now, order)
         records += session.drain()
-    problems = orders_match(records, devices.starts)
+        problems += left_undone(now, session.deadline())
+    problems += orders_match(records, devices.starts)
     run = Run(records, steps < STEPS, problems, frozenset(callers(documents)))
     run.problems += [f"a defect: {error!r}" for error in session.defects]
     if run.complete:
@@ -140,7 +151,7 @@ def plays(draw: Any, lively: bool = False) -> Play:
     if not lively and draw(st.integers(1, 4)) == 4:
         time = draw(st.integers(1, 8000))
         events.append((time, Emergency(True)))
-        events.append((time + draw(st.integers(1, 3000)), Emergency(False, draw(st.booleans()))))
+        events.append((time + draw(lasting), Emergency(False, draw(st.booleans()))))
     if not lively and draw(st.integers(1, 4)) == 4:
         events.append(
             (draw(st.integers(1, 8000)), ApplicationUnloaded(draw(st.sampled_from(names))))

@@ -41,6 +41,8 @@ from tests.helpers.generated.world import (
     Devices,
     Run,
     World,
+    lasting,
+    left_undone,
     orders_match,
 )
 
@@ -258,9 +260,7 @@ class Driver:
             steps, now = steps + 1, due
             self._instant(now, len(self.events) + steps)
             records += self.recorder.drain()
-            overdue = self.mediator.deadline()
-            if overdue is not None and overdue <= now:
-                problems.append(f"at {now} ms it leaves undone what was due at {overdue}")
+            problems += left_undone(now, self.mediator.deadline())
         problems += orders_match(records, self.devices.starts)
         return Run(records, steps < STEPS, problems)
 
@@ -387,8 +387,6 @@ _TURNS = (
     Ask(("face-human",), ((),)),
 )
 """A question or an utterance, and little with it: what conversations are made of."""
-_lasting = st.one_of(st.integers(1, 2000), st.just(25_000))
-"""How long (ms) an emergency lasts: at times so long that nobody engages the user any more (K1)."""
 _talk = st.builds(
     replace,
     st.sampled_from(_TURNS),
@@ -431,7 +429,7 @@ def scripts(draw: Any) -> Script:
         events.append((time, tuple(draw(_deeds) for _ in range(apps))))
     emergencies = []
     if draw(st.integers(1, 5)) == 5:
-        emergencies.append((draw(st.integers(1, 6000)), draw(_lasting), draw(st.booleans())))
+        emergencies.append((draw(st.integers(1, 6000)), draw(lasting), draw(st.booleans())))
     world = World(
         draw(st.integers(0, 10_000)),
         draw(st.sampled_from((0, 0, 5, 20))),

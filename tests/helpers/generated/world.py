@@ -200,6 +200,19 @@ class Run:
         return "".join(line(record) for record in self.records)
 
 
+lasting = st.one_of(st.integers(1, 3000), st.just(25_000))
+"""How long (ms) an emergency lasts: at times so long that nobody engages the user any more (K1)."""
+
+
+def left_undone(now: int, due: int | None) -> list[str]:
+    """What is due at an instant is done at it: else the next one is the same."""
+    return (
+        [f"at {now} ms it leaves undone what was due at {due}"]
+        if due is not None and due <= now
+        else []
+    )
+
+
 def orders_match(records: Iterable[Record], starts: list[str]) -> list[str]:
     """Invariant 3 where it matters: devices are told once what the transcript tells."""
     told = [r["behavior"] for r in records if r["phase"] == "start" and r["command"] != "iu"]
