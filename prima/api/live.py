@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from numbers import Real
 from pathlib import Path
 
-from prima.api.rehearsing import Sink, check_functions, check_numbers, fetcher
-from prima.api.transcripts import Transcript, check_transcripts, outcome_of
+from prima.api.rehearsing import Sink, check_functions, fetcher
+from prima.api.transcripts import Transcript, check_transcripts, outcome_of, whole_numbers
 from prima.errors import UsageError
 from prima.language.values import LONGEST_MS
 from prima.loading import Loaded, load_scenario
@@ -138,10 +139,10 @@ def run_live(
         name(services, "services"),
     )  # fmt: skip
     check_functions(sink=sink, warn=warn)
-    check_numbers(bound=bound)
-    check_numbers(0, until=until, late=late)
-    check_numbers(0, LONGEST_MS, patience=patience)
-    if not isinstance(speed, int | float) or not 0 < speed <= FASTEST:
+    [bound] = whole_numbers(bound=bound)
+    [until, late] = whole_numbers(0, until=until, late=late)
+    [patience] = whole_numbers(0, LONGEST_MS, patience=patience)
+    if not isinstance(speed, Real) or not 0 < speed <= FASTEST:
         raise UsageError(f"The speed is {speed!r:.80}: write a number above 0, up to {FASTEST:g}.")
     web = fetcher(hosts, len(chosen.fas) + len(chosen.eas) + 1)
     named = tuple(paths_of(drivers, "drivers"))

@@ -8,7 +8,7 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from prima.api.transcripts import Transcript
+from prima.api.transcripts import Transcript, whole_numbers
 from prima.errors import UsageError
 from prima.language.values import LONGEST_MS, MOST_SEED
 from prima.loading import Loaded, load_scenario, seeded
@@ -75,9 +75,9 @@ def rehearse(
     from prima.transcript.rows import make_rows
 
     check_functions(sink=sink)
-    check_numbers(bound=bound)
-    check_numbers(0, MOST_SEED, seed=seed)
-    check_numbers(0, LONGEST_MS, patience=patience)
+    [bound] = whole_numbers(bound=bound)
+    [seed] = whole_numbers(0, MOST_SEED, seed=seed)
+    [patience] = whole_numbers(0, LONGEST_MS, patience=patience)
     loaded = scenario if isinstance(scenario, Loaded) else load_scenario(scenario)
     loaded = seeded(loaded, seed)
     cast = loaded.cast
@@ -178,19 +178,3 @@ def check_functions(**given: object) -> None:
     for name, one in given.items():
         if one is not None and not callable(one):
             raise UsageError(f"{name}={one!r:.80}: write a function.")
-
-
-def check_numbers(
-    least: int = 1, most: int | None = None, /, needed: bool = False, **given: int | None
-) -> None:
-    """Refuse values that are not whole numbers, too small or too large; None if ``needed``.
-
-    Raises:
-        UsageError: one is.
-    """
-    limits = f"from {least}" if most is None else f"from {least} to {most}"
-    for name, number in given.items():
-        if number is None and not needed:
-            continue
-        if type(number) is not int or number < least or (most is not None and number > most):
-            raise UsageError(f"{name}={number!r:.80}: write a whole number {limits}.")

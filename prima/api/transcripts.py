@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from numbers import Integral
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 from prima.errors import UsageError
 from prima.messages import Record
@@ -71,7 +72,7 @@ class Transcript:
         Raises:
             UsageError: there is no such row.
         """
-        if type(number) is not int:
+        if not is_whole(number):
             raise UsageError(f"number={number!r:.80}: write the number of a row.")
         rows = self.rows()
         if 0 <= number < len(rows):
@@ -134,6 +135,32 @@ def check_transcripts(*given: object) -> None:
     for one in given:
         if not isinstance(one, Transcript):
             raise UsageError(f"{one!r:.80} is not a transcript: read it with prima.read.")
+
+
+def whole_numbers(
+    least: int = 1, most: int | None = None, /, needed: bool = False, **given: int | None
+) -> list[Any]:
+    """Whole numbers of any kind, such as NumPy's, as ``int``; None stays unless ``needed``.
+
+    Raises:
+        UsageError: a value is no whole number, or too small or too large.
+    """
+    limits = f"from {least}" if most is None else f"from {least} to {most}"
+    made: list[int | None] = []
+    for name, number in given.items():
+        if number is None and not needed:
+            made.append(None)
+            continue
+        whole = int(number) if is_whole(number) else least - 1
+        if whole < least or (most is not None and whole > most):
+            raise UsageError(f"{name}={number!r:.80}: write a whole number {limits}.")
+        made.append(whole)
+    return made
+
+
+def is_whole(number: object) -> TypeGuard[int]:
+    """Whether a value is a whole number, and not a truth value."""
+    return isinstance(number, Integral) and not isinstance(number, bool)
 
 
 def rows_of(name: str, entries: Iterable[Entry]) -> list[Row]:

@@ -7,7 +7,7 @@ from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from prima.api.rehearsing import check_numbers
+from prima.api.transcripts import whole_numbers
 from prima.errors import UsageError
 from prima.experiments.cluster import pool_of
 from prima.experiments.explore import Exploration, ExplorationPlan
@@ -68,8 +68,10 @@ def sweep(
         UsageError: a factor, level, policy or file is wrong, or pyarrow is not installed.
         RunError: no process can be started.
     """
-    check_numbers(seeds=seeds, runs=runs, workers=workers, bound=bound)
-    check_numbers(0, LONGEST_MS, patience=patience)
+    [seeds, runs, workers, bound] = whole_numbers(
+        seeds=seeds, runs=runs, workers=workers, bound=bound
+    )
+    [patience] = whole_numbers(0, LONGEST_MS, patience=patience)
     path = None if output is None else check_path(output, "output")
     if isolate is not None:
         check_isolation(isolate)
@@ -127,9 +129,9 @@ def explore(
     """
     name = check_path(scenario, "scenario")
     path = None if output is None else check_path(output, "output")
-    check_numbers(needed=True, within=within, depth=depth, runs=runs)
-    check_numbers(workers=workers)
-    check_numbers(0, needed=True, step=step)
+    [within, depth, runs] = whole_numbers(needed=True, within=within, depth=depth, runs=runs)
+    [workers] = whole_numbers(workers=workers)
+    [step] = whole_numbers(0, needed=True, step=step)
     check_isolation(isolate)
     moved = tuple(texts_of(moves, "moves"))
     plan = ExplorationPlan(name, moved, within, depth, step, runs, policy, isolate)

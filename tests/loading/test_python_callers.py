@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from numpy import float32, int64
 
 import prima
 from prima import graph, report
@@ -373,3 +374,22 @@ def test_a_row_has_a_whole_number(number: Any) -> None:
     with pytest.raises(prima.UsageError) as again:
         made.row(number)
     assert str(again.value) == str(caught.value)
+
+
+def test_numbers_of_numpy_are_numbers(tmp_path: Path) -> None:
+    one: Any = int64(1)
+    two: Any = int64(2)
+    many: Any = int64(1000)
+    fast: Any = float32(1000)
+    made = prima.rehearse(SCENARIO, bound=two, patience=one, seed=one, isolate="none")
+    same = prima.rehearse(SCENARIO, bound=2, patience=1, seed=1, isolate="none")
+    assert made.dumps() == same.dumps()
+    assert made.row(two) == made.row(2)
+    journal = tmp_path / "t.jsonl"
+    live = prima.run_live(SCENARIO, speed=many, until=many, output=journal)
+    assert live.outcome == "until"
+    assert prima.run_live(SCENARIO, speed=fast, until=500).outcome == "until"
+    assert prima.sweep(SCENARIO, seeds=two, workers=one, isolate="none").num_rows == 2
+    assert prima.explore(SCENARIO, within=one, depth=one, runs=two, workers=one, isolate="none")
+    with pytest.raises(prima.UsageError, match="write a whole number from 0 to 999"):
+        prima.rehearse(SCENARIO, seed=-one)
