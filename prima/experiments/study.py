@@ -13,6 +13,7 @@ from prima.errors import UsageError
 from prima.errors.visible import visible
 from prima.messages import Json
 from prima.scheduler import policy as known
+from prima.testing.golden import golden_of, read_golden
 from prima.transcript.criteria import CRITERIA, HEADINGS, Criteria, shown_time
 from prima.transcript.diff import compare
 from prima.transcript.observer import observe
@@ -24,8 +25,6 @@ POLICIES = (
     *(f"prima+{extension}" for extension in (*known.EXTENSIONS, "all")),
 )
 """The policies that a study compares by default."""
-EXPECTED = ".txt"
-"""The suffix of the expected table beside a scenario."""
 
 
 @dataclass(slots=True)
@@ -84,13 +83,18 @@ def study(
 
 
 def _expected(path: Path) -> list[Row] | None:
-    table = path.with_suffix(EXPECTED)
+    """The rows of the table beside a scenario; None if there is none.
+
+    Raises:
+        UsageError: it is no table.
+    """
+    table = golden_of(path)
     if not table.is_file():
         return None
     try:
-        return read_table(table.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise UsageError(f"{table}: not a table of a transcript: {error}.") from None
+        return read_table(read_golden(table))
+    except (ValueError, IndexError):
+        raise UsageError(f"{table}: not a table of a transcript, as prima run prints it.") from None
 
 
 def _distance(expected: list[Row] | None, transcript: Transcript) -> tuple[int | None, int | None]:

@@ -65,3 +65,19 @@ def test_an_expected_table_that_is_none_is_told(tmp_path: Path) -> None:
     (tmp_path / "s.txt").write_text("nothing\n")
     with pytest.raises(UsageError, match="not a table"):
         list(study([scenario]))
+
+
+def test_a_table_that_begins_within_a_row_is_told(tmp_path: Path) -> None:
+    scenario = scenario_of(api.documents_folder() / "fa" / "emotions.xml", tmp_path)
+    head, row = "       No.  Time    Who  App  Behavior  Event\n", f'{"":30}"a text"\n'
+    (tmp_path / "s.txt").write_text(head + row)
+    with pytest.raises(UsageError, match="not a table of a transcript"):
+        list(study([scenario]))
+
+
+def test_an_expected_table_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
+    scenario = scenario_of(api.documents_folder() / "fa" / "emotions.xml", tmp_path)
+    table = api.rehearse(scenario, isolate="none").table().replace("\n", "\r\n")
+    (tmp_path / "s.txt").write_bytes(b"\xef\xbb\xbf" + table.encode())
+    [result] = study([scenario], ["prima"])
+    assert (result.distance, result.missing) == (0, 0)
