@@ -100,6 +100,7 @@ class Transcript:
         """
         from prima.transcript.table import format_rows
 
+        [columns] = whole_numbers(0, needed=True, columns=columns)
         return format_rows(self.rows(), why, columns)
 
     def summary(self) -> Summary:
@@ -211,23 +212,25 @@ def skim(path: str | Path) -> Transcript:
     Raises:
         UsageError: it cannot be read, or is not a transcript; the line is named.
     """
+    from prima.loading.files import check_name
     from prima.transcript.measures import Measure
     from prima.transcript.record import Entry
 
+    name = check_name(path)
     cut: list[str] = []
     kept: list[Record] = []
     measure = Measure()
 
     def entries() -> Iterator[Entry]:
-        for record in records_of(path, cut):
+        for record in records_of(name, cut):
             kept[1:] = [record]
             entry = Entry(record)
             measure.add(entry)
             yield entry
 
-    rows = rows_of(str(path), entries())
+    rows = rows_of(name, entries())
     return Transcript(
-        kept, str(path), outcome=outcome_of(kept), cut=" ".join(cut), measure=measure, made=rows
+        kept, name, outcome=outcome_of(kept), cut=" ".join(cut), measure=measure, made=rows
     )
 
 

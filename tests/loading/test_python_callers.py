@@ -14,7 +14,7 @@ import pytest
 from numpy import float32, int64
 
 import prima
-from prima import graph, report
+from prima import api, graph, report
 from tests import ROOT
 
 DOCUMENTS = ROOT / "documents"
@@ -136,6 +136,7 @@ def test_the_path_of_a_transcript_is_not_one(use: Callable[[str], object]) -> No
         prima.load,
         prima.load_scenario,
         prima.read,
+        api.skim,
         prima.rehearse,
         graph.picture,
         lambda path: prima.export(path, "csv", "a.csv"),
@@ -147,7 +148,9 @@ def test_what_is_no_path_is_told(use: Callable[[Any], object], given: object) ->
         use(given)
 
 
-@pytest.mark.parametrize("use", [prima.load, prima.load_scenario, prima.read, graph.picture])
+@pytest.mark.parametrize(
+    "use", [prima.load, prima.load_scenario, prima.read, api.skim, graph.picture]
+)
 def test_a_number_is_no_file_that_happens_to_be_open(
     use: Callable[[Any], object], tmp_path: Path
 ) -> None:
@@ -240,6 +243,9 @@ def test_records_of_a_live_run_that_were_not_kept_are_named() -> None:
     ("call", "given", "told"),
     [
         (prima.explain, {"code": 5}, "code=5: write a text."),
+        (MADE.table, {"columns": "80"}, "columns='80': write a whole number from 0."),
+        (MADE.table, {"columns": None}, "columns=None: write a whole number from 0."),
+        (MADE.table, {"columns": 80.5}, "columns=80.5: write a whole number from 0."),
         (graph.picture, {"path": FOLLOW, "to": None}, "to=None: write a text."),
         (graph.picture, {"path": FOLLOW, "what": 5}, "what=5: write a text."),
         (prima.export, {"to": b"csv", "output": "a.csv"}, "to=b'csv': write a text."),
