@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
-from io import TextIOBase
 from os.path import exists, isfile, samefile
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, cast
@@ -45,9 +44,7 @@ def export(
     from prima.loading.files import check_name, check_text, check_texts
 
     check_text(to, "to")
-    if isinstance(output, TextIOBase):
-        raise UsageError('output takes bytes: open the file with mode "wb".')
-    path = None if hasattr(output, "write") else check_name(output)
+    path = None if _is_stream(output) else check_name(output)
     tags = checked(to, check_texts({} if languages is None else languages, "languages"))
     held = _in_memory(transcript)
     name = held.name if held else check_name(transcript)
@@ -64,6 +61,23 @@ def export(
         write(to, made, records([]), tags, __version__, stream)
     early = ends_early(name, made.end / 1000) if made.head and not made.over and not cut else ""
     return Exported(len(made.tiers), made.marks, made.end / 1000, " ".join(cut), early)
+
+
+def _is_stream(output: object) -> bool:
+    """Whether an output is a stream, and not a path.
+
+    Raises:
+        UsageError: it is a stream that takes no bytes, or is closed.
+    """
+    if not hasattr(output, "write"):
+        return False
+    if hasattr(output, "encoding"):
+        raise UsageError('output takes bytes: open the file with mode "wb".')
+    if getattr(output, "closed", False):
+        raise UsageError("output is closed: export to it while it is open.")
+    if hasattr(output, "writable") and not output.writable():
+        raise UsageError('output can only be read: open the file with mode "wb".')
+    return True
 
 
 def _in_memory(transcript: Transcript | str | Path) -> Transcript | None:

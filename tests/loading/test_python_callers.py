@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import nan
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 from typing import Any
 
 import pytest
@@ -206,6 +207,25 @@ def test_no_transcript_is_overwritten_by_what_is_made_from_it(tmp_path: Path) ->
         with pytest.raises(prima.UsageError, match="this is the transcript itself: name another"):
             prima.export(path, "csv", output)
     assert path.read_text(encoding="utf-8") == text
+
+
+@pytest.mark.parametrize("to", ["csv", "eaf", "mcap"])
+def test_no_export_is_written_to_a_stream_that_takes_none(to: str, tmp_path: Path) -> None:
+    made = prima.rehearse(SCENARIO, isolate="none")
+    (tmp_path / "a").write_bytes(b"kept")
+    stream = (tmp_path / "a").open("rb")
+    with pytest.raises(prima.UsageError, match="output can only be read: open the file with"):
+        prima.export(made, to, stream)
+    stream.close()
+    with pytest.raises(prima.UsageError, match="output is closed: "):
+        prima.export(made, to, stream)
+    closed = io.BytesIO()
+    closed.close()
+    with pytest.raises(prima.UsageError, match="output is closed: "):
+        prima.export(made, to, closed)
+    with NamedTemporaryFile("w") as text, pytest.raises(prima.UsageError, match="takes bytes: "):
+        prima.export(made, to, text)  # type: ignore[arg-type]
+    assert (tmp_path / "a").read_bytes() == b"kept"
 
 
 def test_codes_are_explained_and_similar_ones_named() -> None:
