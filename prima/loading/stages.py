@@ -92,12 +92,10 @@ def _problems(given: list[tuple[str, str]], loaded: Loaded) -> Iterator[Problem]
 
 def _scenario(world: str, robot: str, entrances: bool, inside: str) -> bytes:
     """The text of the scenario."""
-    from html import escape
-
     taken_up = ' entrances="open"' if entrances else ""
     return (
         '<scenario xmlns="urn:prima:scenario:1" version="1.0" id="stage"'
-        f' world="{escape(world)}" robot="{escape(robot)}"{taken_up}>{inside}</scenario>'
+        f" world={_quoted(world)} robot={_quoted(robot)}{taken_up}>{inside}</scenario>"
     ).encode()
 
 
@@ -109,7 +107,6 @@ def _applications(given: list[tuple[str, str]], maps: Iterable[str]) -> str:
     Raises:
         UsageError: a mapping is invalid, or no VoiceXML application is in its folder.
     """
-    from html import escape
 
     from prima.voicexml.site import mapped
 
@@ -118,9 +115,25 @@ def _applications(given: list[tuple[str, str]], maps: Iterable[str]) -> str:
     made = ""
     for kind, path in given:
         site = mapped(path, held) if path in voice else None
-        served = f' uri="{escape(site[0])}" folder="{escape(site[1])}"' if site else ""
-        made += f'<application src="{escape(path)}" kind="{kind}"{served}/>'
+        served = f" uri={_quoted(site[0])} folder={_quoted(site[1])}" if site else ""
+        made += f'<application src={_quoted(path)} kind="{kind}"{served}/>'
     return made
+
+
+def _quoted(name: str) -> str:
+    """A file's name as an attribute's value.
+
+    Raises:
+        UsageError: it holds a character that no document can hold.
+    """
+    from xml.sax.saxutils import quoteattr
+
+    if re.search(UNFIT, name):
+        raise UsageError(
+            f"{name!r}: the name of this file holds a control character, or is not UTF-8."
+            " Rename it."
+        )
+    return quoteattr(name)
 
 
 def _answers(says: str | Iterable[str]) -> str:
