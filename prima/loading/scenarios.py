@@ -16,7 +16,7 @@ from prima.errors import (
     in_order,
 )
 from prima.loading.applications import digest
-from prima.loading.files import read_file
+from prima.loading.files import check_path, read_file
 from prima.loading.reading import Reading
 from prima.markup.collecting import seldom_collected
 
@@ -36,7 +36,7 @@ class Loaded:
     """Warnings of all these files."""
 
 
-def load_scenario(path: str | Path, robot: str = "") -> Loaded:
+def load_scenario(path: str | Path, robot: str | Path | None = None) -> Loaded:
     """Load a scenario with its world, robot and applications.
 
     Args:
@@ -45,9 +45,10 @@ def load_scenario(path: str | Path, robot: str = "") -> Loaded:
 
     Raises:
         DocumentError: with the problems of all files, if any is an error.
-        UsageError: the scenario's file cannot be read.
+        UsageError: the scenario's file, or the robot's, cannot be read.
     """
-    return load_text(path, read_file(path), robot)
+    named = check_path("" if robot is None else robot, "robot")
+    return load_text(path, read_file(path), named)
 
 
 def load_text(path: str | Path, data: bytes, robot: str = "") -> Loaded:

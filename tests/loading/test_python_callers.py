@@ -281,6 +281,8 @@ def test_records_of_a_live_run_that_were_not_kept_are_named() -> None:
         (prima.stage, {"fas": FOLLOW, "eas": [], "says": [5]}, "says=5: write a text."),
         (prima.rehearse, {"scenario": SCENARIO, "hosts": [5]}, "hosts=5: write a text."),
         (prima.rehearse, {"scenario": SCENARIO, "sink": 5}, "sink=5: write a function."),
+        (prima.load_scenario, {"path": SCENARIO, "robot": 0}, "robot=0: write a path,"),
+        (prima.load_scenario, {"path": SCENARIO, "robot": b""}, "robot=b'': write a path,"),
         (prima.run_live, {"scenario": SCENARIO, "warn": "x"}, "warn='x': write a function."),
         (prima.run_live, {"scenario": SCENARIO, "maps": 5}, "maps=5: write a text."),
         (prima.run_live, {"scenario": SCENARIO, "output": 5}, "output=5: write a path,"),
@@ -370,6 +372,9 @@ def test_a_path_of_any_kind_is_one(tmp_path: Path) -> None:
     prima.export(journal, "csv", table)
     assert prima.load(app).file == str(FOLLOW)
     assert prima.validate(app) == prima.validate(FOLLOW)
+    robot: Any = Named(str(DOCUMENTS / "robots" / "papero.xml"))
+    for other in (robot, Path(robot.name), None):
+        assert prima.load_scenario(SCENARIO, robot=other).cast.robot.id == "papero"
     assert prima.stage(app, []).files == prima.stage(FOLLOW, []).files
     prima.run_live(scenario, output=Named(str(tmp_path / "live.jsonl")), speed=1000)  # type: ignore[arg-type]
     assert {one.name for one in tmp_path.iterdir()} == {"t.jsonl", "t.csv", "live.jsonl"}
