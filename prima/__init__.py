@@ -59,3 +59,7 @@ def __getattr__(name: str) -> Any:
 
         return getattr(import_module(ELSEWHERE.get(name, "prima.api")), name)
     raise AttributeError(f"module 'prima' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

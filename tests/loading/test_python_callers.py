@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import pickle
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import nan
@@ -226,6 +228,13 @@ def test_no_export_is_written_to_a_stream_that_takes_none(to: str, tmp_path: Pat
     with NamedTemporaryFile("w") as text, pytest.raises(prima.UsageError, match="takes bytes: "):
         prima.export(made, to, text)  # type: ignore[arg-type]
     assert (tmp_path / "a").read_bytes() == b"kept"
+
+
+def test_a_console_completes_what_the_package_gives() -> None:
+    """Python's console completes by ``dir``, before anything is imported."""
+    code = "import prima; print(set(prima.__all__) - set(dir(prima)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "set()\n"
 
 
 def test_codes_are_explained_and_similar_ones_named() -> None:
