@@ -69,7 +69,7 @@ class IgnoreList:
         self.file = file
         self.used = False
         self._root = os.path.realpath(os.path.dirname(file) or ".")
-        self._patterns = [pattern.rstrip("/") for pattern in patterns]
+        self._patterns = [_glob(_from(self._root, pattern)) for pattern in patterns]
 
     @classmethod
     def of(cls, folder: str) -> IgnoreList:
@@ -89,10 +89,20 @@ class IgnoreList:
         """Whether a file or folder is excluded."""
         if not self._patterns:
             return False
-        inside = os.path.relpath(os.path.realpath(path), self._root).replace(os.sep, "/")
+        inside = _from(self._root, os.path.realpath(path))
         left = any(fnmatchcase(inside, pattern) for pattern in self._patterns)
         self.used = self.used or left
         return left
+
+
+def _from(folder: str, path: str) -> str:
+    """A path from a folder on, with ``/``; a relative one begins there."""
+    return os.path.relpath(os.path.join(folder, path), folder).replace(os.sep, "/")
+
+
+def _glob(path: str) -> str:
+    """A pattern for :mod:`fnmatch` in which only ``*`` matches other letters."""
+    return re.sub(r"[?[]", r"[\g<0>]", path)
 
 
 def _patterns(file: Path) -> list[str]:

@@ -185,6 +185,20 @@ def test_a_project_says_what_is_no_test(workshop: Path) -> None:
         find(["more"])
 
 
+@pytest.mark.parametrize("way", ["./drafts", "more/../drafts", "./drafts/*.xml"])
+def test_a_path_of_any_spelling_is_no_test(way: str, workshop: Path) -> None:
+    ignoring(workshop, f'ignore = ["{way}"]')
+    assert find(["."]) == ["own.xml", "more/wrong-b.xml"]
+
+
+def test_only_a_star_matches_other_letters(workshop: Path) -> None:
+    for name in ("hall[1]", "hall?", "hall1"):
+        (workshop / "drafts").joinpath(name).mkdir()
+        shutil.copyfile("own.xml", workshop / "drafts" / name / "a.xml")
+    ignoring(workshop, 'ignore = ["more", "own.xml", "drafts/a.xml", "*/hall[1]", "*/hall?"]')
+    assert find(["."]) == ["drafts/hall1/a.xml"]
+
+
 @pytest.mark.parametrize(
     ("settings", "told"),
     [
