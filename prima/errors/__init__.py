@@ -89,4 +89,8 @@ class MissingFile(UsageError):
 
 
 class RunError(PrimaError):
-    """A run was ended by an error or a limit; its records are kept."""
+    """A run cannot begin or go on, as if no process can be started or a robot is out of reach.
+
+    Functions that give a transcript do not raise it where a run exceeds its limits: ``outcome`` of
+    the transcript is ``limit`` then.
+    """
