@@ -89,7 +89,7 @@ class MissingFile(UsageError):
 
 
 class RunError(PrimaError):
-    """A run cannot begin or go on, as if no process can be started or a robot is out of reach.
+    """A run cannot begin or go on: no process can be started, or a robot is out of reach.
 
     Functions that give a transcript do not raise it where a run exceeds its limits: ``outcome`` of
     the transcript is ``limit`` then.
