@@ -16,6 +16,7 @@ from prima.loading.kinds import is_voicexml
 from prima.loading.reading import STAGE, other_kind
 from prima.loading.scenarios import Loaded, load_whole, without_ignored
 from prima.loading.voicedocuments import mappings
+from prima.markup.edits import quoted
 
 if TYPE_CHECKING:
     from prima.sim.map import Map
@@ -107,7 +108,6 @@ def _applications(given: list[tuple[str, str]], maps: Iterable[str]) -> str:
     Raises:
         UsageError: a mapping is invalid, or no VoiceXML application is in its folder.
     """
-
     from prima.voicexml.site import mapped
 
     voice = {path for _, path in given if is_voicexml(read_file(path))}
@@ -126,14 +126,12 @@ def _quoted(name: str) -> str:
     Raises:
         UsageError: it holds a character that no document can hold.
     """
-    from xml.sax.saxutils import quoteattr
-
     if re.search(UNFIT, name):
         raise UsageError(
             f"{name!r}: the name of this file holds a control character, or is not UTF-8."
             " Rename it."
         )
-    return quoteattr(name)
+    return quoted(name)
 
 
 def _answers(says: str | Iterable[str]) -> str:
@@ -174,14 +172,11 @@ def _site(world: str) -> Map:
 
 def _standing(there: Map) -> str:
     """The robot at a world's first place, and the user a metre in front of it."""
-    from html import escape
     from math import cos, radians, sin
 
     name, (x, y) = next(iter(there.places.items()))
     angle = radians(there.headings[name])
-    return (
-        f'<robot at="{escape(name)}"/><person x="{x + cos(angle):.3f}" y="{y + sin(angle):.3f}"/>'
-    )
+    return f'<robot at={quoted(name)}/><person x="{x + cos(angle):.3f}" y="{y + sin(angle):.3f}"/>'
 
 
 def _refuse_same_id(given: list[tuple[str, str]]) -> None:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from html import escape
 from typing import NamedTuple
-from xml.sax.saxutils import escape
 
 from prima.markup.tree import MARKUP, NAME, Node
 
 DECLARATION = re.compile(r"\A<\?xml[^>]*\?>")
+SPACES = {ord(space): f"&#{ord(space)};" for space in "\t\n\r"}
 
 
 class TextEdit(NamedTuple):
@@ -20,17 +21,22 @@ class TextEdit(NamedTuple):
     text: str
 
 
+def quoted(value: str) -> str:
+    """An attribute's value in quotes; its tabs and line breaks stay what they are (XML, 3.3.3)."""
+    return f'"{escape(value).translate(SPACES)}"'
+
+
 def set_attribute(node: Node, name: str, value: str) -> TextEdit:
     """Set an attribute; an empty value removes it."""
-    text, quoted = node.source.text, escape(value, {'"': "&quot;", "\n": "&#10;", "\t": "&#9;"})
+    text = node.source.text
     if name not in node.attributes:
         tag = NAME.match(text, node.source.tag(node.index))
         assert tag is not None  # a node has a start tag
-        return TextEdit(tag.end(), tag.end(), f' {name}="{quoted}"' if value else "")
+        return TextEdit(tag.end(), tag.end(), f" {name}={quoted(value)}" if value else "")
     begin = node.source.offset(node.index, name)
     inside = node.source.offset(node.index, name, value=True)
     end = text.index(text[inside - 1], inside) + 1
-    return TextEdit(begin, end, f'{name}="{quoted}"' if value else "")
+    return TextEdit(begin, end, f"{name}={quoted(value)}" if value else "")
 
 
 def set_text(node: Node, value: str) -> TextEdit:
@@ -48,8 +54,8 @@ def set_text(node: Node, value: str) -> TextEdit:
     if not value:
         return TextEdit(begin, start.end() if close is None else text.index(">", close) + 1, "")
     if close is None:
-        return TextEdit(start.end() - 2, start.end(), f">{escape(value)}</{node.tag}>")
-    return TextEdit(start.end(), close - 2, escape(value))
+        return TextEdit(start.end() - 2, start.end(), f">{escape(value, quote=False)}</{node.tag}>")
+    return TextEdit(start.end(), close - 2, escape(value, quote=False))
 
 
 def edited(text: str, edits: Iterable[TextEdit]) -> bytes:
