@@ -160,13 +160,16 @@ def whole_rows(path: Path, made: Sequence[Column]) -> int:
         OSError: it cannot be read or written.
         UsageError: it is another table, or is damaged.
     """
-    end = size = quotes = 0
+    end = size = quotes = rows = 0
     with path.open("rb+") as stream:
         for data in stream:
             size += len(data)
             quotes += data.count(b'"')
             if data.endswith(b"\r\n") and quotes % 2 == 0:  # else a cell goes on in the next line
-                end = size
+                end, rows = size, rows + 1
+            elif rows and data.startswith(b"%d," % rows):  # only the last row may be incomplete
+                message = f"run {rows - 1} has a quotation mark too many or too few"
+                raise UsageError(f"{path}: not the table of a sweep: {message}.")
         stream.truncate(end)
     if not end:
         return 0

@@ -213,6 +213,7 @@ def _changed(column: int, cell: str) -> Callable[[list[str]], list[str]]:
         (_changed(0, ""), "run 1 is missing"),
         (_changed(9, "../../evil"), "run 1 does not have the signature of an order"),
         (_changed(9, "a,b"), "line 3 has "),
+        (_changed(2, 'pri"ma'), "run 1 has a quotation mark too many or too few"),
         (_changed(1, "x" * 200_000), "line 3: field larger than field limit"),
     ],
 )
