@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from prima.messages import Ended, Fetched, Inbound
+from prima.messages import Fetched, Inbound
 from prima.sim.telephone import Telephone
 from prima.voicexml.document import FetchError, VoiceDocument
 from prima.voicexml.reading import read_page
@@ -73,39 +73,6 @@ class Call(Bench):
         if isinstance(found, int):
             return Fetched(app, serial, uri, status=found, problem="there is no such thing")
         return Fetched(app, serial, uri, found) if found is not None else None
-
-    def play(self) -> list[str]:
-        """Let everything that is said come to its end; gives all that has been said so far."""
-        for _ in range(1000):
-            speaking = self._speaking()
-            if not speaking:
-                break
-            self.step(*[Ended(behavior) for behavior in speaking])
-        return self.said()
-
-    def _speaking(self) -> list[str]:
-        running = self.session.mediator.memory.running
-        return [ab.id for ab in running.values() if ab.command and ab.command.type != "q-and-a"]
-
-    def answer(self, *utterances: str) -> None:
-        """Say something to each question that comes, once it has been said."""
-        for text in utterances:
-            self.play()
-            self.listens()
-            self.hears(text)
-        self.play()
-
-    def silent(self) -> None:
-        """Say nothing to the question that comes."""
-        self.play()
-        self.silence()
-        self.play()
-
-    @property
-    def ended(self) -> str:
-        """How the application has ended: ``exit``, an event's name, or nothing if it runs."""
-        found = [r for r in self.phases("unload") if r["actor"] == "mediator"]
-        return str(found[0]["outcome"]) if found else ""
 
 
 class Online(Call):

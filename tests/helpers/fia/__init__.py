@@ -1,0 +1,1 @@
+"""The Form Interpretation Algorithm once more, simply, and documents to try both on."""
