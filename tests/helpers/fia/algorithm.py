@@ -127,6 +127,8 @@ class Dialog:
     def __init__(self, page: Page, form: El, params: Mapping[str, Value]) -> None:
         self.page, self.run, self.form = page, page.run, form
         self.items = form.all(*ITEMS) if form.tag == "form" else [form]
+        self.local: dict[str, Value] = {}
+        """The variables of the content that runs."""
         self.values: dict[str, Value] = {
             one.name: params.get(one.name, 0) for one in form.all("var")
         }
@@ -346,6 +348,14 @@ class Dialog:
     # Content -------------------------------------------------------------------------
 
     def execute(self, content: Iterable[El | str]) -> None:
+        """Run the content of an item or handler, which has variables of its own."""
+        self.local = {}
+        try:
+            self.go_through(content)
+        finally:
+            self.local = {}
+
+    def go_through(self, content: Iterable[El | str]) -> None:
         for one in content:
             self.run.step()
             assert isinstance(one, El)
@@ -356,6 +366,8 @@ class Dialog:
                     self.run.said.append(str(one.holds[0]))
                 case "if":
                     self.choose(one)
+                case "var":
+                    self.local[one.name] = self.value(one, "expr")
                 case "assign":
                     self.scope(one.name)[one.name] = self.value(one, "expr")
                 case "clear":
@@ -384,7 +396,7 @@ class Dialog:
         first = [part for part in one.holds if part not in branches]
         for head, content in ((one, first), *((each, each.holds) for each in branches)):
             if self.holds(head):
-                self.execute(content)
+                self.go_through(content)
                 return
 
     def clear(self, listed: Sequence[str]) -> None:
@@ -400,11 +412,12 @@ class Dialog:
 
     def value(self, one: El, attribute: str) -> Value:
         code = one.code(attribute)
-        return code.of({**self.page.root, **self.page.values, **self.values}) if code else None
+        scopes = {**self.page.root, **self.page.values, **self.values, **self.local}
+        return code.of(scopes) if code else None
 
     def scope(self, name: str) -> dict[str, Value]:
         """The innermost scope that declares a variable."""
-        scopes = (self.values, self.page.values, self.page.root)
+        scopes = (self.local, self.values, self.page.values, self.page.root)
         return next(one for one in scopes if name in one)
 
 

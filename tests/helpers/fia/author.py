@@ -263,6 +263,11 @@ class Author:
 
     def content(self, depth: int = 0) -> list[El]:
         made: list[El] = [self.log()]
+        seen = self.numbers
+        if self.chance(0.2):
+            name = self.random.choice(("lv", *self.numbers))  # it may hide a wider one
+            made.append(El("var", {"name": name, "expr": self.number()}))
+            self.numbers = [*self.numbers, name, name]
         for _ in range(self.random.randint(0, 2)):
             kinds = [self.add] if self.beside_others else [self.say, self.say, self.add]
             if self.fields:
@@ -272,6 +277,7 @@ class Author:
             made.append(self.random.choice(kinds)())
         if self.chance(0.25 if depth == 0 else 0.4):
             made.append(self.leave())
+        self.numbers = seen  # a branch may not be taken
         return made
 
     def say(self) -> El:
