@@ -112,5 +112,5 @@ def never_equal(found: Compared, at: At, values: Collection[str] | None) -> Prob
     else:
         plain = filter(PLAIN.fullmatch, values) if PLAIN.fullmatch(found.text) else ()
         hint = suggestion(found.text, plain, Span.of(at(found.start + 1), found.text))
-        hint = hint or Hint(f"It is {one_of(values, MOST)}.")
+        hint = hint or Hint(f"It is {one_of(values, MOST)}." if values else "")
     return NEVER_EQUAL.at(at(found.start), hint, field=found.name, text=found.text)

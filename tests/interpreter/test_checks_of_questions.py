@@ -90,6 +90,27 @@ def test_a_comparison_with_what_no_answer_gives_is_told(answers: str, cond: str,
 
 
 @pytest.mark.parametrize(
+    ("answers", "told"),
+    [
+        (OPTIONS, "It is Coffee or tea."),
+        (GRAMMAR, "It is coffee or green."),
+        ("<grammar>tea <item repeat='0-1'>please</item></grammar>", "It is tea or tea please."),
+        (
+            "<grammar><one-of><item>black</item><item>milk</item></one-of></grammar>",
+            'Did you mean "milk"?',
+        ),
+        ('<grammar><one-of><item>tea <tag>""</tag></item></one-of></grammar>', 'It is "".'),
+    ],
+)
+def test_the_values_that_answers_give_are_told(answers: str, told: str) -> None:
+    field = f'<field name="x"><prompt>Tea?</prompt>{answers}<noinput><exit/></noinput></field>'
+    asked = """<block cond="x == 'mlik'"><speak>Good.</speak></block><block><exit/></block>"""
+    _, problems = read_document("app.xml", APP.format(form("a", field + asked)).encode())
+    (found,) = [one for one in problems if one.code == "never-equal"]
+    assert found.remedy == told
+
+
+@pytest.mark.parametrize(
     ("grammar", "code"),
     [
         ("[please] tea", "bad-token"),

@@ -28,8 +28,8 @@ def check_comparisons(facts: Facts) -> Iterator[Problem]:
         if id(field) not in values:
             values[id(field)] = _values(field)
         if not _possible(field, found.text, values[id(field)]):
-            answers = None if field.answers.type else values[id(field)]
-            yield never_equal(found, partial(place_in, expr), answers)
+            given = None if field.answers.type else values[id(field)] | _said(field)
+            yield never_equal(found, partial(place_in, expr), given)
 
 
 def _compared(facts: Facts) -> Iterator[tuple[Expression, Compared, Field]]:
@@ -97,6 +97,14 @@ def _possible(field: Field, text: str, values: set[str]) -> bool:
         return True
     said = Answers(grammars=field.answers.grammars).match(text)
     return said is not None and fold(str(said)) == fold(text)
+
+
+def _said(field: Field) -> set[str]:
+    """Values of some answers that the field's grammars take."""
+    from prima.grammar.phrases import phrases  # few documents have such a mistake
+
+    answers = Answers(grammars=field.answers.grammars)
+    return {str(answers.match(phrase)) for phrase in phrases(answers)}
 
 
 def _values(field: Field) -> set[str]:
