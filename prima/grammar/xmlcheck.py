@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from functools import partial
 
-from prima.errors import Hint, one_of, suggestion, with_article
+from prima.errors import Hint, suggestion, with_article
 from prima.grammar.errors import Problems
 from prima.grammar.values import is_language
 from prima.grammar.vocabulary import GRAMMAR, SRGS
-from prima.markup.hints import inside_itself
+from prima.markup.hints import allowed_in, inside_itself
 from prima.markup.spans import name_spans, similar_attribute
 from prima.markup.tree import Node
 
@@ -96,7 +96,7 @@ def _remedy(tag: str, parent: str) -> str:
         return _put_into(holder)
     if tag == parent:
         return inside_itself(tag)
-    return f"It is allowed in {one_of(f'<{one}>' for one in others)}." if others else ""
+    return allowed_in(f"<{one}>" for one in others) if tag in GRAMMAR.tags else ""
 
 
 def _put_into(tag: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 from prima.errors import nearest_word, one_of, with_article
 from prima.language.values import DRAWABLE, read_value
@@ -220,6 +220,14 @@ def held(parent: Node, inside: Collection[str]) -> str:
     return f"<{parent.tag}> may hold {few}." if few else f"<{parent.tag}> holds no elements."
 
 
+def allowed_in(parents: Iterable[str]) -> str:
+    """The remedy for an element that may only be elsewhere; a root element has no parents."""
+    listed = one_of(parents)
+    return (
+        f"It is allowed in {listed}." if listed else "It begins a document: give it its own file."
+    )
+
+
 def inside_itself(tag: str) -> str:
     """The remedy for an element inside another of its name, which is most likely unclosed."""
     return f"Close the first <{tag}> before this one."
@@ -259,4 +267,4 @@ def misplaced_remedy(tag: str, parent: Node, vocabulary: Vocabulary) -> str:
         return into
     if set(allowed) & set(vocabulary.parents(parent.tag)):
         return f"Move it out of the <{parent.tag}>."
-    return INSTEAD.get(tag) or f"It is allowed in {one_of(allowed)}."
+    return INSTEAD.get(tag) or allowed_in(allowed)

@@ -21,6 +21,7 @@ GRAMMAR = f'<grammar xmlns="{SRGS}" version="1.0" xml:lang="en" root="r">{{}}<ru
         ("", 'a<rule id="q">b</rule>', "<rule> is not allowed in <rule>.", "Close the first <rule> before this one."),
         ("", "a<lexicon uri='l'/>", "<lexicon> is not allowed in <rule>.", "It is allowed in <grammar>."),
         ("", "a<tag><example/></tag>", "<example> is not allowed in <tag>.", "It is allowed in <rule>."),
+        ("", "a<grammar/>", "<grammar> is not allowed in <rule>.", "It begins a document: give it its own file."),
         ("", "<token>a<b/></token>", "<b> is not allowed in <token>.", ""),
         ("", "<item xmlns=''>a</item>", "<item> is in another namespace than <rule>.", f'Declare xmlns="{SRGS}".'),
         ("", "<ruleref special='NULL'>a</ruleref>", "Text is not allowed in <ruleref>.", "Remove it."),

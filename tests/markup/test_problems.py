@@ -71,6 +71,7 @@ WAITS = """<form id="a"><field name="f"><prompt timeout="{}">Hi?</prompt><option
         ('<form id="a"><block><speek>Hi</speek></block></form>', "unknown-element", '"speak"'),
         ('<form id="a"><catch event="x"/></form>', "unknown-element", '<on event="...">'),
         ('<form id="a"><speak>Hi</speak></form>', "misplaced-element", "block"),
+        ('<form id="a"><block><prima/></block></form>', "misplaced-element", "It begins a document: give it its own file."),
         ('<form id="a"><block tame="x"/></form>', "unknown-attribute", '"name"'),
         ('<form id="a"><field name="x"><opt>a</opt></field></form>', "unknown-element", '"option"'),
         ('<form id="ask"><block><goto next="#aks"/></block></form>', "no-such-form", '"ask"'),

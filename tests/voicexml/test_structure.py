@@ -139,6 +139,7 @@ def test_problems_have_a_place(text: str, found: list[str]) -> None:
         ("<field name='f'/>", "Put it into a <form>."),
         ("<form><form/></form>", "Close the first <form> before this one."),
         ("<form><block><field name='f'/></block></form>", "It is allowed in form."),
+        ("<form><block><vxml/></block></form>", "It begins a document: give it its own file."),
     ],
 )
 def test_a_misplaced_element_is_told_where_it_belongs(body: str, remedy: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from prima.errors import Hint, Problem, few, meant, nearest_word, one_of
+from prima.errors import Hint, Problem, few, meant, nearest_word
 from prima.errors.diagnoses.structure import (
     MISPLACED_ELEMENT,
     STRAY_TEXT,
@@ -10,7 +10,7 @@ from prima.errors.diagnoses.structure import (
     WRONG_NAMESPACE,
 )
 from prima.grammar.vocabulary import SRGS
-from prima.markup.hints import inside_itself, put_into
+from prima.markup.hints import allowed_in, inside_itself, put_into
 from prima.markup.spans import name_spans, renamed
 from prima.markup.tree import Node
 from prima.markup.vocabulary import Instead
@@ -62,9 +62,7 @@ IGNORED = WRONG_NAMESPACE.says(
     '<{tag}> is of another namespace, "{namespace}".', "It is ignored.", "warning"
 )
 UNKNOWN_HERE = UNKNOWN_ELEMENT.says("There is no <{tag}> in VoiceXML.", "Remove it.")
-NOT_HERE = MISPLACED_ELEMENT.says(
-    "<{tag}> is not allowed in {holder}.", "It is allowed in {others}."
-)
+NOT_HERE = MISPLACED_ELEMENT.says("<{tag}> is not allowed in {holder}.")
 
 
 def check_tree(root: Node) -> list[Problem]:
@@ -132,10 +130,10 @@ def _misplaced(child: Node, node: Node) -> Problem:
     if child.tag not in VOICEXML.tags:
         return UNKNOWN_HERE.at(child.place, _known_instead(child), tag=child.tag)
     around = put_into(child.tag, node, VOICEXML, USUAL)
-    hint = Hint(inside_itself(child.tag) if child.tag == node.tag else around)
-    others = one_of(tag for tag in VOICEXML.parents(child.tag) if tag != node.tag)
+    others = (tag for tag in VOICEXML.parents(child.tag) if tag != node.tag)
+    hint = Hint(inside_itself(child.tag) if child.tag == node.tag else around or allowed_in(others))
     holder = HOLDERS.get(node.key, f"<{node.tag}>")
-    return NOT_HERE.at(child.place, hint, tag=child.tag, holder=holder, others=others)
+    return NOT_HERE.at(child.place, hint, tag=child.tag, holder=holder)
 
 
 def _known_instead(child: Node) -> Hint:
