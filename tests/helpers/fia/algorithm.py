@@ -67,8 +67,7 @@ class Run:
         self, documents: Mapping[str, El], answers: Iterable[str | None], voice: bool
     ) -> None:
         self.documents = documents
-        self.given = [*answers]
-        self.answers = [*self.given]
+        self.answers = [*answers]
         self.voice = voice
         self.said: list[str] = []
         self.logs: list[str] = []
