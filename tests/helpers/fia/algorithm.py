@@ -368,7 +368,8 @@ class Dialog:
                 case "var":
                     self.local[one.name] = self.value(one, "expr")
                 case "assign":
-                    self.scope(one.name)[one.name] = self.value(one, "expr")
+                    plain = one.name.rpartition(".")[2]
+                    self.scope(one.name)[plain] = self.value(one, "expr")
                 case "clear":
                     self.clear(one.get("namelist").split())
                 case "reprompt":
@@ -411,13 +412,25 @@ class Dialog:
 
     def value(self, one: El, attribute: str) -> Value:
         code = one.code(attribute)
-        scopes = {**self.page.root, **self.page.values, **self.values, **self.local}
-        return code.of(scopes) if code else None
+        if code is None:
+            return None
+        seen = {**self.page.root, **self.page.values, **self.values, **self.local}
+        for name, scope in self.scopes.items():
+            seen |= {f"{name}.{one}": value for one, value in scope.items()}
+        return code.of(seen)
+
+    @property
+    def scopes(self) -> dict[str, dict[str, Value]]:
+        """The scopes that have names, the widest first (5.1.2)."""
+        return {"application": self.page.root, "document": self.page.values, "dialog": self.values}
 
     def scope(self, name: str) -> dict[str, Value]:
-        """The innermost scope that declares a variable."""
-        scopes = (self.local, self.values, self.page.values, self.page.root)
-        return next(one for one in scopes if name in one)
+        """The scope that a name says, or the innermost that declares it."""
+        head, dot, _ = name.rpartition(".")
+        if dot:
+            return self.scopes[head]
+        some = (self.local, self.values, self.page.values, self.page.root)
+        return next(one for one in some if name in one)
 
 
 def names(handler: El, event: str) -> list[str]:

@@ -228,14 +228,20 @@ class Author:
     def constant(self, text: str, value: Value) -> Code:
         return Code(text, lambda _: value)
 
-    def number(self) -> Code:
+    def named(self) -> str:
+        """A variable with a number, sometimes by the name of its scope."""
         name = self.random.choice(self.numbers)
+        scope = {"av": "application", "dv": "document", "fv": "dialog"}.get(name)
+        return f"{scope}.{name}" if scope and self.chance(0.25) else name
+
+    def number(self) -> Code:
+        name = self.named()
         if self.chance(0.3):
             return Code(name, lambda values: values[name])
         return Code(f"{name} + 1", lambda values: as_number(values[name]) + 1)
 
     def condition(self) -> Code:
-        name, least = self.random.choice(self.numbers), self.random.randint(0, 3)
+        name, least = self.named(), self.random.randint(0, 3)
         kinds = [
             Code(f"{name} < {least}", lambda values: as_number(values[name]) < least),
             Code(f"{name} >= {least}", lambda values: as_number(values[name]) >= least),
@@ -284,7 +290,7 @@ class Author:
         return El("say", {}, [self.new("p")])
 
     def add(self) -> El:
-        name = self.random.choice(self.numbers)
+        name = self.named()
         more = Code(f"{name} + 1", lambda values: as_number(values[name]) + 1)
         return El("assign", {"name": name, "expr": more})
 
