@@ -87,7 +87,7 @@ class Items:
         """Once input is waited for, ``application.lastresult$`` is undefined, in callers too (5.1.5)."""
         waiting: Context | None = context
         while waiting is not None:
-            if self.engine.has(waiting.application, "lastresult$"):
+            if self.engine.defined(waiting.application, "lastresult$"):
                 self.engine.unset(waiting.application, "lastresult$")
             waiting = waiting.caller
 

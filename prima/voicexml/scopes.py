@@ -74,6 +74,7 @@ class Documents:
         self.engine.put(scope, "document", scope)
         if context.application is scope:
             self.engine.put(scope, "application", scope)
+            self.engine.unset(scope, "lastresult$")  # nothing has been heard yet (5.1.5)
         context.dialog = self.engine.named("dialog")
         for node in page.root.all("var", "script", "data"):
             yield from self.declare(node, scope, context)

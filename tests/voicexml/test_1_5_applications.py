@@ -272,6 +272,15 @@ def test_variables_of_a_leaf_do_not_outlive_it() -> None:  # 1.5.2
     assert call.logs() == ["undefined"]
 
 
+@pytest.mark.parametrize("name", ["lastresult$", "application.lastresult$"])
+def test_the_last_result_is_a_variable_before_anything_is_heard(name: str) -> None:  # 5.1.5
+    text = f"""<form><block><log expr="{name} === undefined"/></block><field name="f">{CITIES}
+        <noinput><log expr="{name} === undefined"/><assign name="{name}" expr="1"/>
+        <log expr="{name}"/><exit/></noinput></field></form>"""
+    assert run(text, "").logs() == ["true", "true", "1"]
+    assert run(leaf(text), "", root=page("")).logs() == ["true", "true", "1"]
+
+
 def test_a_leaf_may_go_to_its_root_without_losing_its_variables() -> None:  # 1.5.2
     call = Call(
         leaf(block('<assign name="a" expr="2"/><goto next="root.vxml"/>')),
