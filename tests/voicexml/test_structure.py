@@ -147,6 +147,13 @@ def test_a_misplaced_element_is_told_where_it_belongs(body: str, remedy: str) ->
     assert (problem.code, problem.remedy.endswith(remedy)) == ("misplaced-element", True)
 
 
+def test_an_element_without_a_namespace_is_told_what_takes_it_away() -> None:
+    text = vxml(block('<prompt xmlns="">Hi.</prompt><prompt xmlns="urn:x">Ho.</prompt>'))
+    first, second = read_page("a.vxml", "a.vxml", text.encode()).problems
+    assert first.remedy == 'It is ignored. Remove its xmlns="".'
+    assert second.remedy == "It is ignored."
+
+
 def test_a_pause_of_other_platforms_is_told_as_a_break() -> None:
     text = vxml(block("<prompt>Wait <pause>400</pause></prompt>"))
     (problem,) = read_page("a.vxml", "a.vxml", text.encode()).problems

@@ -122,7 +122,10 @@ def _check_children(node: Node, stack: list[Node], problems: list[Problem]) -> N
 def _ignored(child: Node) -> Problem:
     """The problem of an element of another namespace, which may be PRIMA's, misspelt."""
     near = nearest_word(child.namespace, [PRIMA_NAMESPACE])
-    hint = Hint(f'It is ignored. Did you mean "{near}"?' if near else "")
+    remedy = f'Did you mean "{near}"?' if near else ""
+    if not child.namespace and child.tag in VOICEXML.tags:
+        remedy = 'Remove its xmlns="".'
+    hint = Hint(f"It is ignored. {remedy}" if remedy else "")
     return IGNORED.at(child.place, hint, tag=child.tag, namespace=child.namespace)
 
 
