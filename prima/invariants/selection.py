@@ -159,9 +159,17 @@ def _passed_over(memory: Memory, other: AB, ab: AB, shown: str) -> None:
         # S3: it holds this device back whether or not its other devices are free.
         number = 5 if other.leaves else 6
         memory.report(number, "S3", f"{shown} starts before the reaction {other.shown}")
-    elif could_start(memory, other, ab):
+    elif could_start(memory, other, ab) and not _cleared_way(memory, other, ab):
         number = 5 if rule in ("S2a", "S2b") and other.devices & ab.devices else 12
         memory.report(number, rule, f"{shown} starts before {other.shown}, which outranks it")
+
+
+def _cleared_way(memory: Memory, other: AB, ab: AB) -> bool:
+    """X2: whether another could only start after what gave way to the starting one, not to it."""
+    return any(
+        by is ab and gone.devices & other.devices and not gives_way(memory, gone, other)
+        for gone, by, _ in memory.gave_way
+    )
 
 
 def admitted_by(memory: Memory, ab: AB) -> str:

@@ -11,7 +11,9 @@ from prima.messages import (
     Group,
     Step,
 )
+from prima.scheduler import rules
 from tests.helpers.generated.world import TABLE
+from tests.helpers.rebinding import rebind
 from tests.helpers.stage import TRACK, Stage, ask, chain, command, inserted, move, restartable, say
 
 EVENT = 7
@@ -320,3 +322,18 @@ def test_x2_with_x1_a_motion_starts_again_from_where_it_began() -> None:
     assert stage.select() == ["ea#4"]
     assert inserted(stage) == [("X1", "set-direction")], "it has turned half of its way"
     assert check(stage.records, both) == []
+
+
+def test_x2_the_check_of_a_run_sees_that_another_reaction_was_to_interrupt() -> None:
+    """Two reactions could both interrupt a unit: the one to the later event was to do so (S2b)."""
+    stage = Stage("prima+x2", apps={"fa": "fa", "ea": "ea", "third": "fa"})
+    unit = Group(chain(say("Hm."), command("turn", angle=9)), restartable=True)
+    stage.request("ea", unit)
+    assert "ea#1" in stage.select()
+    stage.at(100).request("fa", say("Oh!"), cause=7)
+    stage.request("third", command("turn", angle=90), cause=8)
+    with pytest.MonkeyPatch.context() as patch:
+        rebind(patch, rules, "s2b", lambda ab, memory: (0, ab.reaction or 0, 0))
+        assert stage.select() == ["fa#1", "third#1"]
+    found = check(stage.records, "prima+x2")
+    assert "invariant 12 (S2b) at 0.100 s: fa#1 starts before third#1, which outranks it" in found

@@ -11,9 +11,10 @@ import pytest
 
 from prima.invariants import check
 from prima.language.commands import TABLE_4_2, CommandType
-from prima.messages import Command, Step
-from prima.scheduler import interruption
-from tests.helpers.stage import TRACK, Stage, ask, command, inserted, move, restartable, say
+from prima.messages import Command, Group, Step
+from prima.scheduler import interruption, thirdturn
+from tests.helpers.rebinding import rebind
+from tests.helpers.stage import TRACK, Stage, ask, chain, command, inserted, move, restartable, say
 
 TOUCH = 7
 HEAD = command("move-head", pan=30)
@@ -200,6 +201,43 @@ def test_x7_a_command_yields_when_nobody_has_answered() -> None:
     assert stage.select() == ["fa#1"]
     assert [(r["behavior"], r["by"]) for r in stage.phases("interrupt")] == [("ea#2", "fa#1")]
     assert check(stage.records, "prima+x2+x7") == []
+
+
+def test_x7_what_a_reaction_interrupts_kept_the_response_from_the_speaker_till_then() -> None:
+    """A unit has the speaker while the asker turns its head; it gives way to a later reaction (X2)."""
+    stage = Stage("prima+x2+x7", apps={"fa": "fa", "ea": "ea", "third": "fa"})
+    stage.request("ea", ask())
+    stage.select()
+    unit = Group(chain(say("Hm."), command("turn", angle=9)), restartable=True)
+    stage.at(400).request("fa", unit, cause=TOUCH)
+    stage.request("third", HEAD, cause=TOUCH + 1)
+    assert stage.select() == ["third#1"]
+    then = chain(HEAD, say("Thank you."))
+    answer(stage.at(2000), "ea#1", lambda: stage.request("ea", steps=then))
+    assert "fa#1" in stage.select()
+    stage.at(2100).end("third#1")
+    assert (stage.select(), stage.rule("ea#2")) == (["ea#2"], "X7")
+    stage.at(2200).end("ea#2")
+    assert (stage.select(), stage.holds("ea#3")[-1]) == ([], "S1")
+    stage.at(2300).request("third", command("turn", angle=90), cause=TOUCH + 2)
+    assert stage.select() == ["third#2", "ea#3"]
+    assert [(r["behavior"], r["by"]) for r in stage.phases("interrupt")] == [("fa#1", "third#2")]
+    assert check(stage.records, "prima+x2+x7") == []
+
+
+def test_x7_the_check_of_a_run_sees_a_response_that_nothing_kept_from_the_speaker() -> None:
+    stage = Stage("prima+x2+x7", apps={"fa": "fa", "ea": "ea", "third": "fa"})
+    stage.request("ea", ask())
+    stage.select()
+    stage.at(400).request("fa", restartable(command("turn", angle=9)), cause=TOUCH)
+    assert stage.select() == ["fa#1"]
+    with pytest.MonkeyPatch.context() as patch:
+        rebind(patch, thirdturn, "owe", lambda mediation: None)
+        answer(stage.at(2000), "ea#1", lambda: stage.request("ea", say("Thank you.")))
+        stage.request("third", command("turn", angle=90), cause=TOUCH + 1)
+        assert stage.select() == ["third#1"]
+    found = check(stage.records, "prima+x2+x7")
+    assert "invariant 12 (X7) at 2.000 s: third#1 starts before ea#2, which outranks it" in found
 
 
 def test_x7_nobody_waits_for_what_waits_for_a_device_itself() -> None:
