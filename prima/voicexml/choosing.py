@@ -70,14 +70,15 @@ class ItemSelection:
         return item.index in context.visited
 
     def prompts(self, context: Context, item: Node) -> list[Node | str]:
-        """The prompts of an item that its counter has reached (4.1.6)."""
+        """The prompts of an item's next visit, by their counts (4.1.6)."""
+        asked = context.counters.prompts.get(item.index, 0) + 1
         content, nothing = self._content, self._shared.engine.nothing
 
         def spoken(piece: Node | str) -> bool:
             return isinstance(piece, str) or content.holds(piece, context, nothing)
 
         pieces = ((_least(piece), piece) for piece in item.content if _is_spoken(piece))
-        return select_prompts(pieces, context.counters.prompts[item.index], spoken)
+        return select_prompts(pieces, asked, spoken)
 
 
 def _is_spoken(piece: Node | str) -> bool:

@@ -304,8 +304,7 @@ class Machine:
     # Prompts --------------------------------------------------------------------------
 
     def _prompt(self, context: Context, item: Node) -> Flow:
-        """Queue the prompts of an item that its counter has reached (4.1.6)."""
-        context.counters = context.counters.asked(item.index)
+        """Queue the prompts of an item that its counter has reached, then count the visit (C)."""
         bare: list[Node | str] = []
         for piece in self.selection.prompts(context, item):
             if isinstance(piece, str) or piece.tag != "prompt":
@@ -315,3 +314,4 @@ class Machine:
             bare = []
             self.content.utter(piece, context, self.shared.local())
         yield from self.content.run_all(item, bare, context, self.shared.local())
+        context.counters = context.counters.asked(item.index)

@@ -63,6 +63,24 @@ case(
     {CITIES}<catch event="error.semantic">Oh.<exit/></catch></field></form>""",
     said=["Oh."],
 )
+case(
+    "a visit counts once its prompts are queued, not if one of them fails",
+    "C",
+    f"""<form><var name="k"/><field name="f"><prompt cond="k.x">One?</prompt>
+    <prompt count="2">Two?</prompt>{CITIES}<nomatch><reprompt/></nomatch>
+    <catch event="error.semantic"><assign name="k" expr="{{x: 1}}"/><reprompt/></catch>
+    </field></form>""",
+    "x",
+    said=["One?", "Two?"],
+)
+case(
+    "a visit does not count if a value in its prompts fails",
+    "C",
+    f"""<form><var name="k"/><field name="f"><prompt>One <value expr="k.x"/>?</prompt>
+    <prompt count="2">Two?</prompt>{CITIES}<catch event="error.semantic">
+    <assign name="k" expr="{{x: 1}}"/><reprompt/></catch></field></form>""",
+    said=["One 1?"],
+)
 
 
 @pytest.mark.parametrize("one", case.made)
