@@ -162,11 +162,14 @@ class Algorithm:
         args = {**self.owner.document.properties, **frame.form.properties, **field.properties}
         text = ""
         cues: tuple[Cue, ...] = ()
-        for prompt in self._prompts(frame, fiber, field):
+        silent, frame.silent = frame.silent, ""  # after its own event (4.1.6)
+        for prompt in () if silent else self._prompts(frame, fiber, field):
             text, more = self.owner.execute.speech(prompt.text, fiber, text)
             cues += more
             own = {"timeout": prompt.timeout, "bargein": prompt.bargein}
             args |= {name: value for name, value in own.items() if value is not None}
+        if not silent:  # what fails before has not asked (C)
+            frame.counters = frame.counters.asked(field.name)
         args.pop("confidencelevel", None)  # it concerns understanding, not listening
         if "timeout" in args:
             args["timeout"] = f"{args['timeout']}ms"
@@ -175,14 +178,10 @@ class Algorithm:
         return Command("q-and-a", args, text or None, lang=field.lang, source=place, cues=cues)
 
     def _prompts(self, frame: Frame, fiber: Fiber, field: Field) -> list[Prompt]:
-        """The prompts of a field, unless it must stay silent after its own event (4.1.6)."""
-        if frame.silent:
-            frame.silent = ""
-            return []
-        frame.counters = frame.counters.asked(field.name)
+        """The prompts of a field the next time that it asks (4.1.6)."""
         return select_prompts(
             ((one.count, one) for one in field.prompts),
-            frame.counters.prompts[field.name],
+            frame.counters.prompts.get(field.name, 0) + 1,
             lambda one: one.cond is None or self.owner.execute.condition(one.cond, fiber),
         )
 

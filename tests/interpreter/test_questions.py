@@ -181,6 +181,21 @@ def test_handlers_are_chosen_by_count_over_the_whole_list() -> None:
     assert bench.logs() == ["first", "document second", "third", "third"]
 
 
+@pytest.mark.parametrize(
+    "prompt",
+    ['<prompt cond="size.known">One?</prompt>', '<prompt>One<value expr="size.none"/>?</prompt>'],
+)
+def test_a_question_whose_prompt_fails_has_not_been_asked(prompt: str) -> None:
+    bench = Bench(
+        f"""<form id="a"><var name="size"/><field name="f">{prompt}
+        <prompt count="2">Two?</prompt><option>red</option>
+        <error><assign name="size" expr="{{known: true, none: ''}}"/><reprompt/></error>
+        <noinput><reprompt/></noinput></field></form>"""
+    )
+    bench.silence()
+    assert bench.said() == ["One?", "Two?"]
+
+
 def test_a_prefix_takes_an_event_token_by_token_and_the_innermost_scope_wins() -> None:
     bench = Bench(
         """<on event="touch"><log>document</log></on>
