@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
+from typing import Any
+
 import pytest
 
+from prima.grammar.answers import Answers
+from prima.grammar.phrases import MOST
+from prima.interpreter.checks import comparisons
 from prima.interpreter.reader import read_document
+from prima.messages import Json
+from prima.script.budget import Budget
 
 APP = '<prima xmlns="urn:prima:dialogue:1" version="1.0" kind="ea" id="app">{}</prima>'
 ASK = """<field name="tea" type="boolean"{}>
@@ -108,6 +116,34 @@ def test_the_values_that_answers_give_are_told(answers: str, told: str) -> None:
     _, problems = read_document("app.xml", APP.format(form("a", field + asked)).encode())
     (found,) = [one for one in problems if one.code == "never-equal"]
     assert found.remedy == told
+
+
+def test_answers_that_take_too_long_to_find_are_not_listed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(comparisons, "Budget", partial(Budget, steps=1))
+    grammar = "<grammar><item repeat='0-'>green</item> tea</grammar>"
+    field = f'<field name="x"><prompt>Tea?</prompt>{grammar}<noinput><exit/></noinput></field>'
+    asked = """<block cond="x == 'milk'"><speak>Good.</speak></block><block><exit/></block>"""
+    _, problems = read_document("app.xml", APP.format(form("a", field + asked)).encode())
+    assert [one.remedy for one in problems if one.code == "never-equal"] == [""]
+
+
+def test_the_answers_of_a_grammar_are_listed_once_however_many_comparisons_are_wrong(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    matched: list[str] = []
+    match = Answers.match
+
+    def counted(answers: Answers, text: str, *others: Any) -> Json:
+        matched.append(text)
+        return match(answers, text, *others)
+
+    monkeypatch.setattr(Answers, "match", counted)
+    items = "".join(f"<item>tea {number}</item>" for number in range(40))
+    field = f'<field name="x"><prompt>Tea?</prompt><grammar><one-of>{items}</one-of></grammar>'
+    asked = "".join(f"<block cond=\"x == 'milk {number}'\"/>" for number in range(90))
+    body = f"{field}<noinput><exit/></noinput></field>{asked}<block><exit/></block>"
+    assert warned(form("a", body), "never-equal") == 90
+    assert len(matched) == 90 + MOST
 
 
 @pytest.mark.parametrize(

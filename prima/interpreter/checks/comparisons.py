@@ -14,6 +14,7 @@ from prima.interpreter.acts import Assign, Declare, Expression, Foreach, If, Scr
 from prima.interpreter.checks.facts import Facts
 from prima.interpreter.checks.variables import place_in
 from prima.interpreter.elements import Field
+from prima.script.budget import Budget
 from prima.script.conditions import Compared, compared, may_compare, may_equal, never_equal
 
 NAME = re.compile(r"[\w$]+")
@@ -24,11 +25,15 @@ MOST_CHECKED = 100
 def check_comparisons(facts: Facts) -> Iterator[Problem]:
     """Warn of conditions that compare a field's variable with what it never is."""
     values: dict[int, set[str]] = {}  # by field, as a grammar may have very many
+    said: dict[int, set[str]] = {}
+    budget = Budget()  # to list answers, in all grammars
     for expr, found, field in islice(_compared(facts), MOST_CHECKED):
         if id(field) not in values:
             values[id(field)] = _values(field)
         if not _possible(field, found.text, values[id(field)]):
-            given = None if field.answers.type else values[id(field)] | _said(field)
+            if id(field) not in said and budget.steps > 0:
+                said[id(field)] = _said(field, budget)
+            given = None if field.answers.type else values[id(field)] | said.get(id(field), set())
             yield never_equal(found, partial(place_in, expr), given)
 
 
@@ -99,12 +104,13 @@ def _possible(field: Field, text: str, values: set[str]) -> bool:
     return said is not None and fold(str(said)) == fold(text)
 
 
-def _said(field: Field) -> set[str]:
-    """Values of some answers that the field's grammars take."""
+def _said(field: Field, budget: Budget) -> set[str]:
+    """Values of some answers that the field's grammars take, as far as the budget goes."""
     from prima.grammar.phrases import phrases  # few documents have such a mistake
 
     answers = Answers(grammars=field.answers.grammars)
-    return {str(answers.match(phrase)) for phrase in phrases(answers)}
+    found = (answers.match(phrase, budget) for phrase in phrases(answers))
+    return {str(value) for value in found if value is not None}
 
 
 def _values(field: Field) -> set[str]:
